@@ -373,9 +373,12 @@ def test_power_cycles_are_in_the_table_of_repeatability():
 
 @pytest.mark.slow
 def test_the_sessions_of_snu_repeat_within_their_sigmas(drafted):
-    """Its SOURCE.md: sessions 2 and 3 agree. Day, mounting and switch-on are one component."""
+    """Its SOURCE.md: sessions 2 and 3 agree. Day, mounting and switch-on are one component.
+
+    The first is shorter, and its accelerometers are not usable; what it has agrees, too.
+    """
     sessions = []
-    for name in ("snu-2", "snu-3"):
+    for name in ("snu-1", "snu-2", "snu-3"):
         result = rows_of(drafted(name)[1]["diagnosis/result"])
         rows = [
             row | {"quantity": row["parameter"]}
@@ -389,4 +392,4 @@ def test_the_sessions_of_snu_repeat_within_their_sigmas(drafted):
     within = found[found["component"] == "within"].set_index(["sensor", "quantity"])["value"]
     assert len(between) >= 20
     ratio = between.set_index(["sensor", "quantity"])["value"] / within
-    assert ratio.median() < 1.0  # two sessions show no more than their sigmas
+    assert ratio.median() < 1.0  # the sessions show no more than their sigmas

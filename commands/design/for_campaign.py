@@ -20,8 +20,9 @@ from commands.design.visits import Item, Visit, items_of, plan_of, visit_seconds
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import SENSORS, Campaign, campaign_of
+from inertial.campaign.equations import SENSORS, Campaign
 from inertial.campaign.foreseen import by_position, extended
+from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import rows_of
 from inertial.effects import KNOWN
 from inertial.estimation.random_walk import NO_DRIFT

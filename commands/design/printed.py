@@ -12,7 +12,8 @@ from commands.design.from_nothing import Designed
 from commands.design.wanted import NAMES, Reached
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import SENSORS, campaign_of
+from inertial.campaign.equations import SENSORS
+from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.estimation.random_walk import NO_DRIFT
 from inertial.model_selection.detection_limits import VISIBLE, Visible, visible

@@ -70,9 +70,7 @@ def draft(logs: Sequence[Path], name: str, data: Path, rate: float | None = None
     text = campaign_file(kinds, plan, name)
     folder.mkdir(parents=True)
     for path in logs:
-        shutil.copy(
-            path, folder / path.name
-        )  # a link would be the same bytes
+        shutil.copy(path, folder / path.name)  # a link would be the same bytes
     (folder / "campaign.yaml").write_text(text, encoding="utf-8")
     return folder
 

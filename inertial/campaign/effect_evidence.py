@@ -52,7 +52,7 @@ def evidence(
         tuple(_restricted(reduced, observable) for _, reduced in informative),
         tuple(sensor for sensor, _ in informative),
         tuple(campaign.noise_degrees(sensor, noise_degrees) for sensor, _ in informative),
-        sum((system.raw_information()[: len(largest)] for _, system in systems), np.zeros(1)),
+        np.array([system.raw_information()[: len(largest)] for _, system in systems]),
     )
 
 

@@ -81,7 +81,7 @@ def _of_columns(evidence: Evidence, columns: Sequence[int]) -> list[_Limit]:
     for column, variance in zip(columns, np.diag(covariance).tolist(), strict=True):
         own, share = float(total.information[column, column]), np.nan
         if evidence.raw is not None:
-            raw = float(evidence.raw[column])
+            raw = float(evidence.raw[:, column].sum())
             share = own / raw if raw > 0 else np.nan
             if raw <= 0 or share <= MIN_INFORMATION_SHARE:
                 limits.append((np.nan, ABSORBED if raw > 0 else NOT_EXCITED, share))

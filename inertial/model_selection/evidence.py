@@ -56,8 +56,8 @@ class Evidence:
 
     `sensors`: independent equations about the same effects; `labels`: their names;
     `noise_degrees`: degrees of freedom from which the noise of each was estimated, none:
-    infinitely many; `raw`: information of every column before anything else is fitted, summed
-    over the sensors, (k,), for the reason why a column is not observable.
+    infinitely many; `raw`: information of each sensor on every column before anything else is
+    fitted, (s, k): which sensor an effect acts on, and why a column is not observable.
     """
 
     sensors: tuple[EffectInformation, ...]
@@ -79,9 +79,8 @@ class Evidence:
         """Without the columns whose information, all else fitted, is no more than rounding."""
         if self.raw is None or not self.sensors:
             return self
-        kept = (np.diag(self.total.information) > MIN_INFORMATION_SHARE * self.raw).astype(
-            np.float64
-        )
+        least = MIN_INFORMATION_SHARE * self.raw.sum(axis=0)
+        kept = (np.diag(self.total.information) > least).astype(np.float64)
         sensors = tuple(
             replace(
                 sensor,
@@ -114,8 +113,14 @@ class Evidence:
         return self.noise_degrees[number] if self.noise_degrees else np.inf
 
     def sensor_of(self, columns: Sequence[int]) -> int:
-        """The sensor with most information on the columns."""
-        shares = [float(np.sum(np.diag(s.information)[list(columns)])) for s in self.sensors]
+        """The sensor with most information on the columns, of those whose readings they change.
+
+        Where sensors share the tilts of positions, one informs on effects of the other, too.
+        """
+        own = list(columns)
+        shares = np.array([np.sum(np.diag(s.information)[own]) for s in self.sensors])
+        if self.raw is not None and (changed := self.raw[:, own].sum(axis=1) > 0).any():
+            shares[~changed] = -1
         return int(np.argmax(shares))
 
     def excesses(self, chosen: Sequence[int]) -> tuple[tuple[float, float], ...]:

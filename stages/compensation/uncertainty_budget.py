@@ -5,8 +5,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.equations import PRIOR_SIZE, Campaign, campaign_of
+from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.campaign.measurement import Measurement, SensorResult
+from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import Row
 from inertial.estimation.triad import linear_names
 from inertial.estimation.uncertainty_budget import Model, budget

@@ -16,7 +16,7 @@ from inertial.effects import LAWS
 from inertial.effects.law import ALL, Law, law_name
 from inertial.model_selection import walk_odds
 from inertial.model_selection.evidence import SearchedEffect, searched_effect
-from inertial.model_selection.laws import (
+from inertial.model_selection.law_evidence import (
     LawOdds,
     best_paths,
     chance_of,

@@ -9,7 +9,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.equations import Campaign
+from inertial.campaign.observations import campaign_of
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.periodic_in_angle import Orders, Ripple, detection_limit, search

@@ -7,7 +7,8 @@ from functools import partial
 import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
-from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.equations import Campaign
+from inertial.campaign.observations import campaign_of
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
 from inertial.estimation.random_walk import NO_DRIFT

@@ -13,7 +13,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from scipy.stats import chi2
 
-from inertial.text.certified import NOT_STATED
+from inertial.text.statements import NOT_STATED
 from inertial.text.units import COVERAGE_FACTOR
 
 NAMES = {

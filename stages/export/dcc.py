@@ -9,14 +9,14 @@ from collections.abc import Sequence
 from xml.etree.ElementTree import Element, indent, tostring
 
 from inertial.campaign.records import Row
-from inertial.text.certified import (
+from inertial.text.messages import _
+from inertial.text.statements import (
     IN_FULL_ONLY,
     NOT_STATED,
     REALISES,
     THIS_ITEM_ONLY,
     TRACEABILITY,
 )
-from inertial.text.messages import _
 from stages.export.d_si import Value, add, add_line, add_real
 from stages.export.dcc_results import NO_VALUES, add_conformity, add_noise, add_result, unusable
 from stages.export.dcc_texts import add_data, add_rich, add_text

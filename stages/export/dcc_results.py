@@ -6,9 +6,9 @@ from xml.etree.ElementTree import Element
 from inertial.campaign.records import Row
 from inertial.tables import AXES
 from inertial.text import numbers
-from inertial.text.certified import RULES, STATEMENTS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
+from inertial.text.statements import RULES, STATEMENTS
 from stages.export.calibration import NOT_USABLE
 from stages.export.d_si import Value, add, add_list, add_real, values_of
 from stages.export.dcc_texts import add_data, add_rich, add_text

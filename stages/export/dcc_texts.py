@@ -2,7 +2,7 @@
 
 from xml.etree.ElementTree import Element
 
-from inertial.text.certified import NOT_STATED
+from inertial.text.statements import NOT_STATED
 from stages.export.d_si import add
 
 

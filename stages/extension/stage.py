@@ -8,8 +8,8 @@ from typing import Any
 import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData, campaigns_of
-from inertial.campaign.equations import campaign_of
 from inertial.campaign.estimates import switch_on_columns
+from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import rows_of
 from inertial.campaign.scatter_of_positions import scattered
 from inertial.campaign.solution import joint_rows

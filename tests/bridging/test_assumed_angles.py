@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from z_turns import ANGLE, NOISE, Z_SCALE, inputs_of, lose
 
-from inertial.campaign.equations import campaign_of
+from inertial.campaign.observations import campaign_of
 from inertial.estimation.gyroscope_observations import RateSegment, WholeTurn
 from inertial.estimation.gyroscopes import bias_and_scale, joint
 from inertial.estimation.triad import errors_of, linear_names

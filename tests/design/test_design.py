@@ -17,8 +17,8 @@ from commands.design.from_nothing import best, foreseen_of
 from commands.design.turntable import instrument, turntable
 from commands.design.visits import Visit, items_of, plan_of, possible
 from commands.design.wanted import NAMES, reach, wanted_sigmas
-from inertial.campaign.equations import campaign_of
 from inertial.campaign.foreseen import Pace, foreseen, session_seconds, sigmas, stated_noise
+from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import known_of, manoeuvres_of
 from inertial.effects import CATALOGUE
 from inertial.tables.errors import Refusal

@@ -12,8 +12,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.equations import Campaign
 from inertial.campaign.noise_levels import NoiseLevels, effective_levels
+from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import Known, Manoeuvre, Performed
 from inertial.campaign.solution import Solution
 from inertial.physics.forward import Site, Triad, predict

@@ -14,7 +14,8 @@ from hidden_ways import POSITIVE, WAYS
 
 import laboratory
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.equations import Campaign
+from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.physics.effect import Effect
 

@@ -7,7 +7,8 @@ from hidden_plans import PLANS
 
 import laboratory
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import campaign_of
+from inertial.campaign.equations import SENSORS
+from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 
 TILT = 120.0  # arcsec, sixty times what the gyros resolve
@@ -59,3 +60,14 @@ def test_a_turn_may_be_named_by_the_other_end_of_its_axis(campaign, document):
         evidence(campaign, []).sensors, evidence(renamed, []).sensors, strict=True
     ):
         assert other.chi_squared == pytest.approx(own.chi_squared, rel=1e-6)
+
+
+def test_an_effect_is_of_the_sensor_whose_readings_it_changes(campaign):
+    """Though by the tilts the gyros add more on the accelerometers' effects than these know."""
+    effects = [effect for effect in CATALOGUE.values() if effect.name.split("_")[0] in SENSORS]
+    told = evidence(campaign, effects)
+    first = 0
+    for effect in effects:
+        columns = range(first, first := first + len(effect.parameters))
+        if np.diag(told.total.information)[list(columns)].any():
+            assert told.labels[told.sensor_of(columns)] == effect.name.split("_")[0]

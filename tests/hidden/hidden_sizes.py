@@ -15,7 +15,8 @@ from hidden_ways import WAYS, Array
 
 import laboratory
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.equations import Campaign
+from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.naming import law_of

@@ -37,7 +37,7 @@ class Plan:
     effects: tuple[SearchedEffect, ...]
     informations: tuple[Array, Array]  # gyros, accelerometers
     roots: tuple[Array, Array]  # of the informations
-    raw: Array
+    raw: Array  # before anything else is fitted, by sensor
     degrees: tuple[int, int]
 
     @property
@@ -64,7 +64,7 @@ class Plan:
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(f"c{i}" for i in range(len(self.raw)))
+        return tuple(f"c{i}" for i in range(self.raw.shape[1]))
 
     def noise(self, draws: int, rng: np.random.Generator) -> Array:
         """What all sensors together would say without effects, (k, draws)."""
@@ -90,9 +90,9 @@ class Plan:
             value = int(rng.integers(4, len(one.candidates) - 4))
         columns = list(one.candidates[value])
         F = self.information[np.ix_(columns, columns)]
-        beta = np.zeros(len(self.raw))
+        beta = np.zeros(self.raw.shape[1])
         direction = rng.standard_normal(len(columns)) / np.sqrt(
-            np.maximum(self.raw[columns], 1e-30)
+            np.maximum(self.raw.sum(axis=0)[columns], 1e-30)
         )
         beta[columns] = direction * snr / np.sqrt(direction @ F @ direction)
         return beta, value
@@ -150,7 +150,7 @@ def plan_of(plan: str, jumps: tuple[float, ...] = ()) -> Plan:
             start += width
         effects.append(searched_effect(name, *candidates, free=name.startswith("any")))
     informations, degrees = [], []
-    raw = np.zeros(start)
+    raw = np.zeros((2, start))
     for side, (sigma, columns) in enumerate(sensors):
         X = np.concatenate([b[side] for b in blocks], axis=2).reshape(3 * n, -1) / sigma[:, None]
         known = columns.shape[1] - 12
@@ -160,7 +160,7 @@ def plan_of(plan: str, jumps: tuple[float, ...] = ()) -> Plan:
         Q = np.linalg.qr(np.vstack([columns / size, prior]))[0][: 3 * n]
         rest = X - Q @ (Q.T @ X)
         own = np.sum(X**2, axis=0)
-        raw += own
+        raw[side] = own
         F = X.T @ rest
         F = (F + F.T) / 2
         gone = np.diag(F) < 1e-9 * np.maximum(own, 1e-30)

@@ -55,7 +55,7 @@ def test_noise_is_named_at_the_level(plan: str):
 
 def test_what_is_named_is_what_stands_above_its_price():
     p, rng = plan_of("b"), np.random.default_rng(2)
-    quiet = np.zeros(len(p.raw))
+    quiet = np.zeros(p.raw.shape[1])
     found = [causes(p.draw(quiet, rng), p.effects, law_of("b")) for _ in range(30)]
     assert sum(bool(one.causes) for one in found) <= 3
     assert all(asked.after_search > LEVEL for one in found if not one.causes for asked in one.tests)
@@ -163,7 +163,7 @@ def test_a_second_look_names_a_strong_jump_alone():
     seldom_too = (*fine.effects[:place], seldom, *fine.effects[place + 1 :])
     truth = int(np.argmin(np.abs(times - 0.5 * (coarse[16] + coarse[17]))))
     columns = list(fine.effects[place].candidates[truth])
-    beta = np.zeros(len(fine.raw))
+    beta = np.zeros(fine.raw.shape[1])
     direction = np.array([1.0, -0.5, 0.3])
     size = np.sqrt(direction @ fine.information[np.ix_(columns, columns)] @ direction)
     beta[columns] = 40 / size * direction
@@ -188,7 +188,7 @@ def test_a_drift_without_a_law_gets_no_several_names():
     (columns,) = [list(c) for c in effects["any_gyros"].candidates]
     # Half waves represent the drift, but for so little that it does not matter.
     waves = catalogue(r, times_of_jumps("c"))["any_gyros"][0][0].reshape(len(sigma), -1)
-    beta = np.zeros(len(p.raw))
+    beta = np.zeros(p.raw.shape[1])
     beta[columns] = np.linalg.lstsq(waves / sigma[:, None], drift.ravel() / sigma)[0]
     beta *= 15 / np.sqrt(beta @ p.information @ beta)
     verdicts = []
@@ -218,7 +218,7 @@ def test_regions_hold_the_truth():
 def test_an_effect_must_stand_out_of_residuals_that_are_too_large():
     """Noise of three times the variance that it was said to have names nothing."""
     p, rng = plan_of("b"), np.random.default_rng(10)
-    quiet = np.zeros(len(p.raw))
+    quiet = np.zeros(p.raw.shape[1])
     names = 0
     for _ in range(3):
         loud = p.draw(quiet, rng)

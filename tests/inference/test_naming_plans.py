@@ -49,7 +49,9 @@ def test_what_is_not_seen_has_a_reason():
 def test_parameters_that_are_seen_together_alone():
     information = np.ones((2, 2))
     said = EffectInformation(("a", "b"), information, np.zeros(2), 5.0, 5)
-    seen = visible(Evidence((said,), ("gyro",), raw=np.ones(2)), [searched_effect("pair", [0, 1])])
+    seen = visible(
+        Evidence((said,), ("gyro",), raw=np.ones((1, 2))), [searched_effect("pair", [0, 1])]
+    )
     assert [one.reason for one in seen] == [ONLY_TOGETHER] * 2
 
 
@@ -99,4 +101,4 @@ def test_a_separation_is_what_simulation_gives():
 
 def quiet(plan: str) -> Evidence:
     p = plan_of(plan)
-    return p.draw(np.zeros(len(p.raw)), np.random.default_rng(0))
+    return p.draw(np.zeros(p.raw.shape[1]), np.random.default_rng(0))

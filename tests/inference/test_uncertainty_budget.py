@@ -4,7 +4,8 @@ import chain
 import numpy as np
 import pytest
 
-from inertial.campaign.equations import PRIOR_SIZE, campaign_of
+from inertial.campaign.equations import PRIOR_SIZE
+from inertial.campaign.observations import campaign_of
 from inertial.estimation.accelerometers import StaticForce, drifting
 from inertial.estimation.uncertainty_budget import Model, budget
 from inertial.physics.forward import Triad

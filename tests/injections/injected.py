@@ -23,7 +23,8 @@ from recordings.known import RECORDINGS, told
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.equations import Campaign
+from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.model_selection.naming import law_of
 from inertial.model_selection.null_simulation import power

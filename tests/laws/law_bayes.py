@@ -19,7 +19,7 @@ from inertial.campaign.equations import Campaign
 from inertial.effects.law import Law
 from inertial.model_selection.effect_classes import log_evidence
 from inertial.model_selection.evidence import searched_effect
-from inertial.model_selection.laws import best_paths, log_paths
+from inertial.model_selection.law_evidence import best_paths, log_paths
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics.effect import Effect

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 import laboratory
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import Campaign, campaign_of
+from inertial.campaign.equations import Campaign
+from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.estimation.random_walk import NO_DRIFT
 from inertial.model_selection.evidence import searched_effect

@@ -7,7 +7,7 @@ from hidden_plans import PLANS
 
 from inertial.effects import LAWS
 from inertial.model_selection.evidence import searched_effect
-from inertial.model_selection.laws import best_paths, chance_of, law_odds
+from inertial.model_selection.law_evidence import best_paths, chance_of, law_odds
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics import laws
 from inertial.physics.motion import stretches

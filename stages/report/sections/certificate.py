@@ -7,7 +7,8 @@ from math import degrees
 
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
-from inertial.text.certified import (
+from inertial.text.messages import _
+from inertial.text.statements import (
     IN_FULL_ONLY,
     NOT_STATED,
     REALISES,
@@ -16,7 +17,6 @@ from inertial.text.certified import (
     THIS_ITEM_ONLY,
     TRACEABILITY,
 )
-from inertial.text.messages import _
 from inertial.text.units import COVERAGE_FACTOR, ICE_POINT, Unit
 from stages.report.outline import (
     Column,

@@ -1,0 +1,119 @@
+"""What the equations of a mount are formed from: static positions, rotations, passages by hand."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.equations import SENSORS, Campaign
+from inertial.campaign.equations_by_hand import ByHand, motion_of
+from inertial.campaign.motions import CampaignMotions, Merged, mean_motions, positions_of
+from inertial.campaign.records import Manoeuvre
+from inertial.campaign.static_positions import Blocks, StaticPosition
+from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.random_walk import NO_DRIFT
+from inertial.physics.motion import Motion, mean_turned
+from inertial.tables import ACCEL
+
+Array = NDArray[np.float64]
+
+MIN_PIECE_S = 30.0  # s, duration of a piece of a static position
+MAX_PIECES = 100  # pieces of all static positions together
+MERGED_BLOCKS = 5  # blocks of a rotation in one mean of the accelerometers, whose input is slow
+
+
+def campaign_of(data: CampaignData) -> Campaign:
+    """The inputs of the equations of one mount.
+
+    Without a shared clock the times of different logs are not comparable and are omitted.
+    """
+    inputs, statics = data.gyro_inputs.of_known_attitude, data.accelerometer_positions[0]
+    if data.by_hand is None:
+        inputs = replace(inputs, static_positions=_in_pieces(inputs.static_positions))
+        statics = _in_pieces(statics)
+    motions, solution = CampaignMotions(data), data.result
+    static_motions = [motions.at_rest(position) for position in inputs.static_positions]
+    turns: list[Motion] = []
+    static_forces: list[tuple[str, StaticForce, Motion]] = []
+    for position in statics:
+        force = (position.manoeuvre.name, _static_force(position), motions.at_rest(position))
+        static_forces.append(force)
+    whole = [r for r in inputs.usable if r.plan.recorded == "whole"]
+    for recorded, turn in zip(whole, inputs.turns, strict=True):
+        if solution.gyro is None:
+            break
+        motion = motions.turning(recorded, turn)
+        turns.append(motion)
+        if not turn.by_hand:
+            density = data.noise.of(recorded.plan.name, "steady", ACCEL)
+            edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
+            parts = _turning(recorded.plan, recorded.blocks, motion, density, edges)
+            static_forces += [(m, replace(part, stretch=turn.stretch), at) for m, part, at in parts]
+    handled = data.by_hand is not None  # there the support drifts, not only the bias
+    return Campaign(
+        inputs,
+        static_forces,
+        static_motions,
+        turns,
+        solution,
+        data.gravity,
+        data.position_sigma,
+        positions_of(data.plan),
+        [m.name for m in data.plan],
+        _by_hand(data, motions),
+        {sensor: NO_DRIFT if handled else data.drift(sensor) for sensor in SENSORS},
+    )
+
+
+def _by_hand(data: CampaignData, motions: CampaignMotions) -> ByHand | None:
+    """The positions of unknown attitude, and the passages where they give the gyros' result."""
+    handled, gyro = data.by_hand, data.result.gyro
+    if handled is None:
+        return None
+    if gyro is None or "gyro" not in data.result.free:
+        handled = replace(handled, passages=[])
+    rests = {position.label: position for position in data.accelerometer_positions[0]}
+    passing = []
+    for each in handled.passages:
+        assert gyro is not None  # else there are none
+        place = each.passage.first
+        before = motions.at_rest(rests[handled.stops[place].forces.name])
+        passing.append(motion_of(each, before, gyro, place, shared_clock=data.shared_clock))
+    return ByHand(handled, passing, data.gravity, data.earth, data.shared_clock)
+
+
+def _in_pieces(positions: Sequence[StaticPosition]) -> list[StaticPosition]:
+    """Static positions divided so that changes within them are resolved by few equations."""
+    total = sum(float(position.seconds.sum()) for position in positions)
+    seconds = max(MIN_PIECE_S, total / MAX_PIECES)
+    return [piece for position in positions for piece in position.pieces(seconds)]
+
+
+def _static_force(position: StaticPosition) -> StaticForce:
+    mean, sigma = position.over()
+    return StaticForce(
+        position.manoeuvre.position, position.up_now, mean, sigma, stretch=position.stretch
+    )
+
+
+def _turning(
+    m: Manoeuvre, blocks: Blocks, motion: Motion, density: Array, edges: Sequence[int]
+) -> list[tuple[str, StaticForce, Motion]]:
+    """The accelerometers during a rotation in means of some blocks, none across the `edges`."""
+    read, seconds = blocks.accel, blocks.seconds
+    assert m.up is not None  # else the turn is refused
+    ups = mean_turned(m.up, m.axis, motion.angle, motion.rate * seconds)
+    pieces = [range(first, after, MERGED_BLOCKS) for first, after in pairwise(edges)]
+    starts = [start for piece in pieces for start in piece]
+    merged = Merged(seconds, starts)
+    sigmas = density / np.sqrt(merged.seconds)[:, None]
+    rests = [
+        StaticForce(m.position, up, mean, sigma, turning=True)
+        for up, mean, sigma in zip(merged.mean(ups), merged.mean(read), sigmas, strict=True)
+    ]
+    return [
+        (m.name, rest, at) for rest, at in zip(rests, mean_motions(motion, merged), strict=True)
+    ]
