@@ -77,10 +77,13 @@ def with_shapes(
     for model in effects:
         if isinstance(model, TemperatureModel) and (bent := _bent(model, solution)):
             grid = {f: _grid(f, solution, model, motion) for f in bent}
-            every = _Equations(model, effects, grid, system_of)
+            estimate = solution.estimate
+            excess = max(1.0, estimate.chi_squared / max(estimate.degrees, 1))
+            every = _Equations(model, effects, grid, excess, system_of)
             shapes = {f: every.shapes(f, motion) for f in bent}
             three = {f: [s.knot for s in own if s.degree == 1] for f, own in shapes.items()}
-            return _Equations(model, effects, three, system_of).mixed(solution, shapes, motion)
+            every = _Equations(model, effects, three, excess, system_of)
+            return every.mixed(solution, shapes, motion)
     return solution
 
 
@@ -120,12 +123,20 @@ def _ends(motion: Motion) -> tuple[float, float]:
 
 
 class _Equations:
-    """The equations of a sensor with the columns of all shapes; `knots`: by function, K."""
+    """The equations of a sensor with the columns of all shapes.
+
+    `knots`: by function, K; `excess`: of the variance over that of the noise.
+    """
 
     def __init__(
-        self, model: TemperatureModel, effects: Sequence[Effect], knots: Knots, system_of: SystemOf
+        self,
+        model: TemperatureModel,
+        effects: Sequence[Effect],
+        knots: Knots,
+        excess: float,
+        system_of: SystemOf,
     ) -> None:
-        self.model, self.effects, self.knots = model, effects, knots
+        self.model, self.effects, self.knots, self.excess = model, effects, knots, excess
 
         def labelled(pieces: Sequence[Piece], at: float, of: Mapping[str, float]) -> Effect:
             return TemperatureModel(model.sensor, pieces, of, model.lag).fixed(at)
@@ -136,7 +147,7 @@ class _Equations:
             for f, own in knots.items()
             for at in own
         }
-        self.system = system_of([self.smooth, *self.bends.values()])
+        self.system = _compressed(system_of([self.smooth, *self.bends.values()]))
         self.named = {p: f"{model.label}.{p.name}" for p in model.pieces if p.function in knots}
         own = {name for effect in (self.smooth, *self.bends.values()) for name in names_of(effect)}
         self.others = [
@@ -149,11 +160,6 @@ class _Equations:
     def before(self) -> Estimate:
         """The fit as it was named."""
         return self.fit(list(self.named.values()))
-
-    @property
-    def excess(self) -> float:
-        """Of the variance over that of the noise."""
-        return max(1.0, self.before.chi_squared / max(self.before.degrees, 1))
 
     def fit(self, columns: Sequence[str]) -> Estimate:
         """With some columns of these functions, beside all other effects."""
@@ -288,6 +294,15 @@ class _Equations:
             effects=[row["effect"] for row in written[UNKNOWNS:]],
             constants=constants,
         )
+
+
+def _compressed(system: System) -> System:
+    """Fewer equations with the same sum of squares, for many fits of some of the columns."""
+    whole = np.column_stack([system.design, system.observed]) / system.sigma[:, None]
+    triangle = np.asarray(np.linalg.qr(whole, mode="r"))
+    return replace(
+        system, design=triangle[:, :-1], observed=triangle[:, -1], sigma=np.ones(len(triangle))
+    )
 
 
 def _three(
