@@ -234,6 +234,25 @@ def test_hysteresis_is_told_from_a_drift_in_time():
     assert cause.values[2] == pytest.approx(4e-5 * G, abs=4 * cause.covariance[2, 2] ** 0.5)
 
 
+def test_hysteresis_and_a_drift_in_time_are_one_class_where_it_turns_back_once():
+    """Three temperatures, the first and the last alike: a jump between them does the same."""
+    plan = soaks.soak((0, 40, 0), 10.0)
+    ends = np.array([rows["time"].iloc[-1] for rows in plan.rows])
+
+    def loop(above: Array, read: Array, time: Array) -> Array:
+        soak = np.searchsorted(ends, time[0]) // (len(plan.rows) // 3)
+        change = np.zeros_like(read)
+        change[:, 2] = 1.5e-5 * G * (0, 1, -1)[soak]
+        return change
+
+    campaign = soaks.recorded(plan, 17, loop)
+    effects = [CATALOGUE[f"accel_{what}"] for what in ("warm_up", "bias_ramp", "bias_jump")]
+    selection = select_with_temperature(campaign, effects, LEVEL, TEMPERATURE_LEVEL, np.inf)
+    (cause,) = selection.named.causes
+    assert cause.verdict == "one_of_class"
+    assert {"accel_thermal_hysteresis", "accel_bias_jump"} <= set(cause.members)
+
+
 def test_a_delay_is_that_of_a_first_order():
     """After a long ramp a part is behind by rate × τ, and a part before it ahead by as much."""
     time = np.arange(0.0, 3000.0, 10.0)
