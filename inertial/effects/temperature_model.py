@@ -51,6 +51,11 @@ MEANINGS = {
     BELOW: _("change of the slope of {function} at the lower of the knots that it may have"),
     ABOVE: _("change of the slope of {function} at the upper of the knots that it may have"),
 }
+KNOTS = {
+    "": _("knot of {function}"),
+    "_below": _("lower of the knots that {function} may have"),
+    "_above": _("upper of the knots that {function} may have"),
+}
 OF_DEGREE = _("degree of the likeliest shape of {function}; 1: a line with a knot")
 LIKELIEST = _("probability of the likeliest shape of {function}")
 LAG = "lag"  # constant: of the sensors behind the thermometer
@@ -153,8 +158,10 @@ class TemperatureModel(Effect):
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
         knots = [
-            Constant(knot_name(f), "K", _("knot of {function}", function=f), at)
-            for f, at in self.knots.items()
+            Constant(knot_name(f + side), "K", KNOTS[side].format(function=f), self.knots[f + side])
+            for f in FUNCTIONS
+            for side in SIDES.values()
+            if f + side in self.knots
         ]
         lag = Constant(
             LAG,
