@@ -18,14 +18,18 @@ from laboratory.units import DEGREE
 
 @dataclass(frozen=True)
 class Oscillation(Effect):
-    """A vibration of the case by the angle ψ = A/(2πf) w sin(2πf t + phase) about `axis`.
+    """A vibration of the case by the angle ψ = A/(2πf) w S(2πf t + phase) about `axis`.
 
     A: amplitude, rad/s; f: frequency, Hz; t: from the start of the manoeuvre; w: the rate of the
     table as a fraction of its steady rate, smoothed (`smooth_step`), so 0 at rest: over a whole
     turn the vibration adds no angle. Periodic in the angle of the table it is
-    A/(n r) w sin(nθ + phase), n periods per revolution, θ the angle of the table and r its steady
+    A/(n r) w S(nθ + phase), n periods per revolution, θ the angle of the table and r its steady
     rate. It is a motion like any other: it tilts gravity, acts on a lever arm, and reaches the
     other sensors through M. Observed in S0, figures 5-14 to 5-16.
+
+    S is a sine, or the limit cycle of a drive that keeps itself in motion, x'' − ε (1 − x²) x' + x
+    = 0, to the first order of ε and in units of its fundamental: B. van der Pol, Phil. Mag. 2,
+    1926, 978; A. H. Nayfeh, Introduction to Perturbation Techniques, 1981, chapter 4.
     """
 
     frequency: float | None  # Hz; None: periodic in the angle of the table
@@ -33,6 +37,7 @@ class Oscillation(Effect):
     amplitude: float
     axis: Array  # unit vector, (3,), body axes
     phase: float  # rad
+    nonlinearity: float = 0.0  # ε
 
     @classmethod
     def specified(cls, parameters: Mapping[str, Any]) -> Self:
@@ -42,6 +47,7 @@ class Oscillation(Effect):
             parameters["amplitude_rad_s"],
             direction(parameters["axis"]),
             parameters.get("phase_deg", 0.0) * DEGREE,
+            parameters.get("nonlinearity", 0.0),
         )
 
     def change_rotations(
@@ -59,14 +65,25 @@ class Oscillation(Effect):
         else:
             steady = 2 * pi * self.frequency
             argument, speed, change = steady * instants.elapsed, np.asarray(steady), np.asarray(0.0)
-        sine, cosine = np.sin(argument + self.phase), np.cos(argument + self.phase)
+        wave, wave1, wave2 = limit_cycle(argument + self.phase, self.nonlinearity)
         size = self.amplitude / steady
         vibration = Turning(
             self.axis,
-            angle=size * w * sine,
-            rate=size * (w1 * sine + w * speed * cosine),
+            angle=size * w * wave,
+            rate=size * (w1 * wave + w * speed * wave1),
             acceleration=size
-            * (w2 * sine + 2 * w1 * speed * cosine + w * (change * cosine - speed**2 * sine)),
+            * (w2 * wave + 2 * w1 * speed * wave1 + w * (change * wave1 + speed**2 * wave2)),
             steady_rate=self.amplitude,
         )
         return [*turnings, vibration]
+
+
+def limit_cycle(phase: Array, nonlinearity: float) -> tuple[Array, Array, Array]:
+    """S of a phase, rad, sin − (ε/8) cos 3, and its first two derivatives."""
+    third = nonlinearity / 8
+    sine, cosine = np.sin(3 * phase), np.cos(3 * phase)
+    return (
+        np.sin(phase) - third * cosine,
+        np.cos(phase) + 3 * third * sine,
+        -np.sin(phase) + 9 * third * cosine,
+    )

@@ -90,6 +90,7 @@ def _ringing(random: Random) -> Told:
         "frequency_hz": float(random.uniform(5, 45)),
         "amplitude_rad_s": between(random, 2e-4, 1e-2),
         "axis": str(random.choice(["+x", "+y", "+z"])),
+        "nonlinearity": float(random.uniform(0, 0.5)),
     }
     return {"oscillation": ringing}, {}
 

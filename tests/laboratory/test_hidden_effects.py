@@ -6,6 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from laboratory import Recording, perform, specify
 from laboratory.checking import the_schema
@@ -14,6 +17,7 @@ from laboratory.faults import FAULTS
 from tests.laboratory.at_zero_and_not import ALSO, AT_ZERO_AND_NOT, PLAN
 
 GRAVITY, STANDARD, ARCSECOND = 9.7936174, 9.80665, radians(1 / 3600)
+Array = NDArray[np.float64]
 Performed = Callable[..., Recording]
 REST = {"id": "still", "do": "rest", "up": "+z", "mark": "+x", "seconds": 20, "log": "rest.asc"}
 TURN = {
@@ -136,6 +140,41 @@ def test_an_oscillation_rings_only_while_turning_and_adds_no_angle(performed: Pe
     swing = with_it.truth["turn.asc"].force[1150:1650, 1]
     amplitude = np.sqrt(2 * np.mean(swing**2)) / np.sinc(20 * 0.01)
     assert amplitude == pytest.approx(GRAVITY * 0.01 / (2 * pi * 20), rel=1e-4)
+
+
+def test_a_drive_that_keeps_itself_in_motion_follows_its_equation(performed: Performed) -> None:
+    """van der Pol's, integrated here until only its limit cycle is left; two of its harmonics."""
+    nonlinearity, steps = 0.3, 1000
+
+    def equation(_: float, x: Array) -> list[float]:
+        return [x[1], nonlinearity * (1 - x[0] ** 2) * x[1] - x[0]]
+
+    solved = solve_ivp(equation, (0, 300), [2, 0], rtol=1e-9, atol=1e-9, dense_output=True)
+    upwards = [brentq(lambda t: solved.sol(t)[0], t, t + 1) for t in crossings(solved.sol)]
+    cycle = solved.sol(np.linspace(*upwards[-2:], steps, endpoint=False))[0]
+    harmonics = np.fft.rfft(cycle)
+    ringing = {
+        "frequency_hz": 2,
+        "amplitude_rad_s": 0.01,
+        "axis": "+x",
+        "nonlinearity": nonlinearity,
+    }
+    with_it = performed(REST, TURN, effects={"oscillation": ringing}).truth["turn.asc"]
+    rung = (with_it.rate - performed(REST, TURN).truth["turn.asc"].rate)[1150:1650, 0]
+    spectrum = np.fft.rfft(rung) / np.sinc(np.arange(251) / 5 * 0.01)
+    assert 2 * np.abs(spectrum[10]) / 500 == pytest.approx(0.01, rel=1e-4)
+    shares = [
+        h[3 * n] / h[n] * (abs(h[n]) / h[n]) ** 2 for h, n in ((harmonics, 1), (spectrum, 10))
+    ]
+    # Of a rate, which is 3i to i times the angle; the second order of ε is a tenth here.
+    assert shares[1] / -3 == pytest.approx(shares[0], abs=0.15 * abs(shares[0]))
+
+
+def crossings(solution: Callable[[Array], Array]) -> Array:
+    """Times of a grid after which a solution becomes positive, of its last few periods."""
+    times = np.arange(280, 300, 1.0)
+    upward = np.diff(np.sign(solution(times)[0])) > 0
+    return times[:-1][upward]
 
 
 def test_a_table_that_creeps_is_felt_by_gyros_and_accelerometers(performed: Performed) -> None:
