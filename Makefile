@@ -2,6 +2,8 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
+#   make crate                    a campaign with all that made it as one file, a Run-RO-Crate,
+#                                 reports/<campaign>.crate.zip; also with CAMPAIGN=<name>
 #   make check                    faults of the recording within a minute, before the set-up is
 #                                 dismantled; also with CAMPAIGN=<name>
 #   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
@@ -62,6 +64,8 @@
 #                                 can be resumed; with DRAWS=100 so many of them
 #   make cluster-test             campaigns through a Slurm of two nodes on this machine, one of which dies;
 #                                 some minutes; it needs root, and Debian's slurm-wlm and munge
+#   make scale                    what campaigns cost, many and long ones, in docs/scale.md; an hour
+#                                 on two cores, can be resumed; with DRAWS=5 so many small campaigns
 #   make docs                     docs/tables.md, docs/theory.md and the catalogues of messages, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
@@ -72,7 +76,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test clean setup pango
+.PHONY: report crate check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test scale clean setup pango
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -118,7 +122,7 @@ COMMAND := $(BIN)/python -m turntable_calibration
 # What a person calls is the command turntable-calibration. Behind a recipe that fails GNU make says
 # "Error 1": so it is done by try-…, whose failure is ignored, in silence, and remembered by $(try);
 # $(ended) then stops make with status 2 and one line, the place of the full log where there is one.
-CALLED := report check draft new design trace index compare fleet
+CALLED := report crate check draft new design trace index compare fleet
 ENDED := $(shell mktemp --dry-run --suffix=.make)
 $(CALLED:%=try-%): export ENDED := $(ENDED)
 try = -trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "what is wrong stands above" > $$ENDED' EXIT
@@ -131,6 +135,10 @@ $(CALLED): %: try-%
 try-report: setup
 	$(try)
 	$(COMMAND) report -- "$$CAMPAIGN"
+
+try-crate: setup
+	$(try)
+	$(COMMAND) crate -- "$$CAMPAIGN"
 
 try-check: .venv/complete
 	$(try)
@@ -234,6 +242,9 @@ fleets: .venv/complete
 
 designs: .venv/complete
 	PYTHONPATH=tests:tests/hidden:tests/bounds OPENBLAS_NUM_THREADS=1 $(BIN)/python -m design data/derived/design $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
+
+scale: .venv/complete
+	PYTHONPATH=tests CORES=1 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m scale data/derived/scale $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")
 
 mutants: .venv/complete
 	PYTHONPATH=tests:tests/mutants OPENBLAS_NUM_THREADS=1 $(BIN)/python -m mutants "$$DRAWS" data/derived/mutants

@@ -23,7 +23,7 @@ from inertial.tables.campaign_files import campaigns, logs_of
 from inertial.tables.code import code_of, hash_of
 from inertial.tables.errors import Refusal
 from inertial.tables.failed_run import FailedRun
-from overviews.fleet.members import READ as READ_BY_FLEET
+from overviews.fleet.declared import READ as READ_BY_FLEET
 from overviews.fleet.selection import selected
 from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 

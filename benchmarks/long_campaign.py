@@ -17,14 +17,16 @@ from laboratory.rawimu import Samples, log_bytes
 from laboratory.recording import LogTruth, Recording
 
 PIECE = 200_000  # samples that are drawn and written at a time
-STEP = round(1e9 / RATE)  # ns
 
 Counts = NDArray[np.int64]
 
 
-def record(folder: Path, samples: int) -> tuple[int, int]:
-    """A campaign of at least so many samples into its folder; its samples and the logs' bytes."""
-    specified = document(1)
+def record(folder: Path, samples: int, rate: float = RATE) -> tuple[int, int]:
+    """A campaign of at least so many samples into its folder; its samples and the logs' bytes.
+
+    `rate`: samples per second.
+    """
+    specified, step = document(1, rate=rate), round(1e9 / rate)  # ns
     short = performed(specified)
     there = sum(len(truth.time) for truth in short.truth.values())
     more = -(-max(0, samples - there) // len(RESTS))  # of every rest
@@ -33,11 +35,11 @@ def record(folder: Path, samples: int) -> tuple[int, int]:
     for log, truth in short.truth.items():
         longer = more if log in map(log_of, RESTS) else 0
         with (folder / log).open("wb") as file:
-            for piece in _pieces(short, log, truth, longer, later):
+            for piece in _pieces(short, log, truth, longer, later, step):
                 written += file.write(log_bytes(piece, "RAWIMUSXB", "00000077"))
-        later += longer * STEP
+        later += longer * step
     plan = [
-        {**one, "seconds": one["seconds"] + more / RATE} if one["do"] == "rest" else one
+        {**one, "seconds": one["seconds"] + more / rate} if one["do"] == "rest" else one
         for one in specified["campaign"]["plan"]
     ]
     (folder / "campaign.yaml").write_bytes(campaign_yaml({**specified["campaign"], "plan": plan}))
@@ -45,9 +47,9 @@ def record(folder: Path, samples: int) -> tuple[int, int]:
 
 
 def _pieces(
-    short: Recording, log: str, truth: LogTruth, longer: int, later: int
+    short: Recording, log: str, truth: LogTruth, longer: int, later: int, step: int
 ) -> Iterator[Samples]:
-    """A log, so many samples longer at its end, and so many ns later."""
+    """A log, so many samples longer at its end, and so many ns later; `step`: ns between them."""
     stamps = short.records[log].stamps + later
     yield Samples(stamps, truth.accelerometer, truth.gyro)
     chance = np.random.default_rng([1, list(short.truth).index(log)])
@@ -59,7 +61,7 @@ def _pieces(
         counted = np.rint(felt).astype(np.int64)
         over = felt[-1] - counted[-1]
         counts = np.diff(counted, axis=0, prepend=0)
-        after = stamps[-1] + STEP * (first + 1 + np.arange(size))
+        after = stamps[-1] + step * (first + 1 + np.arange(size))
         yield Samples(after, counts[:, :3], counts[:, 3:])
 
 

@@ -24,7 +24,7 @@ HEADS = (
     "grows as\nsamples to the",
     "memory\nMB",
     "largest\nprocess",
-    "longest stages\ns",
+    "longest stages\nprocessor s",
 )
 
 
@@ -38,7 +38,7 @@ def measured() -> list[Table]:
         samples, written, answer = _run(size)
         cpu, memory = answer["cpu"], answer["together"] / 1e6
         growth = log(cpu / before[1]) / log(samples / before[0]) if before else None
-        stages = sorted(answer["stages"].items(), key=lambda stage: -stage[1])[:LONGEST]
+        stages = sorted(answer["stages"].items(), key=lambda stage: -stage[1]["cpu"])[:LONGEST]
         table.add(
             f"{samples:,}",
             digits(written / 1e6),
@@ -47,12 +47,12 @@ def measured() -> list[Table]:
             "" if growth is None else f"{growth:.2f}",
             digits(memory),
             digits(answer["largest"] / 1e6),
-            ", ".join(f"{stage} {digits(seconds)}" for stage, seconds in stages),
+            ", ".join(f"{stage} {digits(took['cpu'])}" for stage, took in stages),
         )
         before, largest = (samples, cpu), max(largest, memory)
     table.remarks.append(
         "Binary logs, two processors. Processor and memory: of all processes of a run, Snakemake"
-        " among them, sampled five times a second; shared memory counts once. Bar:"
+        " among them; memory is sampled five times a second, and shared memory counts once. Bar:"
         f" {BAR:,.0f} MB, {'kept' if largest < BAR else 'MISSED'}."
     )
     return [table]

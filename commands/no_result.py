@@ -46,11 +46,15 @@ def no_results(derived: Path) -> Iterator[NoResult]:
     if only_noise(plan, tables.NOISE_TERMS.read(derived / "noise/terms.parquet")):
         return
     verdicts = _not_usable(derived / "diagnosis/verdict.parquet")
+    curves = _with_curves(derived / "diagnosis/temperature_curves.parquet")
     for stage in sensors:
         if recorded[stage] or not any(recorded.values()):
             subject = _("gyros") if stage == "gyroscope" else _("accelerometers")
             parameters = tables.PARAMETERS.read(derived / f"{stage}/parameters.parquet")
+            nothing = parameters["value"].isna().all()
             found = list(_undetermined(subject, parameters))
+            if nothing and sensors[stage] in curves and sensors[stage] not in verdicts:
+                continue  # of use for what changes with the temperature, and that is all it is for
             if not found and (sentence := verdicts.get(sensors[stage])) is not None:
                 found = [NoResult(subject, sentence, SEE_REPORT)]
             yield from found
@@ -64,6 +68,11 @@ def _not_usable(verdicts: Path) -> dict[str, str]:
     rows = tables.VERDICTS.read(verdicts)
     rows = rows[rows["verdict"] == "not_usable"]
     return dict(zip(rows["sensor"], rows["sentence"], strict=True))
+
+
+def _with_curves(curves: Path) -> set[str]:
+    """The sensors, `gyro` or `accel`, with curves of the temperature, where it is diagnosed."""
+    return set(tables.TEMPERATURE_CURVES.read(curves)["sensor"]) if curves.exists() else set()
 
 
 def _undetermined(sensors: str, parameters: pd.DataFrame) -> Iterator[NoResult]:

@@ -131,6 +131,22 @@ def demo(demo_criticised) -> chain.Results:
 
 
 @pytest.fixture(scope="session")
+def whole(made_once) -> Path:
+    """A folder in which all stages up to the export have run on the short campaign `june`."""
+
+    def run(folder: Path) -> None:
+        raw = chain.simulate(chain.short(), folder / "data/raw/june")
+        derived = folder / "data/derived/june"
+        chain.run(raw, derived, "history")
+        (folder / "data/derived/history").rename(folder / "data/history")
+        (folder / "reports").mkdir()
+        settings = chain.SETTINGS["export"]
+        chain.stage_of("export").run(derived, {}, settings, folder / "reports/june")
+
+    return made_once("whole", run)
+
+
+@pytest.fixture(scope="session")
 def coupled(made_once) -> chain.Results:
     """A short campaign whose x, y, z gyros read 14, −10 and 12 °/h per g along their own axes."""
     hidden = {"gyro_g_sensitivity": {"matrix_deg_h_g": [[14, 0, 0], [0, -10, 0], [0, 0, 12]]}}

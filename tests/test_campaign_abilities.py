@@ -314,6 +314,136 @@ def test_few_means_of_unknown_sigma_give_nothing_and_say_what_is_missing(simple,
     assert joint["value"].isna().all() and joint["reason"].str.contains("state sigma").all()
 
 
+GRAVITY = 9.83218  # m/s², at the pole, where the earth turns about the vertical: as the table does
+UP = 7.292115e-5  # rad/s
+FACES = np.vstack([np.eye(3), -np.eye(3)])
+EDGES = np.array([[1, 1, 0], [-1, 1, 0], [0, 1, 1], [0, -1, 1], [1, 0, 1], [1, 0, -1]]) / 2**0.5
+SPINS = np.array([1.0, -1.0, 2.0, -2.0])  # rad/s, about each axis
+
+
+def known_means(folder: Path, seed: int) -> tuple[Document, dict[str, list[np.ndarray]]]:
+    """Means whose sigmas differ up to thirtyfold, written with them, and as an own fit takes them.
+
+    Attitudes in g, of which the IMU counts 4096, with a column for each axis; rates with one for
+    all. By sensor: inputs (n, 3), means and sigmas, SI.
+    """
+    random = np.random.default_rng(seed)
+    truth = in_columns()["truth"]
+    ups = np.vstack([FACES, EDGES])
+    forces, rates = GRAVITY * ups, np.kron(SPINS[:, None], np.eye(3))
+    turning = rates + UP * np.tile(np.eye(3), (len(SPINS), 1))
+    inputs = {"accelerometer": forces, "gyro": np.vstack([UP * ups, turning])}
+    usual = {"accelerometer": 1e-3, "gyro": 1e-5}
+    known = {}
+    for (sensor, own), bias in zip(inputs.items(), ("bias_m_s2", "bias_rad_s"), strict=True):
+        sigma = usual[sensor] * 10 ** random.uniform(-0.75, 0.75, own.shape)
+        if sensor == "gyro":
+            sigma[len(ups) :] = sigma[len(ups) :, :1]
+        means = own @ np.array(truth[sensor]["matrix"]).T + truth[sensor][bias]
+        known[sensor] = [own, means + sigma * random.standard_normal(own.shape), sigma]
+    folder.mkdir()
+    count = GRAVITY / 4096  # a unit of its own, to which counts_per_unit leads
+    (_, means, sigma), (_, of_gyros, gyro_sigma) = known["accelerometer"], known["gyro"]
+    still = [means / count, of_gyros[: len(ups)], sigma / count, gyro_sigma[: len(ups)]]
+    np.savetxt(folder / "still.txt", np.hstack(still), fmt="%.12g")
+    moving = [of_gyros[len(ups) :], gyro_sigma[len(ups) :, :1]]
+    np.savetxt(folder / "moving.txt", np.hstack(moving), fmt="%.12g")
+    per_unit = {"unit": "m/s2", "counts_per_unit": 1 / count}
+    accelerometer = per_unit | {"columns": [1, 2, 3], "sigma_columns": [7, 8, 9]}
+    gyro = {"unit": "rad/s", "columns": [4, 5, 6], "sigma_columns": [10, 11, 12]}
+    turned = {"unit": "rad/s", "columns": [1, 2, 3], "sigma_columns": [4, 4, 4]}
+    plan = [
+        {"id": f"up-{i}", "do": "rest", "up": up.tolist(), "log": "still.txt", "format": "still"}
+        | {"rows": [i, i + 1]}
+        for i, up in enumerate(ups)
+    ]
+    for i, (spin, axis) in enumerate((spin, axis) for spin in SPINS for axis in "xyz"):
+        steady = {"do": "turn", "up": f"+{axis}", "recorded": "steady", "id": f"turn-{i}"}
+        steady |= {"rate_deg_s": float(np.degrees(spin)), "rows": [i, i + 1]}
+        plan.append(steady | {"log": "moving.txt", "format": "moving"})
+    means_only = {"kind": "columns", "mean_of": None}
+    campaign = {
+        "campaign": 1,
+        "instrument": {"name": "made up"},
+        "serial": "unknown",
+        "date": "unknown",
+        "site": {"latitude_deg": 90, "gravity_m_s2": GRAVITY, "gravity_sigma_m_s2": 1e-9},
+        "table": {"name": "a", "position_sigma_arcsec": 1e-4, "rate_sigma_ppm": 1e-3},
+        "formats": {
+            "still": means_only | {"accelerometer": accelerometer, "gyro": gyro},
+            "moving": means_only | {"gyro": turned},
+        },
+        "plan": plan,
+    }
+    tell(folder, campaign)
+    return campaign, known
+
+
+def weighted(own: np.ndarray, means: np.ndarray, sigma: np.ndarray) -> tuple[np.ndarray, ...]:
+    """M less the unit matrix by rows, then the bias, and their sigmas, axis by axis."""
+    design = np.column_stack([own, np.ones(len(own))])
+    normal = np.einsum("ni,na,nj->aij", design, sigma**-2, design)
+    right = np.einsum("ni,na,na->ai", design, sigma**-2, means)
+    covariance = np.linalg.inv(normal)
+    found = np.einsum("aij,aj->ai", covariance, right)
+    spread = np.sqrt(np.diagonal(covariance, axis1=1, axis2=2))
+    found[:, :3] -= np.eye(3)
+    return tuple(np.append(each[:, :3].ravel(), each[:, 3]) for each in (found, spread))
+
+
+def test_means_with_a_sigma_each_are_weighted_by_it(tmp_path):
+    pulls = []
+    for seed in range(4):
+        _, known = known_means(tmp_path / f"raw-{seed}", seed)
+        results = chain.run(tmp_path / f"raw-{seed}", tmp_path / f"derived-{seed}")
+        for stage, sensor in zip(STAGES, known, strict=True):
+            joint = results.parameters(stage).loc[list(linear_names())]
+            value, sigma = weighted(*known[sensor])
+            fit = results[f"{stage}/fit"].query("method == 'joint'").iloc[0]
+            assert fit["scatter"] == 0, (seed, stage)
+            np.testing.assert_allclose(joint["sigma"], sigma, rtol=1e-3)
+            assert np.abs((joint["value"] - value) / sigma).max() < 1e-2
+        pulls.append(off_truth(results))
+    # 96 pulls; those of one campaign are correlated, so that the sum of squares scatters by more
+    # than √(2 · 96) = 14.
+    assert 55 < np.sum(np.square(pulls)) < 145
+    assert np.abs(pulls).max() < MAX_SIGMA
+
+
+def test_the_mean_of_two_means_has_the_sigma_of_both(tmp_path):
+    """Two rows of one rest count alike: σ = √(σ₁² + σ₂²) / 2."""
+    campaign, known = known_means(tmp_path / "raw", 0)
+    log = tmp_path / "raw/still.txt"
+    rows = np.loadtxt(log)
+    rows[1, :6] = rows[0, :6]
+    np.savetxt(log, rows, fmt="%.12g")
+    (first, _second, *others) = campaign["plan"]
+    campaign["plan"] = [first | {"rows": [0, 2]}, *others]
+    tell(tmp_path / "raw", campaign)
+    levels = chain.run(tmp_path / "raw", tmp_path / "derived", "noise")["noise/levels"]
+    own = levels[levels["manoeuvre"] == first["id"]].set_index("channel")
+    expected = np.linalg.norm(known["accelerometer"][2][:2], axis=0) / 2
+    channels = ["accel_x", "accel_y", "accel_z"]
+    np.testing.assert_allclose(own.loc[channels, "white_noise"] / np.sqrt(2), expected)
+    assert (own["source"] == "stated").all()
+
+
+@pytest.mark.parametrize("nonsense", ["0", "-0.001", "nan", "none"])
+def test_a_sigma_that_is_none_refuses_its_row_by_name(nonsense, tmp_path):
+    known_means(tmp_path / "raw", 0)
+    log = tmp_path / "raw/still.txt"
+    lines = [line.split() for line in log.read_text().splitlines()]
+    lines[2][7] = nonsense
+    log.write_text("\n".join(map(" ".join, lines)) + "\n")
+    results = chain.run(tmp_path / "raw", tmp_path / "derived", "segment")
+    (refused,) = results["decode/refused"].itertuples()
+    assert (refused.log, refused.line) == ("still.txt", 3)
+    assert f"column 8 is '{nonsense}'" in refused.reason
+    assert "the standard deviation of a mean, above 0" in refused.reason
+    performed = results["segment/performed"].set_index("manoeuvre")["found"]
+    assert list(performed[~performed].index) == ["up-2"]
+
+
 # ---- accelerometers and gyros in a log each
 
 
@@ -447,6 +577,48 @@ def test_logs_without_common_time_are_refused(simple, tmp_path):
         manoeuvre["gyro"]["offset_s"] = -1e4
     tell(tmp_path / "raw", campaign)
     chain.run(tmp_path / "raw", tmp_path / "derived", "decode")
+
+
+# ---- stamps of arrival
+
+
+def test_the_rate_of_a_clock_by_stamps_of_arrival_is_in_the_scale_factors(tmp_path):
+    """The IMU samples at 100.03 Hz; a host fetches and stamps what waits every 20 to 60 ms.
+
+    A scale factor by a turn either way is off by the mean error of their two clocks.
+    """
+    rate = 100.03
+    exact = chain.simulate(in_columns(rate_hz=rate), tmp_path / "exact/raw")
+    known = chain.run(exact, tmp_path / "exact/derived").parameters("gyroscope")
+    turns = [m for m in told(exact)["plan"] if m["do"] == "turn"]
+    scales, pulls = [f"scale_{axis}" for axis in "xyz"], []
+    for seed in range(4):
+        random = np.random.default_rng(seed)
+        raw = tmp_path / f"raw-{seed}"
+        raw.mkdir()
+        tell(raw, told(exact))
+        for log in sorted(exact.glob("*.asc")):
+            rows = numbers(log).copy()
+            fetched = rows[0, 0] + np.cumsum(random.uniform(0.02, 0.06, len(rows)))
+            rows[:, 0] = fetched[np.searchsorted(fetched, rows[:, 0])]
+            write(raw / log.name, rows)
+        results = chain.run(raw, tmp_path / f"derived-{seed}")
+        clocks = results["decode/clocks"].set_index("log")
+        sigma = clocks["interval_sigma"] / clocks["interval"]
+        assert sigma.between(20e-6, 1e-3).all()
+        errors = (clocks["interval"] * rate - 1) / sigma
+        assert np.abs(errors).max() < 4.5 and np.sqrt(np.mean(errors**2)) < 1.5
+        joint = results.parameters("gyroscope")
+        for axis, scale in zip("xyz", scales, strict=True):
+            own = [sigma[m["log"]] for m in turns if m["up"][1] == axis]
+            assert len(own) == 2
+            expected = 1 / np.sqrt(np.sum(np.power(own, -2.0)))  # the better clock weighs more
+            added = np.sqrt(joint.loc[scale, "sigma"] ** 2 - known.loc[scale, "sigma"] ** 2)
+            assert added == pytest.approx(expected, rel=0.25)
+            pulls.append((joint.loc[scale, "value"] - known.loc[scale, "value"]) / expected)
+    # Twelve pulls: their rms scatters by 20 %.
+    assert 0.5 < np.sqrt(np.mean(np.square(pulls))) < 1.6
+    assert np.abs(pulls).max() < MAX_SIGMA
 
 
 # ---- real recordings that need them

@@ -17,6 +17,7 @@ from inertial.estimation.conformity import (
 )
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
+from stages.diagnosis.conformity import conformity_rows
 from stages.plan.certificate import Statements
 from stages.report.sections.certificate import SECTION
 from tests.report.synthetic import campaign, section_on
@@ -138,6 +139,18 @@ def test_a_campaign_with_tolerances_is_assessed(tmp_path):
     assert rows["risk"].max() < 1e-3
 
 
+def test_nothing_conforms_of_a_sensor_that_is_not_usable():
+    """A value far within its limit says nothing where a cause that is not removed moves it."""
+    row = {"sensor": "gyro", "mount": "", "effect": None, "parameter": "bias_x"}
+    result = [row | {"value": 1e-6, "sigma": 1e-8}, row | {"sensor": "accel"}]
+    limit = {"kind": "bias", "limit": 1e-5, "unit": "rad/s", "decision_rule": GUARD_BAND}
+    limits = [limit | {"sensor": "gyro"}]
+    (usable,) = conformity_rows(result, limits, ())
+    (unusable,) = conformity_rows(result, limits, {("gyro", "")})
+    assert usable["statement"] == CONFORMS
+    assert unusable["statement"] == "not_assessed" and unusable["risk"] is None
+
+
 # ---- In the report
 
 
@@ -156,5 +169,5 @@ def test_a_value_stands_with_twice_its_sigma():
     own = (made["result"]["sensor"] == "gyro") & (made["result"]["parameter"] == "scale_x")
     made["result"].loc[own, ["value", "sigma"]] = 6.151e-4, 2.2e-6
     row = re.search(r"<i>s</i><sub>x</sub>.*", section_on(made, SECTION)).group()
-    cells = [re.sub("<[^>]*>", "", cell) for cell in row.split("</td>")]
+    cells = [re.sub("<[^>]*>", "", cell).rstrip("\u2007\u2008") for cell in row.split("</td>")]
     assert cells[5:8] == ["615.1", "±\u202f4.4", "ppm"]

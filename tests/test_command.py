@@ -91,7 +91,7 @@ def test_a_plan_is_written_and_its_name_is_not_taken_twice(installed: Path, tmp_
 
 def test_help_completion_and_an_unknown_campaign(installed: Path, tmp_path: Path) -> None:
     said = call(installed, "--help", cwd=tmp_path).stdout
-    for name in ("report", "check", "draft", "new", "trace", "design", "compare", "index"):
+    for name in ("report", "crate", "check", "draft", "new", "trace", "design", "compare", "index"):
         assert f"\n  {name} " in said
     assert "Exit status: 0" in said
     (tmp_path / "data/raw/june").mkdir(parents=True)

@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from importlib import metadata
 from pathlib import Path
 
 import chain
@@ -88,3 +89,19 @@ def test_containers_install_the_lock_file_and_the_packages_of_make() -> None:
         assert f"--no-install-recommends {packages}" in text
         assert re.search(r"--require-hashes -r \S+/requirements\.lock", text)
         assert "python:3.11-slim-bookworm" in text
+
+
+def test_the_lock_file_names_the_extras_that_packages_ask_for() -> None:
+    """Before 23.3 pip takes `coverage[toml]` for another package than the one that is pinned."""
+    lock = (chain.ROOT / "requirements.lock").read_text()
+    pinned = set(re.findall(r"^([\w.-]+)", lock, re.MULTILINE))
+    wanted = {
+        extras[0].lower()
+        for package in pinned & {d.name.lower() for d in metadata.distributions()}
+        for requirement in metadata.requires(package) or ()
+        if "extra ==" not in requirement
+        and (extras := re.match(r"[\w.-]+\[\w+\]", requirement))
+        and "sys_platform" not in requirement
+    }
+    assert "coverage[toml]" in wanted
+    assert wanted <= set(re.findall(r"^([\w.-]+\[\w+\])==", lock, re.MULTILINE))

@@ -1,5 +1,6 @@
 """`make draft`: what it says of logs whose truth is known, and what the chain makes of it."""
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,10 @@ from moved_by_hand import GRAVITY, RATE
 from ruamel.yaml import YAML
 
 from commands.draft.__main__ import draft, main
+from commands.no_result import no_results
 from inertial.estimation.triad import linear_names
 from inertial.physics.site import EARTH_RATE
+from inertial.tables.errors import Refusal
 
 MAX_SIGMA = 4.5  # of some twenty parameters with Gaussian errors, in 1 of 6000 campaigns
 Document = dict[str, Any]
@@ -207,6 +210,24 @@ def test_gyros_wired_otherwise_are_seen(tmp_path):
     assert "gyro.axes" in (folder / "campaign.yaml").read_text(encoding="utf-8")
 
 
+def test_the_report_of_a_draft_tells_that_two_gyros_are_reversed(tmp_path):
+    log = by_hand_log(2)
+    rate = log.rate * [-1, -1, 1]
+    time = np.arange(len(rate)) / RATE
+    folder = drafted({"log.txt": written([time, log.force, rate])}, tmp_path)
+    campaign = told(folder)
+    assert campaign["instrument"]["gyro"]["axes"] == ["-x", "-y", "z"]
+    shares = re.findall(r"([xyz]) (−?[\d.]+) ± ([\d.]+\d)", campaign["notes"])
+    for (axis, share, sigma), sign in zip(shares, (-1, -1, 1), strict=True):
+        value = float(share.replace("−", "-"))
+        assert float(sigma) < 0.1 and value == pytest.approx(sign, abs=0.1), axis
+    assert "x reads −x and y reads −y" in campaign["notes"]
+    assert "A reversed z axis of the accelerometers would look the same" in campaign["notes"]
+    (tmp_path / "plain").mkdir()
+    plain = drafted({"log.txt": written([time, log.force, log.rate])}, tmp_path / "plain")
+    assert "notes" not in told(plain)
+
+
 def test_text_as_programs_of_other_countries_write_it(tmp_path):
     """Dates, semicolons, decimal commas and a comment."""
     log = by_hand_log(1)
@@ -225,6 +246,49 @@ def test_text_as_programs_of_other_countries_write_it(tmp_path):
 
 
 # ---- what cannot be drafted
+
+
+# ---- means of one attitude at temperatures
+
+
+def at_temperatures(names: bool) -> str:
+    """Thirty means from 0 to 58 °C: gravity along z, 2 mm/s² less for each K below 30 °C."""
+    random = np.random.default_rng(1)
+    warm = np.linspace(0.0, 58.0, 30)
+    force = np.column_stack([np.full(30, 0.1), np.full(30, -0.1), 9.8 - 2e-3 * warm.clip(max=30)])
+    force += 5e-4 * random.standard_normal((30, 3))
+    rate = np.radians(0.1) + np.radians(1e-4) * random.standard_normal((30, 3))
+    text = "bin,temperature,samples,acc_x,acc_y,acc_z,gyro_x,gyro_y,gyro_z\n" if names else ""
+    for number, (t, f, w) in enumerate(zip(warm, force, rate, strict=True)):
+        read = ",".join(f" {v:.6f}" for v in (*f, *w))
+        text += f"BIN:  {number},  {t:.2f}, {20_000 + 10 * number},{read}\n"
+    return text
+
+
+def test_named_means_at_temperatures_are_of_use_for_these(tmp_path):
+    folder = drafted({"chamber.csv": at_temperatures(names=True)}, tmp_path)
+    campaign = told(folder)
+    (rest,) = campaign["plan"]
+    assert (rest["do"], rest["up"]) == ("rest", "+z")
+    layout = campaign["instrument"]["format"]
+    assert layout["mean_of"] == "samples" and layout["delimiter"] == ","
+    assert layout["temperature"] == {"column": "temperature", "unit": "degC"}
+    results = chain.run(folder, tmp_path / "derived", "diagnosis", chain.BESIDE)
+    curves = results["diagnosis/temperature_curves"]
+    own = curves[(curves["sensor"] == "accel") & (curves["parameter"] == "bias_z")]
+    cold, warm = own.iloc[0], own.iloc[-1]
+    assert cold["value"] - warm["value"] == pytest.approx(30 * 2e-3, abs=5 * warm["sigma"])
+    assert warm["sigma"] < 2e-3
+    # No parameter is determined, and yet the accelerometers have a result; of the gyros, which do
+    # not change, nothing can be said.
+    assert [each.subject for each in no_results(tmp_path / "derived")] == ["gyros"]
+
+
+def test_means_without_names_are_refused_with_what_names_them(tmp_path):
+    with pytest.raises(Refusal, match="30 rows of numbers") as refusal:
+        drafted({"chamber.csv": at_temperatures(names=False)}, tmp_path)
+    assert "the means of one at temperatures, whose columns are named" in refusal.value.expected
+    assert "add a first line that names the columns" in refusal.value.cure
 
 
 def refused(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:

@@ -202,6 +202,26 @@ MISTAKES = {
         + "plan:\n  - {id: r, do: rest, up: +x, format: m}",
         ["sigma of gyro, whose rows are no means", "mean_of, null"],
     ),
+    "sigma columns of samples": (
+        "plan:",
+        MEANS.replace("mean_of: null", "time: {rate_hz: 100}").replace(
+            "sigma: 0.1", "sigma_columns: [4, 5, 6]"
+        )
+        + "plan:\n  - {id: r, do: rest, up: +x, format: m}",
+        ["sigma_columns of gyro, whose rows are no means", "remove sigma_columns"],
+    ),
+    "two statements of a sigma": (
+        "plan:",
+        MEANS.replace("sigma: 0.1", "sigma: 0.1, sigma_columns: [4, 4, 4]")
+        + "plan:\n  - {id: r, do: rest, up: +x, format: m}",
+        ["both sigma and sigma_columns of gyro", "remove one"],
+    ),
+    "a mean without its sigma": (
+        "plan:",
+        MEANS.replace("sigma: 0.1", "sigma_columns: [4, null, 6]")
+        + "plan:\n  - {id: r, do: rest, up: +x, format: m}",
+        ["null in sigma_columns of gyro, whose means are recorded", "name the column"],
+    ),
     "positions of no duration": (
         "plan:",
         "plan:\n  - {id: all, do: positions}",

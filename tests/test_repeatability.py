@@ -17,7 +17,14 @@ from inertial.estimation.repeatability import components
 from inertial.estimation.switch_ons import between
 from inertial.tables.parquet import write_once
 from inertial.tables.yaml_file import YamlFile
-from stages.history.repeatability import power_cycle_rows, repeatability_rows, series_of
+from stages.history.repeatability import (
+    LATEST,
+    forecast_rows,
+    jumps_of,
+    power_cycle_rows,
+    repeatability_rows,
+    series_of,
+)
 from stages.plan.allowed_changes import allowed_changes
 
 sys.path.insert(0, str(Path(__file__).parent / "histories"))
@@ -101,6 +108,32 @@ def test_a_jump_is_named_with_its_place_and_nothing_else_is():
     assert not any(one["named"] for one in none)
     assert all(one["right"] for one in large if one["named"])
     assert np.mean([one["right"] for one in large]) > 0.75
+
+
+@pytest.mark.parametrize("days", [[1, 1, 1, 1, 1], [1, 1, 1, 2, 2]])
+def test_of_one_day_or_two_no_jump_is_told_from_a_drift(days):
+    values = np.array([0.0, 0.3, -0.2, 9.0, 9.1])
+    assert jump(History(values, np.ones(5), np.array(days) / 365), np.random.default_rng(1)) is None
+
+
+def test_of_very_many_calibrations_the_latest_count():
+    """One in the past that is far off moves neither the next nor a jump."""
+    generator = np.random.default_rng(3)
+    rows = [
+        (
+            {"date": f"{2000 + n // 12}-{n % 12 + 1:02}-01", "campaign": f"c{n:03}"},
+            [
+                {"sensor": "gyro", "quantity": "bias_x", "mount": ""}
+                | {"value": generator.normal() + 1000 * (n < 30), "sigma": 1.0}
+            ],
+        )
+        for n in range(130)
+    ]
+    series = series_of(rows)
+    assert not jumps_of(series, 0.01)
+    (row,) = forecast_rows(series, {}, {})
+    assert row["calibrations"] == LATEST < 100
+    assert -4 < row["low"] < row["high"] < 4
 
 
 def test_an_error_that_all_calibrations_share_is_in_no_difference():

@@ -70,8 +70,7 @@ def main(ctx: click.Context, folder: Path, cores: int) -> None:
 def report(of: tuple[Path, int], campaign: str) -> int:
     """Make the report of a campaign, and its calibration for other programs."""
     folder, cores = of
-    kinds = ["html", "pdf"] if find_library("pango-1.0") else ["html"]
-    pages = [f"reports/{campaign}.{kind}" for kind in kinds]
+    pages = _pages(campaign)
     if status := snakemake(folder, cores, [*pages, f"reports/{campaign}.calibration.json"]):
         return status
     summary = (folder / f"reports/{campaign}.txt").read_text(encoding="utf-8")
@@ -79,6 +78,24 @@ def report(of: tuple[Path, int], campaign: str) -> int:
     click.echo(f"For other programs: {' '.join(f'reports/{campaign}.{end}' for end in EXPORTS)}")
     click.echo(f"The report: {' '.join(pages)}")
     return 0
+
+
+def _pages(campaign: str) -> list[str]:
+    """The report, as PDF where there is Pango."""
+    kinds = ["html", "pdf"] if find_library("pango-1.0") else ["html"]
+    return [f"reports/{campaign}.{kind}" for kind in kinds]
+
+
+@main.command()
+@click.argument("campaign", type=Campaign())
+@click.pass_obj
+def crate(of: tuple[Path, int], campaign: str) -> int:
+    """Pack a campaign with all that made it as a Run-RO-Crate."""
+    folder, cores = of
+    goals = [*_pages(campaign), f"reports/{campaign}.calibration.json"]
+    if status := snakemake(folder, cores, goals):
+        return status
+    return command("crate", ["--campaign", campaign], folder)
 
 
 @main.command()

@@ -1,11 +1,13 @@
-"""A campaign through the whole workflow, from its logs to the report.
+"""Campaigns through the whole workflow, from their logs to the report.
 
-python -m benchmarks.own.running <folder that holds data/raw/<campaign>> <campaign>
+python -m benchmarks.own.running <folder that holds data/raw/<campaign>> <campaign> …
 """
 
+import resource
 import subprocess
 import sys
 import time
+from collections import defaultdict
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,15 +18,19 @@ from benchmarks.answering import answer
 
 ROOT = Path(__file__).parents[2]
 EVERY = 0.2  # s between two samples
+MODULE = "stages."  # how the module of a stage begins on its command line
 
 
 @dataclass
 class Watch:
     """Processor time, s, and memory, byte, of the processes of a run."""
 
-    cpu: dict[psutil.Process, float] = field(default_factory=dict)
+    own: float = 0.0  # of Snakemake alone
     together: int = 0
     largest: int = 0
+    stages: dict[psutil.Process, str] = field(default_factory=dict)
+    cpu: dict[psutil.Process, float] = field(default_factory=dict)  # of those of stages
+    memory: dict[str, int] = field(default_factory=lambda: defaultdict(int))  # by stage, largest
 
     def sample(self, run: psutil.Process) -> None:
         """Sample a process and its children; memory that two of them share counts half for each."""
@@ -32,32 +38,42 @@ class Watch:
         with suppress(psutil.NoSuchProcess):  # it has just ended
             for process in (run, *run.children(recursive=True)):
                 times = process.cpu_times()
-                self.cpu[process] = times.user + times.system
                 memory.append(process.memory_full_info().pss)
+                if process == run:
+                    self.own = times.user + times.system
+                elif stage := self.stages.get(process) or _stage(process):
+                    self.stages[process] = stage
+                    self.cpu[process] = times.user + times.system
+                    self.memory[stage] = max(self.memory[stage], memory[-1])
         self.together, self.largest = max(self.together, sum(memory)), max(self.largest, *memory)
 
+    def by_stage(self) -> dict[str, dict[str, float]]:
+        """Processor time of each stage, over all campaigns, and its largest memory."""
+        stages = {stage: {"cpu": 0.0, "memory": size} for stage, size in self.memory.items()}
+        for process, seconds in self.cpu.items():
+            stages[self.stages[process]]["cpu"] += seconds
+        return stages
 
-def main(folder: str, campaign: str) -> None:
-    """Answer with seconds, processor time, memory in byte, and the seconds of each stage."""
-    start = time.monotonic()
-    watch = _watched([f"reports/{campaign}.html"], Path(folder))
+
+def main(folder: str, *campaigns: str) -> None:
+    """Answer with seconds, processor time and memory in byte of all, of Snakemake, of stages."""
+    start, before = time.monotonic(), _spent()
+    targets = [f"reports/{c}.{kind}" for c in campaigns for kind in ("html", "calibration.json")]
+    watch = _watched(targets, Path(folder))
     answer(
         seconds=time.monotonic() - start,
-        cpu=sum(watch.cpu.values()),
+        cpu=_spent() - before,
+        snakemake=watch.own,
         together=watch.together,
         largest=watch.largest,
-        stages={
-            path.parent.name: _seconds(path)
-            for path in Path(folder, "data/derived", campaign).glob("*/stage.log")
-            if any(path.parent.glob("*.parquet"))
-        },
+        stages=watch.by_stage(),
     )
 
 
 def _watched(targets: list[str], folder: Path) -> Watch:
     """Run the workflow and sample its processes."""
     where = ["--snakefile", str(ROOT / "Snakefile"), "--directory", str(folder)]
-    options = ["--cores", "2", "--quiet", "all", *where, "--", *targets]
+    options = ["--cores", "2", "--nolock", "--quiet", "all", *where, "--", *targets]
     run = subprocess.Popen([sys.executable, "-m", "snakemake", *options], stdout=sys.stderr)
     watch = Watch()
     while run.poll() is None:
@@ -68,10 +84,17 @@ def _watched(targets: list[str], folder: Path) -> Watch:
     return watch
 
 
-def _seconds(log: Path) -> float:
-    """From the start of a stage, when its log is created, to its last table; s."""
-    tables = [table.stat().st_mtime for table in log.parent.glob("*.parquet")]
-    return max(tables) - log.stat().st_mtime
+def _stage(process: psutil.Process) -> str:
+    """The stage that a process is, by its command line; none: empty."""
+    words = process.cmdline()
+    if words[1:2] == ["-m"] and words[2:3] and words[2].startswith(MODULE):
+        return words[2].removeprefix(MODULE)
+    return ""
+
+
+def _spent() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 main(*sys.argv[1:])

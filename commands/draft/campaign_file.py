@@ -14,7 +14,7 @@ from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
 from commands.flow_yaml import flow, in_flow, scalar
 from inertial.text.messages import _
-from inertial.text.numbers import significant, whole
+from inertial.text.numbers import fixed, significant, whole
 
 HAND_POSITION, TABLE_SIGMA = 3600, 180  # arc seconds, of what a person or an unknown table sets
 HAND_TURN, FEW_TURNS = 10.0, 3  # °, sigma of an angle by hand; turns that show it
@@ -39,6 +39,7 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
         "serial: unknown",
         "date: unknown",
         f"site: {flow(**site)}{_guess(anywhere)}",
+        *(f"notes: {scalar(text)}" for text in _wired_otherwise(kinds)),
         *_table(plan, by_hand),
         *(["formats:"] if formats else []),
         *(line for lines in formats.values() for line in lines),
@@ -218,6 +219,31 @@ def _axes(kinds: Sequence[Kind]) -> list[str] | None:
     return [f"{'-' if back.signs[j] < 0 else ''}{'xyz'[back.sources[j]]}" for j in range(3)]
 
 
+def _wired_otherwise(kinds: Sequence[Kind]) -> Iterator[str]:
+    """What the report has to tell of gyros whose axes are not those of the accelerometers."""
+    for gyro in (kind.gyro for kind in kinds):
+        if gyro is not None and gyro.axes.moved and gyro.shares:
+            seen = ", ".join(
+                f"{axis} {fixed(share, 2)} ± {fixed(sigma, 2)}"
+                for axis, (share, sigma) in zip("xyz", gyro.shares, strict=True)
+            )
+            text = _(
+                "Of the gyros {axes}: gravity's direction turns in the accelerometers by these "
+                "shares of what they read: {seen}. The draft has set their axes so.",
+                axes=gyro.axes.in_words,
+                seen=seen,
+            )
+            right = [i for i, other in enumerate(gyro.axes.changed) if not other]
+            if gyro.axes.sources == (0, 1, 2) and len(right) == 1:
+                text += _(
+                    " A reversed {axis} axis of the accelerometers would look the same; a single "
+                    "reversed gyro would not.",
+                    axis="xyz"[right[0]],
+                )
+            yield text
+            return
+
+
 def _formats(kinds: Sequence[Kind]) -> dict[str, list[str]]:
     """The named formats, line by line: of each kind of log, and of gyros in a log of their own."""
     both, found = ("accelerometer", "gyro"), {}
@@ -241,7 +267,8 @@ def _format(kind: Kind, sensors: Sequence[str], indent: str) -> Iterator[str]:
         return
     guess = _guess(timing.evidence) if timing.guessed else ""
     if kind.means:
-        yield f"{indent}mean_of: null{_guess(timing.evidence)}"
+        number = "null" if columns.mean_of is None else scalar(columns.mean_of)
+        yield f"{indent}mean_of: {number}{_guess(timing.evidence)}"
     else:
         yield f"{indent}time: {flow(**_time(kind, file))}{guess}"
     if columns.temperature is not None and file == 0:
@@ -355,6 +382,8 @@ def _seen(m: Manoeuvre) -> str:
         )
     if m.up is None:
         return _guess(_("no axis points up"))
+    if m.seconds is None:
+        return "  # " + _("{count} means", count=m.count)
     return "  # " + _("{seconds:.1f} s", seconds=m.seconds)
 
 

@@ -38,6 +38,7 @@ NAMED = {
     "other": re.compile(r"mag|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"),
 }
 TIME = re.compile(r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]", re.IGNORECASE)
+COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECASE)
 TEMPERATURE = re.compile(r"temp", re.IGNORECASE)
 PLAUSIBLE = {"degC": (-80.0, 150.0), "K": (190.0, 425.0)}  # of an IMU
 AXIS = re.compile(r"^(.*?)([xyz0-9])([^xyz0-9]*)$")
@@ -86,6 +87,7 @@ class Columns:
     guessed: bool
     unused: tuple[Name, ...]  # columns of the first log
     temperature: tuple[Name, str] | None = None  # a column of the first log, and its unit
+    mean_of: Name | None = None  # where each row is a mean: the number of its samples
 
 
 def time_of(log: RawLog) -> Name | None:
@@ -190,8 +192,9 @@ def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
     }
     warmth = _temperature_of(first[0])
     used |= {times[0]} if warmth is None else {times[0], warmth[0]}
-    unused = tuple(n for n in first[0].columns if n not in used)
-    return Columns(times, accel, gyro, label, evidence, guessed, unused, warmth)
+    number = next((n for n in first[0].columns if COUNT.fullmatch(str(n))), None)
+    unused = tuple(n for n in first[0].columns if n not in {*used, number})
+    return Columns(times, accel, gyro, label, evidence, guessed, unused, warmth, number)
 
 
 def _temperature_of(log: RawLog) -> tuple[Name, str] | None:
@@ -217,6 +220,8 @@ def _words_of(log: RawLog) -> tuple[list[tuple[Name, str]], Name | None]:
     for name, words in log.words.items():
         runs = 1 + sum(a != b for a, b in pairwise(words))
         different = sorted(set(words))
+        if len(different) == len(words):
+            continue  # each row has a name of its own
         if len(different) > 1 and len(words) <= INTERLEAVED_ROWS * runs:
             rows += [(name, word) for word in different]
         elif len(different) > 1:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from commands.draft.sensors import Kind, Part
+from commands.draft.sensors import Kind, Part, are_means
 from commands.draft.series import MIN_REST_S, Divided, Still
 from inertial.text.messages import _, plural
 
@@ -86,9 +86,13 @@ def plan_of(kinds: Sequence[Kind]) -> list[Manoeuvre]:
 
 
 def _means(kind: Kind) -> list[Manoeuvre]:
-    """Each row is a static position."""
+    """Each row is a static position; or all are one, each at its temperature."""
     return [
-        Manoeuvre("positions", part, rows=part.rows, count=part.logs[0].rows) for part in kind.parts
+        Manoeuvre("positions", part, rows=part.rows, count=part.logs[0].rows)
+        if are_means(part.series.accel)
+        else Manoeuvre("rest", part, up=face(part.series.accel.mean(axis=0)), count=rows)
+        for part in kind.parts
+        for rows in [part.logs[0].rows]
     ]
 
 

@@ -76,6 +76,7 @@ class _Separated:
     """What stands between the fields, within numbers, and how many fields most rows have."""
 
     rows: int = 0  # that hold enough numbers
+    numbers: int = 0  # in all of them
     length: int = 0
     delimiter: str | None = None
     decimal: str = "."
@@ -87,11 +88,14 @@ def _separated(lines: Sequence[str]) -> _Separated:
     for delimiter, decimal in product(DELIMITERS, DECIMALS):
         if delimiter != decimal:
             rows = [_fields(line, delimiter) for line in lines]
-            lengths = Counter(len(row) for row in rows if _is_data(row, decimal))
-            if lengths:
-                length, count = lengths.most_common(1)[0]
-                if (count, length) > (best.rows, best.length):
-                    best = _Separated(count, length, delimiter, decimal)
+            data = [row for row in rows if _is_data(row, decimal)]
+            if data:
+                length, count = Counter(map(len, data)).most_common(1)[0]
+                own = (text for row in data if len(row) == length for text in row)
+                numbers = sum(is_number(text, decimal) for text in own)
+                found = _Separated(count, numbers, length, delimiter, decimal)
+                if (count, numbers, length) > (best.rows, best.numbers, best.length):
+                    best = found
     return best
 
 

@@ -5,7 +5,7 @@ Of a receiver's counts, which listed instrument they are of: by gravity, rate an
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +53,8 @@ THOUSANDTH = re.compile(r"\bm(dps|deg|rad)|milli", re.IGNORECASE)
 class Scale:
     """Unit of a sensor, counts in it or none, their zero, (3,), and what says so.
 
-    `axes`: what takes the readings to the axes of the other sensor.
+    `axes`: what takes the readings to the axes of the other sensor; `shares`: by how much each gyro
+    turns gravity along these axes, relative to their mean, with sigma, (3, 2); empty if not seen.
     """
 
     unit: str
@@ -62,6 +63,7 @@ class Scale:
     evidence: str
     guessed: bool
     axes: Permutation = AS_NAMED
+    shares: tuple[tuple[float, float], ...] = ()
 
     @property
     def size(self) -> float:
@@ -132,11 +134,15 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
 
 @dataclass(frozen=True)
 class Turning:
-    """What takes raw gyros to rad/s: a factor with its relative sigma, and the axes they read."""
+    """What takes raw gyros to rad/s: a factor with its relative sigma, and the axes they read.
+
+    `shares`: as in `Scale`.
+    """
 
     factor: float
     sigma: float
     axes: Permutation
+    shares: tuple[tuple[float, float], ...] = ()
 
 
 def turning(recordings: Sequence[Divided], force: Scale) -> Turning | None:
@@ -167,7 +173,8 @@ def turning(recordings: Sequence[Divided], force: Scale) -> Turning | None:
     if factor < MIN_FACTOR_SIGMA / np.sqrt(np.sum(weight)):
         return None
     ways = [way for each in both for way in _ways(each, force, centre, length, axes)]
-    first = Turning(factor / one, FIRST_SIGMA, axes)
+    shares = np.column_stack([found.matrix[place], found.sigma[place]]) / factor
+    first = Turning(factor / one, FIRST_SIGMA, axes, tuple(map(tuple, shares.tolist())))
     # Without a centre the directions at rest are off by the bias.
     return _refined(first, ways) if ways and centre.any() else first
 
@@ -223,7 +230,7 @@ def _refined(first: Turning, ways: Sequence[Way]) -> Turning:
     residual = float(total[best]) / max(2 * len(ways) - 1, 1)
     sigma = float(np.sqrt(residual / curve[0]))
     value = float(np.clip(-curve[1] / (2 * curve[0]), factors[0], factors[-1]))
-    refined = Turning(value, max(sigma / value, STEP), first.axes)
+    refined = replace(first, factor=value, sigma=max(sigma / value, STEP))
     return min(first, refined, key=lambda each: each.sigma)
 
 
@@ -282,7 +289,7 @@ def gyro_scale(
         None,
     )
     thousandths = any(isinstance(n, str) and THOUSANDTH.search(n) for n in names)
-    axes = AS_NAMED if turns is None else turns.axes
+    axes, shares = (AS_NAMED, ()) if turns is None else (turns.axes, turns.shares)
     if turns is None:
         if named is not None:
             return Scale(named, 1000.0 if thousandths else None, zero, _("by their names"), False)
@@ -300,7 +307,7 @@ def gyro_scale(
     for unit, size in (("rad/s", 1.0), ("deg/s", DEGREE)):
         error = abs(turns.factor * (thousand or 1.0) / size - 1)
         if error < 2 * MAX_UNIT_ERROR and (thousandths or not are_counts(values)):
-            return Scale(unit, thousand, zero, seen, False, axes)
+            return Scale(unit, thousand, zero, seen, False, axes, shares)
     per_degree = DEGREE / turns.factor
     most = max(MAX_COUNT_ERROR, 2 * turns.sigma)
     near = [each for each in USUAL_GYRO_COUNTS if abs(each / per_degree - 1) < most]
@@ -309,7 +316,7 @@ def gyro_scale(
         off = {each: turn_misfit(recordings, DEGREE / each, np.pi / 2) for each in near}
     counts = min(near, key=lambda each: off[each]) if near else float(f"{per_degree:.3g}")
     what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
-    return Scale("deg/s", counts, zero, what, True, axes)
+    return Scale("deg/s", counts, zero, what, True, axes, shares)
 
 
 # ---- The instrument of a receiver's counts.

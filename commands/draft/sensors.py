@@ -80,9 +80,9 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
         timing = replace(timing, rate=rate, guessed=False, evidence=_("the rate is stated"))
     if columns.accel and columns.time[0] is None and columns.label is None:
         readings = [columns.accel.of(together) for together in group]
-        if all(map(are_means, readings)):
+        if all(map(are_means, readings)) or _are_means_of_one_attitude(columns, readings):
             return _kind_of_means(columns, timing, group)
-    _refuse_few(group)
+    _refuse_few(group, columns)
     kind = Kind(columns, timing, None, None, [], [])
     parts = [part for together in group for part in _parts(kind, together)]
     own = _divided(parts, known_units=False)
@@ -100,7 +100,7 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
     return Kind(columns, timing, accel, gyro, parts, own)
 
 
-def _refuse_few(group: Sequence[Sequence[RawLog]]) -> None:
+def _refuse_few(group: Sequence[Sequence[RawLog]], columns: Columns) -> None:
     """Refuse a table of a few rows, which are no samples of a motion."""
     rows, log = sum(together[0].rows for together in group), group[0][0]
     if rows < MIN_ROWS and log.kind != "rawimus":
@@ -108,8 +108,17 @@ def _refuse_few(group: Sequence[Sequence[RawLog]]) -> None:
             log.path.name,
             "",
             plural("{count} row of numbers", "{count} rows of numbers", rows),
-            _("samples, at least {rows}, or the means of positions", rows=MIN_ROWS),
-            _("name the log of the samples; means are stated by hand, with mean_of"),
+            _(
+                "samples, at least {rows}; or the means of positions; or the means of one at "
+                "temperatures, whose columns are named",
+                rows=MIN_ROWS,
+            ),
+            _("name the log of the samples")
+            if columns.temperature is not None and not columns.guessed
+            else _(
+                "name the log of the samples; or add a first line that names the columns of means, "
+                "such as temperature, samples, acc_x, acc_y, acc_z, gyro_x, gyro_y, gyro_z"
+            ),
         )
 
 
@@ -137,9 +146,22 @@ def are_means(values: Array) -> bool:
     return on_sphere and spread > (MIN_SPREAD * length) ** 2 and steps > MIN_STEPS * spread
 
 
+def _are_means_of_one_attitude(columns: Columns, readings: Sequence[Array]) -> bool:
+    """Whether rows, by the names of their columns, are means at temperatures: one attitude, few."""
+    if columns.guessed or columns.temperature is None or sum(map(len, readings)) >= MIN_ROWS:
+        return False
+    directions = [values / np.linalg.norm(values, axis=1)[:, None] for values in readings]
+    cosines = [own @ own.mean(axis=0) for own in directions]
+    return bool(np.concatenate(cosines).min() > np.cos(MAX_MEAN_SCATTER))
+
+
 def _kind_of_means(columns: Columns, timing: Timing, group: Sequence[Sequence[RawLog]]) -> Kind:
-    """Logs of which each row is the mean of a static position."""
-    timing = replace(timing, guessed=False, evidence=_("each row is a position, as it differs"))
+    """Logs of which each row is the mean of a static position, or of one at a temperature."""
+    several = all(are_means(columns.accel.of(logs)) for logs in group if columns.accel)
+    why = _("each row is a position, as it differs")
+    if not several:
+        why = _("so few rows in one attitude are means, each at its temperature")
+    timing = replace(timing, guessed=False, evidence=why)
     parts, own = [], []
     for together in group:
         values = [t.of(together) if t else np.empty((0, 3)) for t in (columns.accel, columns.gyro)]

@@ -76,7 +76,7 @@ def timing_of(
         unit = min(list(UNITS)[:4], key=lambda u: abs(np.log(UNITS[u] / ticks / USUAL_RATE)))
         why = _(
             "a step of {ticks} is a plausible rate in {unit} only",
-            ticks=significant(ticks),
+            ticks=significant(ticks, 6),
             unit=unit,
         )
     rate = UNITS[unit] / ticks

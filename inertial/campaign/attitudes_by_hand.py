@@ -32,7 +32,7 @@ def with_attitudes(data: "CampaignData", accelerometer: Triad) -> "CampaignData"
     positions, _ = free_static_positions(data)
     if not positions:
         return data
-    moving, _ = passages_of(positions, data.blocks, data.noise)
+    moving, _ = passages_of(positions, data.blocks, data.noise, data.clocks)
     blocks = data.blocks.copy()
     for position in positions:
         part = position.force.part

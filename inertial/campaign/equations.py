@@ -39,6 +39,10 @@ Array = NDArray[np.float64]
 
 PRIOR_SIZE = 10.0  # prior sigma of an effect, in its typical sizes
 NOT_SIMULATED = _("Nothing is simulated, for the joint estimate determines no sensor wholly.")
+NO_GYROS = _(
+    "it changes no reading of the accelerometers, and the gyros are not simulated, for the joint "
+    "estimate does not determine all of their parameters"
+)
 MIN_PIECE_S = 30.0  # s, duration of a piece of a static position
 MAX_PIECES = 100  # pieces of all static positions together
 SENSORS = ("gyro", "accel")

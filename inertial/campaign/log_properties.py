@@ -246,6 +246,7 @@ def logs(
             increments=any(row.get("increments") for row in channels),
             imu=tuple(types.get(log, ())),
             stamp_scatter=_number(rows[log].get("stamp_scatter"), np.nan),
+            interval_sigma=_number(rows[log].get("interval_sigma"), np.nan),
             shortest_gap=_number(rows[log].get("shortest_gap"), np.nan),
         )
     return made

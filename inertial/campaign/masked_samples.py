@@ -171,7 +171,7 @@ class RecordIndex:
 def regular(records: int, length: int) -> tuple[Integers, Integers]:
     """Stretches of `length` records that cover a log of `records`."""
     first = np.arange(0, records, max(length, 1), dtype=np.int64)
-    return first, np.append(first[1:], records).astype(np.int64)
+    return first, np.minimum(first + max(length, 1), records)
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ beginning of the next one in the same log; where one of them is missing, no atti
 through.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -14,7 +14,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Part
+from inertial.campaign.records import Clock, Part
 from inertial.campaign.unknown_attitude import FreeStaticPosition
 from inertial.estimation.carried_attitude import Passage
 from inertial.tables import GYRO
@@ -37,7 +37,10 @@ class RecordedPassage:
 
 
 def passages_of(
-    positions: Sequence[FreeStaticPosition], blocks: pd.DataFrame, noise: NoiseLevels
+    positions: Sequence[FreeStaticPosition],
+    blocks: pd.DataFrame,
+    noise: NoiseLevels,
+    clocks: Mapping[str, Clock],
 ) -> tuple[list[RecordedPassage], list[Part]]:
     """The motions from each rest to the next, and those left out with the reason."""
     moving = blocks[blocks["phase"] == BETWEEN].sort_values(["log", "from_record"])
@@ -56,7 +59,9 @@ def passages_of(
         seconds, time, temperature = (
             part[column].to_numpy(np.float64) for column in ("seconds", "time", "temperature")
         )
-        passage = Passage(i, part[GYRO].to_numpy(np.float64), seconds, density)
+        rates, clock = part[GYRO].to_numpy(np.float64), clocks.get(before.log)
+        timed = 0.0 if clock is None else clock.sigma
+        passage = Passage(i, rates, seconds, density, before.log, timed)
         own = Part(name, BETWEEN)
         passages.append(RecordedPassage(own, before.log, passage, time, temperature))
     return passages, left_out

@@ -192,7 +192,8 @@ class Recorded:
     """A rotation of the plan, its record, its blocks in motion, and why it is refused.
 
     `begun`: whether the rest before it is in its record; one that is recorded in part and has
-    none begins at another azimuth than that of the set position.
+    none begins at another azimuth than that of the set position. `clock_sigma`: of the rate of the
+    clock of its log, relative.
     """
 
     plan: Manoeuvre
@@ -200,6 +201,7 @@ class Recorded:
     blocks: Blocks
     refusal: str  # empty where it can be used
     begun: bool = True
+    clock_sigma: float = 0.0
 
     @property
     def steady(self) -> Blocks:
@@ -332,7 +334,9 @@ def _recorded_turns(data: "CampaignData") -> Iterator[Recorded]:
     for m in data.plan:
         if m.do == "turn":
             done, part = data.performed[m.name], moving.get(m.name, NO_BLOCKS)
-            yield Recorded(m, done, part, refusal_of(m, done, part), m.name in begun)
+            clock = data.clocks.get(m.log)
+            timed = 0.0 if clock is None else clock.sigma
+            yield Recorded(m, done, part, refusal_of(m, done, part), m.name in begun, timed)
 
 
 def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
@@ -402,6 +406,8 @@ def rate_segment_of(
         gaps=missing,
         gap_sigma=sigma_of(part, missing, m.axis, m.name, noise, rate_sigma),
         unsteady=np.flatnonzero(~part.steady).tolist() if noise.oscillates(m.name, GYRO) else (),
+        clock=m.log,
+        clock_sigma=rotation.clock_sigma,
     )
 
 
@@ -448,4 +454,6 @@ def _angle(rotation: Recorded, i: int, noise: NoiseLevels) -> WholeTurn:
         seconds=float(rotation.weights @ part.seconds),
         up=float(m.up[i]),
         density=float(noise.of(m.name, "rest", GYRO)[i]),
+        clock=m.log,
+        clock_sigma=rotation.clock_sigma,
     )

@@ -190,7 +190,7 @@ def omissions(parts: Iterable[Part]) -> str:
     for part in parts:
         if part.reason:
             alike.setdefault(part.reason, []).append(part)
-    return "; ".join(_omission(left_out) for left_out in alike.values())
+    return "; ".join(_omission(left_out).rstrip(".") for left_out in alike.values())
 
 
 def _omission(alike: Sequence[Part]) -> str:
@@ -236,7 +236,8 @@ class Clock:
     """The clock of a log, s: median interval, and what a sample counts for in a sum over time.
 
     `averaged`: whether a sample is the mean over its interval, an increment, as receivers log it;
-    `begin`, `end`: GPS time of the first and last sample, NaN where it is not known.
+    `begin`, `end`: GPS time of the first and last sample, NaN where it is not known; `sigma`: of
+    the interval by stamps of arrival, relative, 0 where the stamps are those of sampling.
     """
 
     interval: float | None
@@ -244,6 +245,7 @@ class Clock:
     averaged: bool = False
     begin: float = np.nan
     end: float = np.nan
+    sigma: float = 0.0
 
     @property
     def step(self) -> float:
@@ -258,7 +260,9 @@ def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
             row["interval"],
             row["integration_step"],
             row["clock"] == "GPS",
-            *(_gps_time(row, key) for key in ("from_s", "to_s")),
+            _gps_time(row, "from_s"),
+            _gps_time(row, "to_s"),
+            (row.get("interval_sigma") or 0.0) / (row["interval"] or 1.0),
         )
         for row in rows_of(table)
     }

@@ -26,13 +26,12 @@ from inertial.text.numbers import fixed, significant, whole
 class Hit:
     """A reading that is off: what it is part of, and what its description needs.
 
-    noise: of a reading, unit of the channel; readings: of the log; share: that are off.
+    noise: of a reading, unit of the channel; readings: of the log.
     """
 
     glitch: Glitch
     noise: float
     readings: int
-    share: float
 
 
 class PeriodicGlitch(Detector):
@@ -65,8 +64,7 @@ class PeriodicGlitch(Detector):
                     size = glitch.size
                     if glitch.channel is None:
                         size *= float(readings[0]) / (1 + size)
-                    share = log.interval / glitch.period
-                    hit = Hit(glitch, float(log.noise[i]), log.records, share)
+                    hit = Hit(glitch, float(log.noise[i]), log.records)
                     yield piece.event(
                         start, end, size, channel=i, p_value=glitch.p_value, facts=hit
                     )
@@ -80,6 +78,10 @@ class PeriodicGlitch(Detector):
         hit: Hit = largest.facts
         glitch = hit.glitch
         scale, unit = read_in(largest.channel)
+        own = [(log, event) for log, event in events if event.facts.glitch == glitch]
+        # An instant at the border of two phases falls on one record, in either of them.
+        off = len({(log, event.first) for log, event in own})
+        share = off / sum({log: event.facts.readings for log, event in own}.values())
         return Description(
             _(
                 "At {phase} s of every {period} s{others} the {axes} read {size} {unit} too "
@@ -94,7 +96,7 @@ class PeriodicGlitch(Detector):
                 count=whole(len({(log, one.first) for log, one in events})),
                 logs=names_of_logs(events),
             ),
-            _moves(hit, largest),
+            _moves(hit, largest.channel, share),
             _(
                 "They are masked: in a rest left out, in a turn interpolated. Find out what the "
                 "logger or the clock does once in every {period} s.",
@@ -116,17 +118,19 @@ def _share(glitch: Glitch) -> str:
     return _(", {percent} % of what they read", percent=significant(100 * glitch.size, 2))
 
 
-def _moves(hit: Hit, event: Event) -> str:
-    """What they would do to the result, and how much that is beside the noise."""
+def _moves(hit: Hit, channel: int, share: float) -> str:
+    """What they would do to the result, and how much that is beside the noise.
+
+    `share`: of the readings of these logs, that are off.
+    """
     glitch = hit.glitch
     if glitch.channel is None:
         return _(
             "Used, they would make the scale factors of all axes {ppm} ppm too large.",
-            ppm=significant(1e6 * glitch.size * hit.share, 2),
+            ppm=significant(1e6 * glitch.size * share, 2),
         )
-    assert event.channel is not None
-    shift = glitch.size * hit.share
-    scale, unit = read_in(event.channel)
+    shift = glitch.size * share
+    scale, unit = read_in(channel)
     return _(
         "Used, they would move every mean by {size} {unit}: {sigmas} times the noise of the mean "
         "of this log.",

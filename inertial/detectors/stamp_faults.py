@@ -25,10 +25,12 @@ class ArrivalStamps(Detector):
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         if np.isfinite(log.stamp_scatter):
-            yield log.event(log.stamp_scatter, facts=(log.interval, log.shortest_gap))
+            yield log.event(
+                log.stamp_scatter, facts=(log.interval, log.interval_sigma, log.shortest_gap)
+            )
 
     def describe(self, event: Event, name: str) -> Description:
-        interval, gap = event.facts
+        interval, sigma, gap = event.facts
         return Description(
             _(
                 "{name}: the stamps are those of arrival, not of sampling: about a regular clock "
@@ -39,9 +41,11 @@ class ArrivalStamps(Detector):
             ),
             _(
                 "The samples have the times of a regular clock instead: one every {interval} ms, "
-                "the slope of stamp against sample number, gaps left out. Gaps of less than "
+                "the slope of stamp against sample number, gaps left out. It is uncertain by {ppm} "
+                "ppm, which the sigmas of the gyros' scale factors contain. Gaps of less than "
                 "{gap} ms are not seen; a turn lacks what it turned meanwhile.",
                 interval=significant(interval * 1e3, 5),
+                ppm=significant(sigma / interval * 1e6, 2),
                 gap=significant(gap * 1e3, 2),
             ),
             _("Let the IMU stamp or count its samples, and log that."),

@@ -13,6 +13,9 @@ in the motion before it and in the one after, and one of their parameters in all
 and unknown direction, is two unknowns for all rests that uninterrupted motions join, for the gyros
 propagate it. The noise of a motion rotates all later directions, so its covariance is integrated.
 
+Where samples are timed by stamps of arrival, the rate of the clock of each log is an unknown too:
+where it is too slow, all motions of the log have turned by as much more, as with a smaller M.
+
 Rests and motions differ beyond noise by what `scatter_by_hand` describes.
 """
 
@@ -155,7 +158,8 @@ class _Data:
     """The data of the equations, and the places of their unknowns.
 
     These are: the gyros' parameters, those of the accelerometers, two for each direction, two for
-    the horizontal rate of each chain of stops, gravity, and the earth's upward rate.
+    the horizontal rate of each chain of stops, the rate of the clock of each log that has no stamps
+    of sampling, gravity, and the earth's upward rate.
     """
 
     stops: Sequence[Stop]
@@ -188,7 +192,12 @@ class _Data:
     def integrated(self, around: Array) -> list[IntegratedMotion]:
         """The motions by the gyros with the M and bias of `around`."""
         matrix, bias = around[:9].reshape(3, 3), around[9:UNKNOWNS]
-        return [integrated_motion(passage, matrix, bias) for passage in self.passages]
+        late = [0.0 if (place := self.clock(p)) is None else around[place] for p in self.passages]
+        timed = [
+            replace(passage, seconds=passage.seconds / (1 + error))
+            for passage, error in zip(self.passages, late, strict=True)
+        ]
+        return [integrated_motion(passage, matrix, bias) for passage in timed]
 
     @cached_property
     def usual(self) -> float:
@@ -218,9 +227,20 @@ class _Data:
     def level(self, chain: int) -> slice:
         return slice(self.parameters + 2 * chain, self.parameters + 2 * chain + 2)
 
+    @cached_property
+    def clocks(self) -> dict[str, float]:
+        """The relative sigma of the rate of each clock that is uncertain."""
+        return {p.clock: p.clock_sigma for p in self.passages if p.clock_sigma}
+
+    def clock(self, passage: Passage) -> int | None:
+        """The place of the rate of its clock, None where that is certain."""
+        if not passage.clock_sigma:
+            return None
+        return self.size - 2 - len(self.clocks) + [*self.clocks].index(passage.clock)
+
     @property
     def size(self) -> int:
-        return self.parameters + 2 * len(self.chains) + 2
+        return self.parameters + 2 * len(self.chains) + len(self.clocks) + 2
 
     @property
     def of_forces(self) -> NDArray[np.int_]:
@@ -229,7 +249,7 @@ class _Data:
 
     @property
     def prior(self) -> Array:
-        middle = np.zeros(2 * len(self.stops) + 2 * len(self.chains))
+        middle = np.zeros(2 * len(self.stops) + 2 * len(self.chains) + len(self.clocks))
         ends = [self.known.gravity, self.known.earth.up]
         return np.concatenate([PRIOR, forces.PRIOR, middle, ends])
 
@@ -238,7 +258,8 @@ class _Data:
         directions = np.full(2 * len(self.stops), forces.DIRECTION_SIGMA)
         level = np.full(2 * len(self.chains), self.known.earth.level / np.sqrt(2))
         ends = [self.known.gravity_sigma, self.known.earth.up_sigma]
-        return np.concatenate([PRIOR_SIGMA, forces.PRIOR_SIGMA, directions, level, ends])
+        clocks = [*self.clocks.values()]
+        return np.concatenate([PRIOR_SIGMA, forces.PRIOR_SIGMA, directions, level, clocks, ends])
 
     @property
     def names(self) -> tuple[tuple[str, str], ...]:
@@ -248,6 +269,7 @@ class _Data:
             *(("accelerometer", name) for name in forces.NAMES),
             *((f"direction {i}", name) for name in stops for i in (0, 1)),
             *((f"level {i}", stops[chain[0]]) for chain in self.chains for i in (0, 1)),
+            *(("clock", clock) for clock in self.clocks),
             ("gravity", ""),
             ("earth", "up"),
         )
@@ -384,7 +406,8 @@ def _of_rates(data: _Data, around: Array) -> Iterator[tuple[int, Rows]]:
             if i in passages:
                 motion = motions[passages[i]]
                 turned = motion.relative_to_earth(at_stop.earth(i))
-                yield len(data.stops) + passages[i], at_stop.motion(i, motion, turned)
+                rows = at_stop.motion(i, motion, turned, data.clock(data.passages[passages[i]]))
+                yield len(data.stops) + passages[i], rows
                 at_stop = at_stop.at_next(turned)
 
 
@@ -446,8 +469,11 @@ class _AtStop:
         response = np.eye(3)[there, None]
         return Rows(design[there], rest[there], response, stop.seconds, noise, unit, 0 * unit)
 
-    def motion(self, i: int, motion: IntegratedMotion, turned: Array) -> Rows:
-        """The next upward direction against this one rotated there, along two horizontal axes."""
+    def motion(self, i: int, motion: IntegratedMotion, turned: Array, clock: int | None) -> Rows:
+        """The next upward direction against this one rotated there, along two horizontal axes.
+
+        `clock`: the place of the rate of its clock among the unknowns, if it is one.
+        """
         across = self.data.up.across[i + 1]  # (2, 3)
         rotated = turned @ self.ups[i]
         # A rotation φ of the body takes a direction v to v + v × φ.
@@ -459,6 +485,8 @@ class _AtStop:
         design[:, direction + 2 : direction + 4] = across @ self.changes[i + 1].T
         design[:, self.place] = motion.seconds * lever @ turned @ self.level.T
         design[:, -1] = motion.seconds * lever @ turned @ self.ups[i]
+        if clock is not None:  # where time is too long, M is too large by the same share
+            design[:, clock] = design[:, :9] @ self.matrix.ravel() / (1 + self.around[clock])
         rest = across @ (rotated - self.ups[i + 1])
         noise, swing = lever @ motion.white @ lever.T, lever @ lever.T
         response = np.einsum("mi,sij->msj", lever, motion.response)

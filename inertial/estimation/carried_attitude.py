@@ -17,13 +17,16 @@ STRETCH_S = 0.1  # s, of the motion in which the response to an effect counts as
 class Passage:
     """The readings of the gyros from stop `first` to the next.
 
-    `rates`: (k, 3), rad/s, means of short stretches; `seconds`: (k,); `density`: (3,), rad/√s.
+    `rates`: (k, 3), rad/s, means of short stretches; `seconds`: (k,); `density`: (3,), rad/√s;
+    `clock`, `clock_sigma`: of its log, and of the rate of that, relative.
     """
 
     first: int
     rates: Array
     seconds: Array
     density: Array
+    clock: str = ""
+    clock_sigma: float = 0.0
 
     @property
     def starts(self) -> NDArray[np.int_]:

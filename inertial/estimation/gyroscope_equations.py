@@ -27,6 +27,9 @@ two. The sum over a window has
 with the delay τ of the gyros less that of the encoder, and the eccentricity a, b of the encoder:
 unknowns of the table, with those that are eliminated. An edge that two windows share has one error.
 
+Where samples are timed by stamps of arrival, τ is uncertain by a share that all sums of a log have
+in common: one unknown of its clock, by which their angle is off.
+
 The earth's rate has an upward component, known from the latitude, and a horizontal component of
 known size whose direction is known only with `mark` and the table's heading. Else it is an unknown
 of each position, with the size as its sigma. Of a turn in an unknown attitude all three components
@@ -60,6 +63,7 @@ MIN_UPRIGHT_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 
 # those of a laboratory are; what the windows say of both counts.
 DELAY_SIGMA = 0.05  # s
 ECCENTRICITY_SIGMA = 1e-4  # rad, 20 arcsec
+CLOCK = "clock"  # kind of the error of the rate of a log's clock
 DELAY: Name = ("encoder delay", "the table")
 WAVES: tuple[Name, Name] = (("encoder sine", "the table"), ("encoder cosine", "the table"))
 MAX_BLOCKS_PER_PASS = 4000  # so that the memory does not grow with the length of a segment
@@ -245,6 +249,8 @@ def segment_equations(
         own[("angle", name)] = segment.angle_sigma
         if segment.gaps:
             own[("gap angle", name)] = segment.gap_sigma
+    if segment.clock_sigma:
+        own[(CLOCK, segment.clock)] = segment.clock_sigma
     sigma |= own
     sums = np.where(recorded, segment.sums, 0.0)
     angle = _block_angles(segment, sums, weight, point, earth)
@@ -367,8 +373,10 @@ def _whole_angle(
     missing = np.kron(along, (segment.angle - angle) * segment.about)
     row[:9] += missing
     row[-1] -= missing @ np.eye(3).ravel()
-    angles = sum(kind in ("angle", "gap angle") for kind, _ in own)
-    row[-1 - angles : -1] = along @ (matrix @ segment.about)
+    by_kind = {"angle": 1.0, "gap angle": 1.0, CLOCK: segment.angle}
+    for column, (kind, _unused) in enumerate(own, len(row) - 1 - len(own)):
+        if kind in by_kind:
+            row[column] = by_kind[kind] * float(along @ (matrix @ segment.about))
     return row[None]
 
 
@@ -398,6 +406,8 @@ def _windows(
         of_angle = factor @ (matrix @ segment.about)
         errors = {DELAY: -window.change, **dict(zip(WAVES, np.negative(window.waves), strict=True))}
         errors |= {_edge(name, window.start): -1.0, _edge(name, window.end): 1.0}
+        if segment.clock_sigma:
+            errors[(CLOCK, segment.clock)] = known
         for error, size in errors.items():
             row[own.index(error) - len(own) - 1] += of_angle * size
         rows.append(row)

@@ -200,6 +200,8 @@ def both_ways(
     for turn in (forward, backward):
         noise += (turn.density**2 * turn.seconds + turn.angle_sigma**2) / turn.angle**2
         offsets += (scatter * turn.seconds / turn.angle) ** 2
+        if forward.clock != backward.clock:  # else one error of a clock is in both
+            noise += turn.clock_sigma**2
     c = forward.seconds / forward.angle - backward.seconds / backward.angle
     of_bias = (c * bias_sigma) ** 2
     shared = of_bias / (noise + offsets) * noise

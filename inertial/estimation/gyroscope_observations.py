@@ -102,6 +102,7 @@ class RateSegment:
     axis sways on the way, so only the sums over the whole turn are used. `gaps`: missing parts
     between the blocks; `gap_sigma`: rad, of the interpolated angle.
     `unsteady`: blocks in which the amplitude of an oscillation of the case changes.
+    `clock`: of its log, whose rate is uncertain by `clock_sigma`, relative.
     `windows`: by the encoder, with `course`, (k,), rad, which it has turned by at the middle of
     each block; then `angle` and what is interpolated are not used, and `angle_sigma` is a window's.
     """
@@ -120,6 +121,8 @@ class RateSegment:
     unsteady: Sequence[int] = ()
     sensitivities: Sensitivities = NO_SENSITIVITIES
     stretch: Stretch | None = None
+    clock: str = ""
+    clock_sigma: float = 0.0
     windows: Sequence[EncoderWindow] = ()
     course: Array | None = None
 
@@ -177,7 +180,10 @@ class SteadyRate:
 
 @dataclass(frozen=True)
 class WholeTurn:
-    """A whole turn by the gyro along its axis: summed angle of that gyro, known angle, duration."""
+    """A whole turn by the gyro along its axis: summed angle of that gyro, known angle, duration.
+
+    `clock`, `clock_sigma`: as in `RateSegment`.
+    """
 
     summed: float  # rad
     angle: float  # rad, along the axis
@@ -185,3 +191,5 @@ class WholeTurn:
     seconds: float
     up: float  # +1 where the axis points up, −1 where it points down
     density: float  # rad/√s
+    clock: str = ""
+    clock_sigma: float = 0.0

@@ -49,7 +49,7 @@ def bias_and_scale(turns: Sequence[WholeTurn], earth: Earth, scatter: float = 0.
 
     α̃ = b t + (1 + s) α + ω_e sinφ t for each turn; for one forward and one backward turn over
     equal times this is S0 (3-9), (3-10): b = (α̃₁+α̃₂)/(2t) − ω_e sinφ, s = (α̃₁−α̃₂)/(2α) − 1.
-    Unknowns: b, s, the upward earth rate. `scatter` as in `joint`.
+    Unknowns: b, s, the upward earth rate, the rates of the logs' clocks. `scatter` as in `joint`.
     """
     seconds = np.array([turn.seconds for turn in turns])
     angles = np.array([turn.angle for turn in turns])
@@ -57,8 +57,11 @@ def bias_and_scale(turns: Sequence[WholeTurn], earth: Earth, scatter: float = 0.
     summed = np.array([turn.summed for turn in turns])
     variance = [turn.density**2 * turn.seconds + turn.angle_sigma**2 for turn in turns]
     sigma = np.sqrt(variance + (scatter * seconds) ** 2)
-    design = np.column_stack([seconds, angles, up * seconds])
-    prior, prior_sigma = np.array([0.0, 0.0, earth.up]), np.array([1.0, 1.0, earth.up_sigma])
+    clocks = {turn.clock: turn.clock_sigma for turn in turns if turn.clock_sigma}
+    timed = [angles * np.array([turn.clock == clock for turn in turns]) for clock in clocks]
+    design = np.column_stack([seconds, angles, up * seconds, *timed])
+    prior = np.append([0.0, 0.0, earth.up], np.zeros(len(clocks)))
+    prior_sigma = np.array([1.0, 1.0, earth.up_sigma, *clocks.values()])
     return solve(design, summed - angles, sigma, prior, prior_sigma, 2)
 
 

@@ -28,6 +28,7 @@ ABSENT = {"day": 0.5, "walk": 0.7, "slope": 0.7}  # probability that there is no
 LARGEST = 5.0  # size up to which they are sought, in spreads of the values
 MIN_VALUES = 3  # calibrations, for a prediction
 MIN_FOR_JUMP = 5  # calibrations, for a jump
+MIN_TIMES = 3  # different ones, for a jump: of two a jump and a drift are one
 BISECTIONS = 60
 BOOTSTRAP = 2000  # histories without a jump
 TAIL = 0.1  # of them, by whose excess the chance of a rarer one is extrapolated
@@ -270,7 +271,7 @@ def jump(
     without one; of one that is rarer than all of these, by the exponential tail of their deviances.
     """
     n = len(history.values)
-    if n < MIN_FOR_JUMP:
+    if n < MIN_FOR_JUMP or len(np.unique(history.times)) < MIN_TIMES:
         return None
     steps = _Steps(history)
     centred = history.values - history.values.mean()

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.accelerometer_formulas import pooling
+from inertial.estimation.gyroscope_equations import CLOCK
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.gyroscope_observations import Earth, RateSegment, StaticRate
 from inertial.estimation.horizontal_earth_rate import SummedEarthRate, summed_earth_rate
@@ -142,6 +143,8 @@ def turn_and_stop(
             readings.add_cause("unknown", f"{gyro} {axis}", j, change)
     for j, turn in enumerate(turns):
         readings.add_cause("angle", str(j), j, matrix @ turn.about * turn.angle_sigma)
+        timed = matrix @ turn.about * turn.angle * turn.clock_sigma
+        readings.add_cause(CLOCK, turn.clock, j, timed)
         for i, level in enumerate(level_axes(turn.about)):
             change = turn.angle * cross(level, turn.about) * position_sigma
             readings.add_cause(f"tilt {i}", turn.position.name, j, matrix @ change)

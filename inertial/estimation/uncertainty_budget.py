@@ -27,6 +27,7 @@ ERRORS = {
     "position": ("tilt 0", "tilt 1"),
     "angle": ("angle", "encoder delay", "encoder sine", "encoder cosine"),
     "interpolation": ("gap angle",),
+    "clock": ("clock",),
     "azimuth": ("level 0", "level 1", "earth 0", "earth 1", "earth 2"),
 }
 QUANTITIES = {"gravity": "gravity", "latitude": "earth"}
@@ -77,7 +78,8 @@ class Model:
             name: (factor if name[0] in own else 1.0) * size
             for name, size in equations.sigma.items()
         }
-        of_kind = [kind == QUANTITIES.get(source) for kind, _name in equations.names]
+        wanted = {*own, QUANTITIES.get(source)}
+        of_kind = [kind in wanted for kind, _name in equations.names]
         prior_sigma = np.where(of_kind, factor, 1.0) * equations.prior_sigma
         return replace(self, equations=replace(equations, sigma=sigma, prior_sigma=prior_sigma))
 

@@ -101,7 +101,7 @@ class Log:
     records: how many. increments: readings are increments over `step`, and what a count leaves
     over goes into the next. imu: the types of IMU in its messages, by NovAtel's list.
     stamp_scatter: s, rms of the stamps about the regular clock that is used instead, NaN where the
-    stamps are used; shortest_gap: s, that such stamps show.
+    stamps are used; interval_sigma: s, of its interval; shortest_gap: s, that such stamps show.
     glitches: what is off at one phase of a period.
     """
 
@@ -124,6 +124,7 @@ class Log:
     increments: bool = False
     imu: tuple[int, ...] = ()
     stamp_scatter: float = np.nan
+    interval_sigma: float = np.nan
     shortest_gap: float = np.nan
     glitches: tuple["Glitch", ...] = ()
 

@@ -7,7 +7,9 @@ a busy host lets them wait, so stamps are late by D_k ≥ 0 and
 
 A delay passes: the samples that waited come in quick succession. What stays is a gap. So the least
 of stamp − T k over a second on one side of a sample, less that on the other side, is T times the
-number of samples missing there. The line through these least values is the clock.
+number of samples missing there. The line through these least values is the clock. What they scatter
+about it by is what its slope is uncertain by: two of one busy spell of the host are not two, and
+stamps in steps of q do not show a slope that changes them by less than q.
 """
 
 from dataclasses import dataclass
@@ -17,6 +19,7 @@ from scipy.ndimage import minimum_filter1d
 
 from inertial.signal.detector import Array, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA
+from inertial.signal.stamps import unit_of
 
 # Share of an interval by which stamps may scatter. Above it single steps come near one and a half
 # intervals, by which a missing sample is recognised, and their median is no interval any more.
@@ -30,19 +33,21 @@ MIN_SHIFT_SIGMA = 6.0
 MAX_APART = 4  # windows: one gap in eight lies within half of the distances
 REFINEMENTS = 3  # of the interval by the samples that arrive without delay
 MIN_WINDOWS = 4  # through whose least values a line is laid
+TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True)
 class RegularClock:
     """The clock of n samples.
 
-    start: s, of the sample with number 0, on the scale of the stamps; interval: s; number: (n,),
-    by which a gap is as many as are missing; scatter: s, rms of the stamps about the clock;
-    shortest_gap: s, that such stamps show.
+    start: s, of the sample with number 0, on the scale of the stamps; interval, interval_sigma: s;
+    number: (n,), by which a gap is as many as are missing; scatter: s, rms of the stamps about the
+    clock; shortest_gap: s, that such stamps show.
     """
 
     start: float
     interval: float
+    interval_sigma: float
     number: Integers
     scatter: float
     shortest_gap: float
@@ -82,14 +87,17 @@ def regular_clock(time: Array) -> RegularClock | None:
     interval = _between_least(even, max(_slope(even, window), 0.0) or interval, window)
     missing = _set_back(even, interval, window)
     delay = even - interval * _numbers(missing)
-    shortest = _shortest_gap(delay, interval, window)
+    # Where stamps stand still a sample that comes before the next one or after it is none lost.
+    shortest = _shortest_gap(delay, interval, window) + interval * bool((even != time).any())
     number = _numbers(missing + _gaps(delay, interval, window, shortest))
     least = _least(even - interval * number, window)
     if len(least) < MIN_WINDOWS:
         least = np.arange(count)
     slope, start = np.polyfit(number[least], even[least], 1).tolist()
     left = np.clip(time - start - slope * number, -MAX_DELAY_S, MAX_DELAY_S)
-    return RegularClock(start, slope, number, float(left.std()), shortest)
+    coarse = _longest_step(slope * np.arange(window), unit_of(np.diff(time)))
+    sigma = _slope_sigma(number[least], even[least] - start - slope * number[least], coarse)
+    return RegularClock(start, slope, sigma, number, float(left.std()), shortest)
 
 
 def _evened(time: Array) -> Array:
@@ -121,6 +129,26 @@ def _least(delay: Array, window: int) -> Integers:
     k = len(delay) // window
     places = delay[: k * window].reshape(k, window).argmin(axis=1)
     return np.asarray(np.arange(k) * window + places)
+
+
+def _longest_step(time: Array, resolution: float) -> float:
+    """The longest step, s, that no time, (n,), divides where stamps are whole resolutions."""
+    phase = np.sort(time % resolution)
+    return float(np.diff(phase, append=phase[0] + resolution).max())
+
+
+def _slope_sigma(number: Integers, left: Array, coarse: float) -> float:
+    """Of the slope of a line through k values, what is left of them, (k,), s, by the line.
+
+    By their scatter, with the correlation of neighbours (Newey & West 1987), and by the resolution
+    `coarse` of its ends.
+    """
+    k, place = len(left), number - number.mean()
+    lags = np.arange(1, int(np.sqrt(k)) + 1)
+    alike = np.array([left[lag:] @ left[:-lag] for lag in lags]) / max(float(left @ left), TINY)
+    together = max(1 + 2 * float((1 - lags / (len(lags) + 1)) @ alike), 1.0)
+    scatter = together * float(left @ left) / max(k - 2, 1) / float(place @ place)
+    return float(np.hypot(np.sqrt(scatter), coarse / (np.sqrt(6) * np.ptp(number))))
 
 
 def _between_least(time: Array, interval: float, window: int) -> float:

@@ -64,6 +64,8 @@ def moving(rates: Array, forces: Array, level: Array, threshold: float) -> Boole
         return np.asarray(np.linalg.norm(away, axis=1) > threshold)
     forces = np.nan_to_num(forces)
     k = len(forces)
+    if not k:
+        return np.zeros(0, bool)
     windows = [forces[np.clip(np.arange(k) + shift, 0, k - 1)] for shift in (-2, -1, 0, 1, 2)]
     spread = np.ptp(np.stack(windows), axis=0)
     usual = 6 * np.quantile(np.linalg.norm(spread, axis=1), 0.25)

@@ -61,7 +61,7 @@ ALLOWED_CHANGES = Table(
 )
 CONFORMITY = Table(
     "conformity",
-    1,
+    2,
     (
         Column("id", TEXT, "", "stable identifier: diagnosis/conformity/sensor/quantity"),
         MOUNT,
@@ -75,7 +75,7 @@ CONFORMITY = Table(
             TEXT,
             "",
             "conforms, does_not_conform; not_shown: the value is nearer to the limit than U;"
-            " not_assessed: there is no value",
+            " not_assessed: there is no value, or the verdict is that it is not usable",
         ),
         Column(
             "risk",

@@ -110,8 +110,8 @@ RANGES = Table(
             "sigma",
             DOUBLE,
             AS_CHANNEL,
-            "where rows are means: standard deviation of one of their samples, or of the row; 0: by"
-            " the residuals; none: not known, or not of means",
+            "where rows are means: standard deviation of one of their samples, or of the row; 0: in"
+            " the log, or by the residuals; none: not known, or not of means",
             nullable=True,
         ),
     ),

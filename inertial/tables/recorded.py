@@ -42,6 +42,17 @@ SAMPLES = Table(
         Column("label", LABEL, "", "label that the plan selects by", nullable=True),
     ),
 )
+MEAN_SIGMAS = Table(
+    "mean_sigmas",
+    1,
+    (
+        LOG,
+        Column("record", INTEGER, "1", "as in samples, where records are means"),
+        SENSOR,
+        AXIS,
+        Column("sigma", DOUBLE, AS_CHANNEL, "standard deviation of the mean, as the log states it"),
+    ),
+)
 REFUSED = Table(
     "refused",
     1,
@@ -67,7 +78,7 @@ ACCOUNTS = Table(
 )
 CLOCKS = Table(
     "clocks",
-    4,
+    5,
     (
         LOG,
         Column(
@@ -85,6 +96,13 @@ CLOCKS = Table(
             DOUBLE,
             "s",
             "mean sample interval: what a sample counts for in a sum over time",
+            nullable=True,
+        ),
+        Column(
+            "interval_sigma",
+            DOUBLE,
+            "s",
+            "standard deviation of the interval of the regular clock; null: stamps are used",
             nullable=True,
         ),
         Column(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from math import floor, isfinite, log10
 
@@ -14,13 +15,17 @@ THIN_SPACE = "\u202f"
 KEPT = frozenset(("\n", FIGURE_SPACE, POINT_SPACE, THIN_SPACE))  # no control characters
 DIGITS_OF_SIGMA = 2
 MOST_DECIMALS = 15
+NUMBER = re.compile(r"[^\d×±]*[\d\u202f]+(?:\.(\d+))?")  # alone, after a sign or a mark
 
 
 def fixed(value: float | None, decimals: int) -> str:
-    """`value` with so many decimals and a true minus sign; — where there is none."""
+    """`value` with so many decimals and a true minus sign; — where there is none.
+
+    Decimals below zero are places before the point: −2 is to hundreds.
+    """
     if value is None or not isfinite(value):
         return "—"
-    text = f"{value:.{max(decimals, 0)}f}"
+    text = f"{round(value, decimals) if decimals < 0 else value:.{max(decimals, 0)}f}"
     return text.removeprefix("-") if float(text) == 0 else text.replace("-", "−")
 
 
@@ -43,41 +48,43 @@ def raised(exponent: int) -> str:
 
 
 def decimals_of(sigma: float | None, digits: int = DIGITS_OF_SIGMA) -> int | None:
-    """Decimals that show `digits` significant digits of `sigma`; none without a sigma."""
+    """Decimals that show `digits` significant digits of `sigma`, below zero where these end
+    before the point; none without a sigma."""
     if sigma is None or not isfinite(sigma) or sigma <= 0:
         return None
     exponent = floor(log10(float(f"{sigma:.{digits - 1}e}")))
-    return min(max(digits - 1 - exponent, 0), MOST_DECIMALS)
+    return min(digits - 1 - exponent, MOST_DECIMALS)
 
 
 def common_decimals(sigmas: Iterable[float | None]) -> int | None:
     """Decimals for numbers that stand below each other: those of the smallest sigma.
 
-    They are at most two more than those of the largest, so that one very sure
-    number does not clothe the others in digits that mean nothing.
+    `with_sigma` gives fewer to those that are less sure.
     """
-    each = [decimals for sigma in sigmas if (decimals := decimals_of(sigma)) is not None]
-    return min(max(each), min(each) + 2) if each else None
+    return max((d for sigma in sigmas if (d := decimals_of(sigma)) is not None), default=None)
 
 
 def with_sigma(value: float | None, sigma: float | None, decimals: int | None) -> tuple[str, str]:
-    """A value and its sigma with the same decimals; to five digits where no sigma is known."""
+    """A value and its sigma with the same decimals; to five digits where no sigma is known.
+
+    It has no more digits than its own sigma knows, whatever the decimals (GUM, 7.2.6).
+    """
     if decimals is None:
         return significant(value, 5), "—"
+    own = decimals_of(sigma)
+    decimals = decimals if own is None else min(decimals, own)
     return fixed(value, decimals), fixed(sigma, decimals)
 
 
 def aligned(texts: Sequence[str]) -> list[str]:
     """`texts` padded on the right so that their decimal points stand below each other."""
-    fractions = ["" if "×" in text else text.partition(".")[2] for text in texts]
-    longest = max(map(len, fractions), default=0)
-    if not longest:
-        return list(texts)
+    found = [NUMBER.fullmatch(text) for text in texts]
+    longest = max((len(number[1] or "") for number in found if number), default=0)
     return [
-        text
-        if "×" in text or not any(map(str.isdigit, text))
-        else text + ("" if fraction else POINT_SPACE) + FIGURE_SPACE * (longest - len(fraction))
-        for text, fraction in zip(texts, fractions, strict=True)
+        text + POINT_SPACE * (number[1] is None) + FIGURE_SPACE * (longest - len(number[1] or ""))
+        if number and longest
+        else text
+        for text, number in zip(texts, found, strict=True)
     ]
 
 

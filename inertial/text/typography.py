@@ -16,7 +16,7 @@ FULL_WIDTH = {",": "，", ";": "；", ":": "："}
 RULES = (
     (re.compile(rf" *\(([^()]*[{HAN}][^()]*)\) *"), r"（\1）"),
     (re.compile(rf"(?<=[{HAN}”）]) *\(([^()]*)\)"), r"（\1）"),
-    (re.compile(rf"(?<=[{HAN}”）])\.(?=$|[^\d\w])"), "。"),
+    (re.compile(rf"(?<=[{HAN}”）])\.(?=$|[^\d\w]|[{HAN}])"), "。"),
     (re.compile(rf"([%σ°\dA-Za-z)])\.(?= *[{HAN}])"), r"\1。"),
     (re.compile(r"(?<!\.)\.$|。\.|。。"), "。"),
     (re.compile(rf"(?<=[{HAN}{MARKS}]) +(?=[{HAN}{MARKS}])"), ""),

@@ -98,6 +98,8 @@ _BY_UNIT = {
     "1/(rad/s)²": Quantity(Unit("ppm/(°/s)²", 1e-6 / DEGREE**2), Unit("1/(rad/s)²", 1.0)),
     "1/(m/s²)": Quantity(Unit("ppm/g", 1e-6 / STANDARD_GRAVITY), Unit("10⁻⁶ 1/(m/s²)", 1e-6)),
     "1/K": Quantity(Unit("ppm/K", 1e-6), Unit("10⁻⁶ 1/K", 1e-6)),
+    "1/K²": Quantity(Unit("ppm/K²", 1e-6), Unit("10⁻⁶ 1/K²", 1e-6)),
+    "1/K³": Quantity(Unit("ppm/K³", 1e-6), Unit("10⁻⁶ 1/K³", 1e-6)),
     "rad/s/K": Quantity(Unit("°/h/K", DEGREE_PER_HOUR), Unit("10⁻⁶ rad/s/K", 1e-6)),
     "m/s²/K": Quantity(Unit("µg/K", 1e-6 * STANDARD_GRAVITY), Unit("10⁻⁶ m/s²/K", 1e-6)),
     "rad/s/K²": Quantity(Unit("°/h/K²", DEGREE_PER_HOUR), Unit("10⁻⁹ rad/s/K²", 1e-9)),

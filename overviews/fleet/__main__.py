@@ -16,7 +16,8 @@ from inertial.tables.fleet import FLEET
 from inertial.tables.parquet import Writer
 from inertial.tables.whole_files import room_for, write_whole
 from inertial.text.numbers import visible
-from overviews.fleet.members import READ, members_of
+from overviews.fleet.declared import READ
+from overviews.fleet.members import members_of
 from overviews.fleet.page import fleet_page
 from overviews.fleet.results import results_of
 

@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial import tables
 from inertial.campaign.references import NAMELESS
 from inertial.estimation.triad import linear_names
 from inertial.estimation.type_population import Campaigns
@@ -19,19 +18,11 @@ from inertial.model_selection.fleet_evidence import FleetEvidence
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.parameters import SCALE
+from overviews.fleet.declared import READ
 
 Array = NDArray[np.float64]
 Place = tuple[str, str]  # an effect and its parameter; or a sensor and its parameter
 
-READ = {
-    "campaign": ("plan/campaign.parquet", tables.CAMPAIGN),
-    "inputs": ("plan/inputs.parquet", tables.INPUTS),
-    "known": ("plan/known.parquet", tables.KNOWN),
-    "score": ("criticism/score_vector.parquet", tables.SCORE_VECTOR),
-    "information": ("criticism/information_matrix.parquet", tables.INFORMATION_MATRIX),
-    "result": ("diagnosis/result.parquet", tables.PARAMETERS),
-    "covariance": ("diagnosis/covariance.parquet", tables.COVARIANCE),
-}
 UNKNOWN = "unknown"  # serial number
 PARAMETERS: tuple[Place, ...] = tuple(
     (sensor, name) for sensor in ("accel", "gyro") for name in linear_names()

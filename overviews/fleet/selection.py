@@ -13,7 +13,7 @@ from inertial.tables.errors import Refusal
 from inertial.tables.whole_files import write_whole
 from inertial.text.messages import _
 from inertial.text.numbers import shortened
-from overviews.fleet.members import READ
+from overviews.fleet.declared import READ
 
 FLEETS = Path("data/fleets")
 KEYS = ("serial", "instrument", "table")

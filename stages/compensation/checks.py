@@ -310,6 +310,7 @@ def angle_check(
         return
     own = np.hypot(data.noise.of(m.name, "rest", GYRO) * np.sqrt(time), scatter * time)
     noise = noise_along(m.axis, triad, own)
+    timed = m.angle * rotation.clock_sigma
     yield Check(
         m.name,
         "angle",
@@ -317,7 +318,7 @@ def angle_check(
         m.angle_sigma,
         before - earth * time,
         after,
-        float(np.linalg.norm([noise, m.angle_sigma, sigma * time])),
+        float(np.linalg.norm([noise, m.angle_sigma, timed, sigma * time])),
     )
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from inertial.campaign.equations import Campaign
+from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.model_selection.cause import (
@@ -155,7 +155,10 @@ class BlockResults:
             effect = KNOWN[limit.effect]
             parameter = effect.parameters[limit.parameter]
             visible = limit.reason == VISIBLE
-            why = sentences.explanation(effect, limit.reason, self.campaign.blind(effect))
+            blind = self.campaign.blind(effect)
+            if limit.reason == NOT_EXCITED and not self.campaign.gyro_motions:
+                blind = blind or NO_GYROS
+            why = sentences.explanation(effect, limit.reason, blind)
             remark = self._same_rate(effect, parameter.name)
             sentence = sentences.limit_sentence(effect, limit, why)
             yield (
@@ -389,7 +392,7 @@ def walk_at_rest_rows(
     """
     cause, unit = f"{sensor}_random_walk", WALK_UNITS[sensor]
     identifier = finding_id(cause, mount)
-    size = float(np.sqrt(np.mean(sizes**2)))
+    size = float(np.max(sizes))  # of the worst axis
     yield (
         "findings",
         {

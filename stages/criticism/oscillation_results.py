@@ -197,7 +197,7 @@ class OscillationResults:
         for parameter in CATALOGUE[name].parameters:
             if parameter.name not in SIZES[name]:
                 continue
-            why = None if limit else not_named(self.result, name)
+            why = None if limit else self._why_no_limit(name)
             remark = _remark(self.result, name) if limit else None
             yield (
                 "detection_limits",
@@ -218,6 +218,10 @@ class OscillationResults:
                     + (f" {remark}" if remark else ""),
                 },
             )
+
+    def _why_no_limit(self, name: str) -> str:
+        """Why no size of it is detected, without its name where no turn shows any."""
+        return unobservable(self.result, name) or not_named(self.result, name)
 
     def _lines(self) -> Iterator[TableRow]:
         """The strongest line of each axis in each turn; then other lines of oscillations."""
@@ -345,18 +349,21 @@ def orders_of(result: SearchResult) -> Array:
     return np.asarray(tried[tried <= result.orders.order[-1]])
 
 
+def unobservable(result: SearchResult, name: str) -> str:
+    """Why no turn shows any size of an effect; empty where one does."""
+    if result.truncated or (result.strongest if name == IN_TIME else result.orders is not None):
+        return ""
+    return sentences.NO_ANGLE if name != IN_TIME and result.turns else sentences.NO_TURN
+
+
 def not_named(result: SearchResult, name: str) -> str:
     """Why an effect is not named, in a sentence."""
     if result.truncated:
         return sentences.not_searched(name, len(result.oscillations))
+    if reason := unobservable(result, name):
+        return sentences.not_observable(name, reason)
     if name == IN_TIME:
-        if not result.strongest:
-            return sentences.not_observable(name, sentences.NO_TURN)
         return sentences.not_significant(name, after_others=bool(result.oscillations))
-    if result.orders is None:
-        return sentences.not_observable(
-            name, sentences.NO_ANGLE if result.turns else sentences.NO_TURN
-        )
     detectable = _limit(result, name)
     if not detectable:
         return f"{sentences.not_significant(name)} {sentences.SINGLE_TURN}"

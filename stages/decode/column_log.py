@@ -18,6 +18,12 @@ from stages.decode.table_angle import ANGLE_UNITS, Continuous
 from stages.decode.unsigned_counts import refuse_unsigned
 
 
+def _count_size(triad: Mapping[str, Any]) -> Reals:
+    """What 1 in a column of a sensor is, SI, one number or (3,)."""
+    size = CHANNEL_UNITS[triad["unit"]] / np.asarray(triad.get("counts_per_unit", 1.0))
+    return np.asarray(size, np.float64)
+
+
 class ColumnLog:
     """A log of columns, text or not: its own time or none, and values in units or counts.
 
@@ -85,18 +91,31 @@ class ColumnLog:
             if rows.temperature is not None:
                 above = ICE_POINT if self._layout["temperature"]["unit"] == "degC" else 0.0
                 samples["temperature"] = rows.temperature + above
-            yield Decoded(samples, reading.refused, reading.account)
+            sigmas = {
+                **self._sigmas("accel", "accelerometer", rows.accelerometer_sigma),
+                **self._sigmas("gyro", "gyro", rows.gyro_sigma),
+            }
+            yield Decoded(samples, reading.refused, reading.account, mean_sigmas=sigmas)
 
     def _triad(self, sensor: str, key: str, values: Reals) -> dict[str, Reals]:
         triad = self._layout.get(key)
         if triad is None:
             return {}
-        size = CHANNEL_UNITS[triad["unit"]] / np.asarray(triad.get("counts_per_unit", 1.0))
+        size = _count_size(triad)
         if bits := triad.get("signed_bits"):
             values = signed(values, bits)
         in_units = (values - np.asarray(triad.get("zero_counts", 0.0))) * size
-        axes = self._layout.get("axes", {}).get(sensor, AXES)
-        return dict(on_axis(sensor, axis, in_units[:, i]) for i, axis in enumerate(axes))
+        return dict(on_axis(sensor, axis, in_units[:, i]) for i, axis in self._axes(sensor))
+
+    def _sigmas(self, sensor: str, key: str, values: Reals | None) -> dict[str, Reals]:
+        if values is None:
+            return {}
+        size = np.broadcast_to(_count_size(self._layout[key]), 3)
+        return {f"{sensor}_{axis[-1]}": values[:, i] * size[i] for i, axis in self._axes(sensor)}
+
+    def _axes(self, sensor: str) -> Iterator[tuple[int, str]]:
+        """The fields of a sensor by number, with body axis and sign of each."""
+        yield from enumerate(self._layout.get("axes", {}).get(sensor, AXES))
 
     def _refuse_unsigned(self, rows: column_reader.Rows) -> None:
         for sensor, values in (("accelerometer", rows.accelerometer), ("gyro", rows.gyro)):

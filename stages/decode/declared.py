@@ -10,6 +10,7 @@ DECLARED = Declared(
     writes={
         "samples": tables.SAMPLES,
         "refused": tables.REFUSED,
+        "mean_sigmas": tables.MEAN_SIGMAS,
         "accounts": tables.ACCOUNTS,
         "clocks": tables.CLOCKS,
         "imu_types": tables.IMU_TYPES,

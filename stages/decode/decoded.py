@@ -3,7 +3,7 @@
 from collections import deque
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
@@ -19,7 +19,7 @@ from inertial.formats.arrow_arrays import (
     batch_of_rows,
     repeated_text,
 )
-from inertial.tables import ACCOUNTS, REFUSED, SAMPLES
+from inertial.tables import ACCOUNTS, MEAN_SIGMAS, REFUSED, SAMPLES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
@@ -86,6 +86,8 @@ class Decoded:
     refused: list[RefusedLine]
     account: Account
     imu_types: frozenset[int] = frozenset()  # in the messages, by NovAtel's list
+    # Of means: the standard deviation of each by channel, (n,), NaN where none is stated; SI.
+    mean_sigmas: Mapping[str, Reals] = field(default_factory=dict)
 
 
 def first_of(times: Iterable[NDArray[np.int64] | Reals]) -> NDArray[Any]:
@@ -137,6 +139,19 @@ def refused_rows(log: str, refused: list[RefusedLine]) -> Pieces:
     if refused:
         lines = [{"log": log, **asdict(line)} for line in refused]
         yield "refused", batch_of_rows(lines, REFUSED.schema)
+
+
+def mean_sigma_rows(log: str, decoded: Decoded) -> Pieces:
+    """The standard deviations that the log states of its means, if any."""
+    rows = [
+        {"log": log, "record": record, "sensor": sensor, "axis": axis, "sigma": value}
+        for channel, sigma in decoded.mean_sigmas.items()
+        for sensor, axis in [channel.split("_")]
+        for record, value in zip(decoded.samples["record"].tolist(), sigma.tolist(), strict=True)
+        if np.isfinite(value)
+    ]
+    if rows:
+        yield "mean_sigmas", batch_of_rows(rows, MEAN_SIGMAS.schema)
 
 
 def sample_rows(log: str, samples: Mapping[str, Any]) -> pa.RecordBatch:

@@ -21,6 +21,7 @@ from stages.decode.decoded import (
     Decoded,
     Pieces,
     account_of,
+    mean_sigma_rows,
     path_of,
     prefetched,
     refuse_grown,
@@ -36,7 +37,7 @@ AnyLog = ReceiverLog | ColumnLog | JoinedLog
 
 
 def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
-    """The tables samples, refused, accounts, clocks and imu_types in pieces, log after log.
+    """The tables that the stage declares in pieces, log after log.
 
     Time is GPS time since the first sample of the campaign for the logs of a receiver; for a log of
     columns it is the time since its own first sample, by a regular clock where the stamps are those
@@ -90,6 +91,7 @@ def _pieces_of(
         imu_types |= decoded.imu_types
         first_refused = first_refused or next(iter(decoded.refused), None)
         yield from refused_rows(log.name, decoded.refused)
+        yield from mean_sigma_rows(log.name, decoded)
         for start in range(0, len(samples), BATCH_ROWS):
             yield "samples", samples.slice(start, BATCH_ROWS)
         if len(samples):
@@ -109,6 +111,7 @@ def _pieces_of(
         "to_record": to_record,
         "interval": log.interval,
         "integration_step": log.step,
+        "interval_sigma": log.arrival and log.arrival.clock.interval_sigma,
         "stamp_scatter": log.arrival and log.arrival.clock.scatter,
         "shortest_gap": log.arrival and log.arrival.clock.shortest_gap,
     }

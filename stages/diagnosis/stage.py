@@ -16,7 +16,7 @@ from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
 from stages.diagnosis.sensor_results import Estimated, SensorResult, estimated_of
 from stages.diagnosis.temperature_curves import curve_rows
-from stages.diagnosis.verdict import Verdict, verdict
+from stages.diagnosis.verdict import NOT_USABLE, Verdict, verdict
 
 PLACES = ("frequency", "n", "phase")  # parameters of lines: where they are, not how large
 
@@ -62,13 +62,18 @@ def diagnosis(
     ]
     sizes = _sizes(rows_of(effects))
     written = _result_rows(results, verdicts)
+    unusable = {
+        (result.sensor, result.mount)
+        for result, given in zip(results, verdicts, strict=True)
+        if given.verdict == NOT_USABLE
+    }
     return {
         "causes": [cause.row(sizes) for cause in causes],
         "members": [row for cause in causes for row in _members(cause, findings)],
         "consequences": [row for cause in causes for row in _consequences(cause)],
         "result": written,
         **_written(results, verdicts, rows_of(swept)),
-        "conformity": [*conformity_rows(written, rows_of(tolerances))],
+        "conformity": [*conformity_rows(written, rows_of(tolerances), unusable)],
         "verdict": [
             {
                 "mount": result.mount,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from inertial.campaign.hypotheses import MODEL
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed
 from stages.diagnosis.causes import (
@@ -108,7 +109,8 @@ def verdict(
 
 
 def _names(causes: Sequence[Cause], remark: Callable[[Cause], str] | None = None) -> str:
-    """The causes in words, each with a remark; of many the first."""
+    """The causes in words, each with a remark; of many the first, what is harmless last."""
+    causes = sorted(causes, key=_harmless)
     names = [cause.name + (f" ({remark(cause)})" if remark else "") for cause in causes]
     names = list(dict.fromkeys(names))
     rest = len(names) - MOST_NAMES
@@ -116,13 +118,19 @@ def _names(causes: Sequence[Cause], remark: Callable[[Cause], str] | None = None
     return "; ".join(names[:MOST_NAMES]) + (more if rest > 0 else "")
 
 
+def _harmless(cause: Cause) -> bool:
+    """Whether nothing need be done about it."""
+    return cause.cure == NONE and cause.moves is not None and cause.moves < MAX_HARMLESS_MOVE
+
+
 def _limit(cause: Cause) -> str:
     """What became of a cause, in a few words."""
     if cause.cure != NONE:
         return LIMITS[cause.cure]
-    if cause.moves is None:
-        return _("included in the sigmas")
-    if cause.moves < MAX_HARMLESS_MOVE:
+    if cause.moves is None:  # of an effect, its scatter is; a fault of the recording is in nothing
+        model = cause.main.stage == MODEL
+        return _("included in the sigmas") if model else _("not removed, its influence not known")
+    if _harmless(cause):
         return _("harmless")
     return _("shifts a parameter by up to {moves:.1f} σ", moves=cause.moves)
 

@@ -10,7 +10,7 @@ from scipy.linalg import solve_triangular
 
 from inertial.campaign.equations import Campaign
 from inertial.campaign.rate_segments import Recorded
-from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
+from inertial.estimation.gyroscope_equations import CLOCK, horizontal_axes, horizontal_names
 from inertial.estimation.gyroscope_observations import Position, RateSegment
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, measured_covariance
@@ -141,6 +141,7 @@ class Channels:
             along,
             float(np.hypot(turn.angle_sigma, turn.gap_sigma)),
         )
+        errors[CLOCK, turn.clock] = (along * turn.angle, turn.clock_sigma)
         for i, axis in enumerate(level_axes(turn.about)):
             tilted = self._gyro.matrix @ cross(axis, turn.about) * (turn.angle / total)
             errors[f"tilt {i}", turn.position.name] = (tilted, self.campaign.position_sigma)

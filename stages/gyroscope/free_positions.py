@@ -40,7 +40,7 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
         if left_out or positions:
             estimates.add_nothing(FREE, omissions(left_out) or _("no gyro is recorded"))
         return []
-    moving, broken = passages_of(positions, data.blocks, data.noise)
+    moving, broken = passages_of(positions, data.blocks, data.noise, data.clocks)
     between = fitted_to(data, positions).scatter
     prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
     passages = [recorded.passage for recorded in moving]

@@ -10,6 +10,7 @@ names.
 import glob
 import hashlib
 import json
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -28,6 +29,7 @@ REFERENCES = "references"  # column of what of each sigma is the error of a refe
 SHARED = ("mounting", "switch_on")  # labels that calibrations may have in common
 COMPARABLE_BY = ("instrument", "serial", "compensated")  # equal where calibrations are compared
 FILE_HASH_DIGITS = 12
+NAMED = re.compile(rf"(.+)-[0-9a-f]{{{FILE_HASH_DIGITS}}}\.parquet")  # date and campaign before
 MAX_NAME_LENGTH = 100  # characters; a file name holds campaign, date and hash, 255 at most
 NAME_HASH_DIGITS = 16  # of the hash that replaces the end of a longer name
 
@@ -64,14 +66,14 @@ class Archive:
         write_once(CALIBRATION, path, [row])
         return self._entry(path)
 
-    def current(self, campaign: str) -> list[Entry]:
-        """The current entries of a campaign, also where its IMU or its date was corrected."""
-        digits = "[0-9a-f]" * FILE_HASH_DIGITS
-        pattern = f"*/*/*-{glob.escape(file_name(campaign))}-{digits}.parquet"
-        entries = self._entries(self._base.glob(pattern))
-        of_campaign = [entry for entry in entries if entry.row["campaign"] == campaign]
-        superseded = {file for entry in of_campaign for file in entry.row["supersedes"]}
-        return [entry for entry in of_campaign if entry.file not in superseded]
+    def current(self, *campaigns: str) -> list[Entry]:
+        """The current entries of campaigns, also where their IMU or their date was corrected."""
+        names = {file_name(campaign) for campaign in campaigns}
+        # The archive may be large: its names are looked through once.
+        paths = (path for path in self._base.glob("*/*/*.parquet") if names & _campaigns_of(path))
+        entries = [entry for entry in self._entries(paths) if entry.row["campaign"] in campaigns]
+        superseded = {file for entry in entries for file in entry.row["supersedes"]}
+        return [entry for entry in entries if entry.file not in superseded]
 
     def earlier(self, calibration: Row) -> list[Entry]:
         """Current entries of other campaigns of the same IMU that are not dated later.
@@ -87,8 +89,7 @@ class Archive:
         campaigns = {entry.row["campaign"] for entry in neighbours} - {calibration["campaign"]}
         comparable = [
             entry
-            for campaign in campaigns
-            for entry in self.current(campaign)
+            for entry in self.current(*campaigns)
             if all(entry.row[key] == calibration[key] for key in COMPARABLE_BY)
             and _is_not_later(entry.row["date"], calibration["date"])
         ]
@@ -100,15 +101,12 @@ class Archive:
         `folder`: its `file_name`; instruments of different type may have the same number.
         """
         entries = self._entries(self._base.glob(f"*/{glob.escape(folder)}/*.parquet"))
-        current = {
-            entry.file: entry
-            for campaign in {entry.row["campaign"] for entry in entries}
-            for entry in self.current(campaign)
+        current = [
+            entry
+            for entry in self.current(*{entry.row["campaign"] for entry in entries})
             if file_name(entry.row["serial"]) == folder
-        }
-        return sorted(
-            current.values(), key=lambda e: (e.row["date"][:1].isdigit(), e.row["date"], e.file)
-        )
+        ]
+        return sorted(current, key=lambda e: (e.row["date"][:1].isdigit(), e.row["date"], e.file))
 
     def _folder(self, calibration: Row) -> Path:
         return self._base / file_name(calibration["instrument"]) / file_name(calibration["serial"])
@@ -287,6 +285,13 @@ def _path_name(calibration: Row, content: str, superseded: list[str]) -> str:
     digest = hashlib.sha256(json.dumps([content, *sorted(superseded)]).encode()).hexdigest()
     date, campaign = file_name(calibration["date"]), file_name(calibration["campaign"])
     return f"{date}-{campaign}-{digest[:FILE_HASH_DIGITS]}.parquet"
+
+
+def _campaigns_of(path: Path) -> set[str]:
+    """The names of campaigns of which a file may be: those of its date have hyphens, too."""
+    words = NAMED.fullmatch(path.name)
+    parts = words[1].split("-") if words else []
+    return {"-".join(parts[first:]) for first in range(1, len(parts))}
 
 
 def _is_not_later(date: str, than: str) -> bool:

@@ -32,11 +32,12 @@ MEAN_SECONDS = 10.0  # s, of the means of which the bias stability is the scatte
 MIN_MEANS = 6
 LONGEST_AHEAD = 10.0  # years, within which a due date is sought
 DATES_AHEAD = 40
+LATEST = 60  # calibrations of which components, jumps and the next one are found: n³ of work
 SEED = 20261123  # of histories without a jump: the same data give the same numbers
 UNKNOWN = "unknown"
 ONE_GROUP = _("all calibrations share one {name}, so nothing is known of it")
 NAMES = {"day": _("day"), "mounting": _("mounting"), "switch_on": _("switch-on")}
-TOO_FEW = _("there are {count} dated calibrations, and a prediction needs {least}")
+TOO_FEW = _("a prediction needs {least} dated calibrations")
 NO_TOLERANCE = _("no tolerance is stated, by may_change of the campaign or in config.yaml")
 NOT_DUE = _("the interval stays within the tolerance for ten years")
 ALREADY_DUE = _("the tolerance is smaller than what is known to vary by the last calibration")
@@ -95,7 +96,8 @@ def _label(stated: object, otherwise: str) -> str:
 
 def repeatability_rows(series: Series, blocks: pd.DataFrame) -> Iterator[Row]:
     """The rows of the table: components between calibrations, and stability within this one."""
-    for (sensor, quantity), values in series.items():
+    for (sensor, quantity), every in series.items():
+        values = every[-LATEST:]
         key = _key(sensor, quantity, len(values))
         if len(values) < 2:
             continue
@@ -265,7 +267,7 @@ def forecast_rows(
         distinct = sorted({_day(v) for v in values})
         if len(values) < MIN_VALUES or len(distinct) < 2:
             few = len(values) < MIN_VALUES
-            reason = TOO_FEW.format(count=len(values), least=MIN_VALUES) if few else ONE_DAY
+            reason = TOO_FEW.format(least=MIN_VALUES) if few else ONE_DAY
             yield _NOTHING | key | {"reason": reason}
             continue
         found = jumps.get((sensor, quantity))
@@ -314,7 +316,8 @@ def _due(tolerance: float | None, last: Observed, day: date, prediction: Predict
 
 
 def _dated(values: Sequence[Observed]) -> list[Observed]:
-    return [v for v in values if v.date != UNKNOWN]
+    """The latest values with a date."""
+    return [v for v in values if v.date != UNKNOWN][-LATEST:]
 
 
 def _day(value: Observed) -> date:

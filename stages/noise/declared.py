@@ -6,6 +6,8 @@ from inertial.tables.declared import Declared, From
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
+        "mean_sigmas": From("decode", tables.MEAN_SIGMAS),
+        "blocks": From("segment", tables.BLOCKS),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "segments": From("segment", tables.SEGMENTS),
         "clocks": From("decode", tables.CLOCKS),

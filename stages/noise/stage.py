@@ -1,6 +1,6 @@
 """White noise of every channel in every manoeuvre, and all terms of the noise at rest."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, pairwise, product
 from typing import Any
 
@@ -23,11 +23,14 @@ Array = NDArray[np.float64]
 MAX_SAMPLES = 32768  # of one periodogram: bounds the memory of a long log
 PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
 MIN_SAMPLES = 16  # fewer give no level
+_Level = tuple[str, str, str]  # manoeuvre, phase, channel
 LEAST_SIGMA = {"accel": 1e-6, "gyro": 1e-8}  # m/s² and rad/s: no mean is known better
 
 
 def noise(
     samples: Stream,
+    mean_sigmas: pd.DataFrame,
+    blocks: pd.DataFrame,
     segments: pd.DataFrame,
     clocks: pd.DataFrame,
     gaps: pd.DataFrame,
@@ -66,7 +69,7 @@ def noise(
         for row in collected.rows(manoeuvre, phase)
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
-    of_means = list(_levels_of_means(quiet, ranges))
+    of_means = list(_levels_of_means(quiet, ranges, _stated_levels(blocks, mean_sigmas)))
     noises = list(static.noises())
     levels = effective_levels(measured, dict(chain.from_iterable(n.drifts() for n in noises)))
     if of_means:
@@ -81,25 +84,54 @@ def noise(
     }
 
 
-def _levels_of_means(quiet: Sequence[Row], ranges: pd.DataFrame) -> Iterator[Row]:
+def _levels_of_means(
+    quiet: Sequence[Row], ranges: pd.DataFrame, in_log: Mapping[_Level, float]
+) -> Iterator[Row]:
     """The levels of means without time, of which a sample counts as 1 s.
 
-    That of the stated standard deviation of a sample. Where the residuals of the fit must show it,
-    next to nothing: the fits estimate what is beyond that as a scatter between manoeuvres.
+    That of the standard deviation of each mean by its log, or of the stated one of a sample. Where
+    the residuals of the fit must show it, next to nothing: the fits estimate what is beyond that as
+    a scatter between manoeuvres.
     """
     stated = rows_of(ranges[ranges["sigma"].notna()])
     for row, of_log in product(quiet, stated):
         if row["log"] == of_log["log"]:
-            level = of_log["sigma"] or LEAST_SIGMA[of_log["sensor"]]
+            place = (row["manoeuvre"], PHASES[row["phase"]])
+            channel = f"{of_log['sensor']}_{of_log['axis']}"
+            known = in_log.get((*place, channel), of_log["sigma"])
+            level = known or LEAST_SIGMA[of_log["sensor"]]
             yield {
-                "manoeuvre": row["manoeuvre"],
-                "phase": PHASES[row["phase"]],
-                "channel": f"{of_log['sensor']}_{of_log['axis']}",
+                **dict(zip(("manoeuvre", "phase"), place, strict=True)),
+                "channel": channel,
                 **dict.fromkeys(("white_noise", "measured", "per_sample"), level),
                 "sigma": 0.0,
-                "source": STATED if of_log["sigma"] else RESIDUALS,
+                "source": STATED if known else RESIDUALS,
                 "degrees": np.inf,
             }
+
+
+def _stated_levels(blocks: pd.DataFrame, mean_sigmas: pd.DataFrame) -> dict[_Level, float]:
+    """The level of each manoeuvre, phase and channel whose log states the sigma of each mean.
+
+    A mean that counts as c samples, c s, has the weight c, so the mean of several has the sigma
+    √Σ(c σ)² / Σc, and the level is that times √Σc.
+    """
+    means = (
+        blocks[blocks["log"].isin(mean_sigmas["log"])]
+        .melt(
+            ["manoeuvre", "phase", "log", "from_record", "count"], list(tables.CHANNELS), "channel"
+        )
+        .dropna(subset="value")
+    )
+    sigmas = mean_sigmas.assign(channel=mean_sigmas["sensor"] + "_" + mean_sigmas["axis"])
+    both = means.merge(
+        sigmas, left_on=["log", "from_record", "channel"], right_on=["log", "record", "channel"]
+    )
+    both = both[both["phase"].isin(list(PHASES))]
+    both = both.assign(phase=both["phase"].map(PHASES), square=(both["count"] * both["sigma"]) ** 2)
+    sums = both.groupby(["manoeuvre", "phase", "channel"])[["count", "square"]].sum()
+    levels = (sums["square"] / sums["count"]) ** 0.5
+    return dict(zip(levels.index.to_list(), levels.to_list(), strict=True))
 
 
 class _Spectra:

@@ -73,7 +73,7 @@ def with_rate(
 Row = dict[str, Any]
 
 MIN_MEANS = 15  # of a sensor: 12 parameters, and three degrees of freedom for their scatter
-BY_RESIDUALS = 0.0  # the sigma where the residuals show it
+IN_LOG = BY_RESIDUALS = 0.0  # the sigma where the log or the residuals show it
 
 
 def each(stated: float | list[float]) -> list[float]:
@@ -98,10 +98,15 @@ class MeanSigmas:
         self._rate = rate
 
     def of(self, layout: Mapping[str, Any], sensor: str, key: str, place: int) -> float | None:
-        """Of one sample of a mean, or of the mean where the number of its samples is not known."""
+        """Of one sample of a mean, or of the mean where the number of its samples is not known.
+
+        0 where it is not one for all means.
+        """
         triad = layout.get(key)
         if triad is None or not are_means(layout):
             return None
+        if "sigma_columns" in triad:
+            return IN_LOG
         if "sigma" in triad:
             return float(each(triad["sigma"])[place] * CHANNEL_UNITS[triad["unit"]])
         if layout["mean_of"] is not None and self._rate and self._sheet[sensor]:
@@ -127,15 +132,35 @@ def refuse_without_time(
     file: YamlFile, key: Key, item: Mapping[str, Any], layout: Mapping[str, Any]
 ) -> None:
     """Refuse what rows without time cannot show, and a sigma of rows that are no means."""
+    for sensor in ("accelerometer", "gyro"):
+        triad = layout.get(sensor, {})
+        stated = [name for name in ("sigma", "sigma_columns") if name in triad]
+        if stated and not are_means(layout):
+            raise file.refuse_text(
+                key,
+                _("{sigma} of {sensor}, whose rows are no means", sigma=stated[0], sensor=sensor),
+                _("{sigma} with mean_of; the noise of samples is measured", sigma=stated[0]),
+                _(
+                    "remove {sigma}; or state mean_of, null where the number is not known",
+                    sigma=stated[0],
+                ),
+            )
+        if len(stated) > 1:
+            raise file.refuse_text(
+                key,
+                _("both sigma and sigma_columns of {sensor}", sensor=sensor),
+                _("one for all means, or a column with that of each"),
+                _("remove one of the two"),
+            )
+        pairs = zip(triad.get("sigma_columns", ()), triad.get("columns", ()), strict=False)
+        if any(sigma is None and mean is not None for sigma, mean in pairs):
+            raise file.refuse_text(
+                key,
+                _("null in sigma_columns of {sensor}, whose means are recorded", sensor=sensor),
+                _("a column with the standard deviation of each mean"),
+                _("name the column, or remove sigma_columns"),
+            )
     if not are_means(layout):
-        for sensor in ("accelerometer", "gyro"):
-            if "sigma" in layout.get(sensor, {}):
-                raise file.refuse_text(
-                    key,
-                    _("sigma of {sensor}, whose rows are no means", sensor=sensor),
-                    _("sigma with mean_of; the noise of samples is measured"),
-                    _("remove sigma; or state mean_of, null where the number is not known"),
-                )
         if item["do"] == "positions" and "seconds" not in item:
             raise file.refuse_text(
                 key, _("no key 'seconds'"), _("seconds: the shortest rest, s"), _("add seconds")

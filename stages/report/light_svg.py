@@ -51,6 +51,8 @@ def _without_idle_groups(element: str) -> str:
     open_groups: list[bool] = []
 
     def tag(match: re.Match[str]) -> str:
+        if match[0].endswith("/>"):  # empty: of a line without points
+            return ""
         if match[0].startswith("</"):
             return match[0] if open_groups.pop() else ""
         open_groups.append(match[0] != "<g>")

@@ -11,7 +11,7 @@ from itertools import groupby
 from typing import Literal
 
 from inertial.text.messages import LOCALES, _, language
-from inertial.text.numbers import whole
+from inertial.text.numbers import aligned, whole
 from stages.report.tables import Tables
 
 # What a column holds, hence how it is set: text; name (in one line); number (digits under
@@ -118,6 +118,19 @@ class Table(Part):
     empty: str = _("None.")
     note: str = ""
     sortable: bool = False
+
+    @property
+    def paddings(self) -> tuple[tuple[str, ...], ...]:
+        """What follows each cell, so that points of a column stand below each other."""
+        own = [row.cells for row in self.rows if not row.heads]
+        columns = [
+            [padded[len(cell) :] for cell, padded in zip(cells, aligned(cells), strict=True)]
+            if column.kind in ("number", "sigma")
+            else [""] * len(cells)
+            for column, cells in zip(self.columns, zip(*own, strict=True), strict=False)
+        ]
+        rows = iter(zip(*columns, strict=True))
+        return tuple(("",) if row.heads else next(rows) for row in self.rows)
 
     @property
     def groups(self) -> tuple[tuple[str, int], ...]:

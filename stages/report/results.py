@@ -131,8 +131,8 @@ class Estimate:
         scatter = f"{numbers.significant(unit.of(fit['scatter']), 2)} {unit.name}"
         return (
             _(
-                "the model does not describe the data within the noise ({p_is}); manoeuvres "
-                "scatter by {scatter} beyond it, which the σ include",
+                "with a scatter of the manoeuvres by {scatter}, which the σ include; noise alone "
+                "does not describe the data ({p_is})",
                 p_is=p_is,
                 scatter=scatter,
             )

@@ -11,7 +11,9 @@ from stages.report.tables import Record
 COUNTS = frozenset({"samples", "records", "readings", "days", "manoeuvres", "positions"})
 RATIO = units.Unit("(ratio)", 1.0)
 # Faults whose size is a factor; other sizes without a dimension are small, in ppm.
-FACTORS = frozenset({"wrong_scale_factor", "wrong_scale_of_turns", "rate_off", "wrong_rate"})
+FACTORS = frozenset(
+    {"wrong_scale_factor", "wrong_scale_of_turns", "rate_off", "wrong_rate", "gyro_count_size"}
+)
 # From these sizes on the larger unit is read more easily.
 LARGE = {
     "rad/s": (100 * units.DEGREES_PER_HOUR.size, units.DEGREES_PER_SECOND),
@@ -34,7 +36,7 @@ def size_in_words(row: Record) -> str | None:
     number = significant(value)
     if sigma is not None:
         number = " ± ".join(with_sigma(value, sigma, decimals_of(sigma)))
-    return number + (shown.name if shown.name == "°" else f" {shown.name}".rstrip())
+    return number + (shown.name if shown.name in ("°", "″") else f" {shown.name}".rstrip())
 
 
 def _unit(cause: str, unit: str, size: float) -> units.Unit:

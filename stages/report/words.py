@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from inertial.text.messages import ENGLISH, _, language
 from inertial.text.numbers import shortened
+from inertial.text.parameters import PARTS
 from inertial.text.typography import CHINESE
 
 SENSOR = {"gyro": _("gyro"), "accel": _("accelerometer")}
@@ -24,13 +26,15 @@ TERMS = {
     "at rest": _("at rest"),
     "amplitude": _("amplitude"),
     "blank": _("blank"),
-    "body": _("body"),
+    "body": _("case"),  # its axes
     "compensated": _("compensated"),
     "decoded": _("decoded"),
     "frequency": _("frequency"),
+    "east": _("east"),
     "gravity": _("gravity"),
     "latitude": _("latitude"),
     "header": _("header"),
+    "north": _("north"),
     "not selected": _("not selected"),
     "other message": _("other message"),
     "period": _("period"),
@@ -49,7 +53,21 @@ TERMS = {
     "turn": _("turn"),
     "unknown": _("unknown"),
 }
+PHASE = re.compile(r"\((rest-before|rest-after|spin-up|steady|spin-down)\)")
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+
+
+def phases_in_words(text: str) -> str:
+    """A text with names of manoeuvres, each phase in brackets behind them as a term."""
+    return PHASE.sub(lambda phase: f"({term(phase[1])})", text)
+
+
+def parameter(sensor: str, quantity: str) -> str:
+    """A parameter of a sensor in words: gyro, scale x."""
+    if quantity not in PARTS:
+        return f"{SENSOR[sensor]} {quantity}"
+    kind, axes = PARTS[quantity]
+    return _("{sensor}, {kind} {axes}", sensor=SENSOR[sensor], kind=KINDS[kind], axes=axes)
 
 
 def listed(names: Sequence[str], last: str = "and") -> str:

@@ -67,8 +67,7 @@ class Blocks(SumsOver):
 
     Parameters
     ----------
-    of_means : logs whose records are means of many samples; each of these is a block
-    in_samples : those of them of which a sample stands for 1 s, for its noise is known so
+    in_samples : logs of means of which a sample stands for 1 s, for its noise is known so
     rest_block, turn_block : s, length of a block
     """
 
@@ -78,7 +77,6 @@ class Blocks(SumsOver):
         gaps: pd.DataFrame,
         masks: Masks,
         clocks: Mapping[str, Clock],
-        of_means: set[str],
         in_samples: set[str],
         rest_block: float,
         turn_block: float,
@@ -97,8 +95,8 @@ class Blocks(SumsOver):
         for part in parts:
             seconds = rest_block if part.phase in STATIC_PHASES else turn_block
             length = max(1, round(seconds / clocks[part.log].step))
-            # A hand turns about ever other axes.
-            if part.phase == BETWEEN or part.log in of_means:
+            # A hand turns about ever other axes; records without a time are means.
+            if part.phase == BETWEEN or clocks[part.log].duration is None:
                 length = 1
             unseen = hidden.get(part.manoeuvre, np.array([], np.int64))
             edges.append(_edges(part, length, self._gaps_of(part.log), unseen))
@@ -197,21 +195,6 @@ def _edges(part: Part, length: int, gaps: Integers, unseen: Integers) -> tuple[I
     ends = np.append(starts[1:], part.after)
     seen = ~np.isin(starts, unseen)
     return starts[seen], ends[seen]
-
-
-class LogsOfMeans:
-    """The logs without time whose records are means of many samples."""
-
-    columns = ("mean_of",)
-
-    def __init__(self, clocks: Mapping[str, Clock]) -> None:
-        self._untimed = {log for log, clock in clocks.items() if clock.duration is None}
-        self.names: set[str] = set()
-
-    def add(self, batch: Batch) -> None:
-        """Take in the next batch."""
-        if batch.log in self._untimed and (np.nan_to_num(batch["mean_of"]) > 1).any():
-            self.names.add(batch.log)
 
 
 def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:

@@ -73,8 +73,7 @@ def segment(
     ends = records_of(clocks)
 
     bins = Bins(_windows(samples, plan, ends), clock, Masks(masks))
-    of_means = reduction.LogsOfMeans(clock)
-    read_once(samples, [bins, of_means])
+    read_once(samples, [bins])
     made = set_right(
         list(bins.binned()),
         plan,
@@ -101,7 +100,6 @@ def segment(
         gaps,
         masked,
         clock,
-        of_means.names | in_samples,
         in_samples,
         rest_block,
         turn_block,

@@ -56,6 +56,7 @@ def test_without_time_there_is_no_clock(tmp_path):
         "to_record": 2,
         "interval": None,
         "integration_step": None,
+        "interval_sigma": None,
         "stamp_scatter": None,
         "shortest_gap": None,
     }

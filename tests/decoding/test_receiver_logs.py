@@ -33,6 +33,7 @@ def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
         "to_record": [7],
         "interval": [pytest.approx(0.01, abs=1e-9)],
         "integration_step": [pytest.approx(0.01, abs=1e-9)],
+        "interval_sigma": [None],
         "stamp_scatter": [None],
         "shortest_gap": [None],
     }

@@ -1,15 +1,17 @@
 """A reading that is off at one phase of a period is found with phase and period, weak or not."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from on_a_table import carried, recorded, rest, tumble, turn
-from recorded_by_hand import COUNT, GRAVITY, INTERVAL, NOISE, assert_told, stamps
+from recorded_by_hand import COUNT, GRAVITY, INTERVAL, NOISE, assert_told, piece, stamps
+from recorded_by_hand import log as recorded_log
 
 from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.spike import Spikes
-from inertial.signal.phase_folding import Folded, Glitch, glitches
+from inertial.signal.phase_folding import Folded, glitches
 
 
 def folded(*stretches, interval=INTERVAL):
@@ -87,15 +89,39 @@ def test_its_readings_are_masked_and_no_spikes_any_more():
         assert_told(PeriodicGlitch(), event, "log")
 
 
-def test_its_words_state_what_it_does_to_a_mean():
-    glitch = Glitch("gyro", 3, 1.0, (), 0.25, INTERVAL, 1e-3, 60.0, 1e-9, 6000, 0.0)
-    one, log = recorded(rest(6000))
-    event = next(PeriodicGlitch().detect(one, replace(log, glitches=(glitch,))))
-    words = PeriodicGlitch().describe(event, "log")
-    # 1e-3 rad/s is 0.0573 °/s; one sample of a hundred: 1e-5 rad/s, of 3.49e-5/√6000: 22 sigma.
-    assert "At 0.250 s of every 1 s the gyro x read" in words.sentence
-    assert "0.0573 °/s" in words.sentence
-    assert "0.00057 °/s: 22 times the noise" in words.consequence
+@pytest.mark.parametrize("rate", [100.0, 102.4])
+def test_its_words_state_by_how_much_it_moves_a_mean(rate):
+    """Where the rate does not divide the second, its phase falls on one record or on two."""
+    n = round(120 * rate)
+    time, clean = np.arange(n) / rate, rest(n)
+    values = clean.copy()
+    values[np.diff(np.floor(time - 0.3), prepend=-1.0) > 0, 3] += 40 * NOISE[3]
+    one = piece(values, time)
+    log = recorded_log(one, increments=True, glitches=folded((time, values), interval=1 / rate))
+    events = [("log", event) for event in PeriodicGlitch().detect(one, log)]
+    told = PeriodicGlitch().describe_many(events)
+    moved, unit, sigmas = re.search(
+        r"move every mean by (\S+) (\S+): (\S+) times the noise", told.consequence
+    ).groups()
+    expected = float(np.degrees(values[:, 3].mean() - clean[:, 3].mean()))
+    assert unit == "°/s" and float(moved) == pytest.approx(expected, rel=0.06)
+    # 1.2 records in a hundred and 40 sigma each: of 12,000 readings the mean has 1/√12,000 sigma.
+    assert float(sigmas) == pytest.approx(40 / rate * np.sqrt(n), rel=0.06)
+
+
+def test_its_words_state_by_how_much_it_moves_a_scale_factor():
+    """Of 33 readings in each turn one is 0.15 % too large: their sum by 45 ppm."""
+    excerpts = of_a_third_of_a_second(6, 0.0015, 100.0)
+    (glitch,) = folded(*excerpts)
+    events = []
+    for number, (time, values) in enumerate(excerpts):
+        one = piece(values, time)
+        log = recorded_log(one, increments=True, glitches=(glitch,))
+        events += [(f"log {number}", event) for event in PeriodicGlitch().detect(one, log)]
+    told = PeriodicGlitch().describe_many(events)
+    assert "6 samples in" in told.sentence
+    ppm = float(re.search(r"of all axes (\S+) ppm too large", told.consequence)[1])
+    assert ppm == pytest.approx(0.0015 / 33 * 1e6, rel=0.25)  # 22 to 28 counts, as WHU's
 
 
 @pytest.mark.parametrize("frequency", [20.0, 10.0, 1.0, 37.0])

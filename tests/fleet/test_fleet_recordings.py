@@ -8,7 +8,8 @@ import pytest
 from recordings.known import RECORDINGS
 
 from inertial import tables
-from overviews.fleet.members import READ, members_of
+from overviews.fleet.declared import READ
+from overviews.fleet.members import members_of
 from overviews.fleet.results import results_of
 
 NAMES = [f"mikoff-{number}" for number in range(1, 6)]

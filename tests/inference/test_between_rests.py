@@ -105,6 +105,29 @@ def test_a_motion_that_is_left_out_starts_the_unknown_azimuth_anew():
     assert np.abs(pulls).max() < 4
 
 
+def test_by_hand_the_rate_of_a_clock_is_an_error_of_all_gyros_alike():
+    """σ² of each scale factor grows by σ_c²; a clock of 300 ppm that is known to 200 is found."""
+    imu = Imu(np.random.default_rng(6))
+    stops, passages = handled(imu, TWENTY_FOUR, 60)
+    certain = between_rests(stops, passages, GIVEN)
+    timed = 2e-4
+    uncertain = [replace(passage, clock="log", clock_sigma=timed) for passage in passages]
+    estimate = between_rests(stops, uncertain, GIVEN)
+    # The earth's rate at rest tells scales to 0.1 % without any time.
+    np.testing.assert_allclose(estimate.values[:9], certain.values[:9], atol=0.1 * timed)
+    scales = [0, 4, 8]
+    expected = np.hypot(certain.sigma[scales], timed * np.diag(imu.gyro))
+    np.testing.assert_allclose(estimate.sigma[scales], expected, rtol=0.03)
+    assert ("clock", "log") in estimate.names
+    late = [replace(p, seconds=p.seconds * (1 + 3e-4)) for p in uncertain[:12]] + uncertain[12:]
+    late = [replace(p, clock=f"log {i // 12}") for i, p in enumerate(late)]
+    late[12:] = [replace(p, clock_sigma=1e-9) for p in late[12:]]
+    found = between_rests(stops, late, GIVEN)
+    place = found.names.index(("clock", "log 0"))
+    assert found.values[place] == pytest.approx(3e-4, abs=4 * found.sigma[place])
+    assert found.sigma[place] < timed / 2
+
+
 def test_without_motions_only_the_biases_are_told():
     imu = Imu(np.random.default_rng(4), noise=MPU6050, bias=(0.02, 1e-2))
     stops, _ = handled(imu, TWENTY_FOUR, 60)

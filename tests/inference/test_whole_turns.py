@@ -1,5 +1,7 @@
 """The gyros: S0's turn formulas as printed, and what the joint estimate may and may not know."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -98,3 +100,33 @@ def test_a_gap_taken_for_a_whole_turn_would_be_a_sixth_of_the_scale():
     backward = -2 * np.pi + np.radians(119.8)
     wrong = bias_and_scale([turn(1, forward), turn(-1, backward)], EARTH)
     assert wrong.values[1] == pytest.approx(-0.166389, rel=1e-4)
+
+
+def test_the_rate_of_a_clock_is_one_error_of_all_turns_of_its_log():
+    """σ² of each scale factor grows by σ_c² in one log, and by σ_c²/2 where both turns have one."""
+    rng = np.random.default_rng(3)
+    rests, turns = campaign((1.0, -1.0), rng, np.eye(3), np.zeros(3))
+    timed = 2e-4
+
+    def fitted(clocks: list[str]):
+        own = [replace(t, clock=c, clock_sigma=timed) for t, c in zip(turns, clocks, strict=True)]
+        return joint(rests, own, [], EARTH, 1e-5)
+
+    certain = joint(rests, turns, [], EARTH, 1e-5)
+    common, apart = fitted(["log"] * 6), fitted([f"log {i}" for i in range(6)])
+    scales, biases, crosses = [0, 4, 8], [9, 10, 11], [1, 2, 3, 5, 6, 7]
+    for fit, share in ((common, 1.0), (apart, 0.5)):
+        expected = np.hypot(certain.sigma[scales], np.sqrt(share) * timed)
+        np.testing.assert_allclose(fit.sigma[scales], expected, rtol=0.02)
+        np.testing.assert_allclose(fit.sigma[crosses], certain.sigma[crosses], rtol=0.02)
+        np.testing.assert_allclose(fit.sigma[biases], certain.sigma[biases], rtol=0.05)
+    correlated = common.covariance[0, 4] / (common.sigma[0] * common.sigma[4])
+    assert correlated == pytest.approx((timed / common.sigma[0]) ** 2, rel=0.02)
+
+    whole = [
+        WholeTurn(s * 2 * np.pi, s * 2 * np.pi, 1e-9, 38.0, 1.0, 3.5e-6, c, timed)
+        for s, c in ((1, "a"), (-1, "b"))
+    ]
+    assert bias_and_scale(whole, EARTH).sigma[1] == pytest.approx(timed / np.sqrt(2), rel=1e-3)
+    alone = [replace(turn, clock="a") for turn in whole]
+    assert bias_and_scale(alone, EARTH).sigma[1] == pytest.approx(timed, rel=1e-3)

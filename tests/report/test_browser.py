@@ -2,8 +2,10 @@
 
 import importlib.util
 import json
+import os
 import re
 import subprocess
+import sys
 from html import unescape
 from pathlib import Path
 
@@ -32,6 +34,13 @@ FOCUSED = """(() => {
     inner: (one.getAttribute("href") ?? "").startsWith("#") };
 })()"""
 
+# A process speaks one language.
+CHINESE = """from inertial.text.messages import speak
+speak("zh")
+from tests.report import synthetic
+made = synthetic.campaign(logs=("x-up.asc", "z-backward.asc"))
+print(synthetic.report_on(made | {"language": "zh"})["html"])"""
+
 pytestmark = pytest.mark.skipif(
     CHROMIUM is None, reason="chromium is not installed (Debian package chromium)"
 )
@@ -44,6 +53,15 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return file
 
 
+@pytest.fixture(scope="module")
+def chinese(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("browser") / "chinese.html"
+    told = {**os.environ, "PYTHONUTF8": "1"}
+    with file.open("wb") as written:
+        subprocess.run([sys.executable, "-c", CHINESE], check=True, stdout=written, env=told)
+    return file
+
+
 @pytest.fixture
 def page(report: Path):
     with browser() as opened:
@@ -53,11 +71,18 @@ def page(report: Path):
 
 
 @pytest.mark.skipif(AXE is None, reason="axe-core-python is not installed")
+@pytest.mark.parametrize("language", ["en", "zh"])
 @pytest.mark.parametrize(
     ("width", "scheme"), [(1400, "light"), (1400, "dark"), (400, "light"), (400, "dark")]
 )
-def test_axe_has_no_serious_finding(page: Page, width: int, scheme: str) -> None:
-    """In the dark scheme no ground is white, which axe takes where it finds none."""
+def test_axe_has_no_serious_finding(
+    page: Page, request: pytest.FixtureRequest, language: str, width: int, scheme: str
+) -> None:
+    """All unfolded. In the dark scheme no ground is white, which axe takes where it finds none."""
+    if language == "zh":
+        page.open(request.getfixturevalue("chinese"))
+    assert page.evaluate("document.documentElement.lang").startswith(language)
+    page.evaluate("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
     (folder,) = AXE.submodule_search_locations
     page.evaluate((Path(folder) / "axe.min.js").read_text(encoding="utf-8") + "; 0")
     unlabelled = "document.querySelector('main').insertAdjacentHTML('afterbegin', '<img>')"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from xml.etree import ElementTree
 
 from stages.report.drawing import Margins, hatch_masked, side_by_side, style, svg
 
@@ -41,6 +42,16 @@ def test_grid_and_marks_of_an_axis_are_one_line_each_with_all_their_parts() -> N
 
 def test_curves_hold_no_needless_space() -> None:
     assert not [path for path in re.findall(r' d="([^"]*)"', drawn()) if "\n" in path]
+
+
+def test_a_line_without_points_leaves_the_picture_whole() -> None:
+    with style():
+        figure, (panel, _) = side_by_side((1.0, 1.0), 1.0, Margins())
+        panel.plot([], [], marker="o")
+        panel.plot([0, 1], [0, 1], marker="o")
+        pictures = svg(figure, "test")
+    element = ElementTree.XML(pictures[: pictures.index("</svg>") + len("</svg>")])
+    assert element.tag.endswith("svg")  # a strict reader, as that of the PDF is, takes it
 
 
 def test_panels_share_the_width_as_asked() -> None:

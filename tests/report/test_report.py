@@ -235,7 +235,7 @@ def test_a_model_that_does_not_fit_says_so_plainly() -> None:
 def test_a_scatter_that_the_sigmas_include_is_stated() -> None:
     made = synthetic.brief()
     made["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
-    words = "manoeuvres scatter by 0.50 °/h beyond it, which the σ include"
+    words = "With a scatter of the manoeuvres by 0.50 °/h, which the σ include; noise alone"
     assert words in fits_of(parameters_of(made))
 
 
@@ -347,7 +347,7 @@ def test_checks_stand_before_and_after() -> None:
 def test_the_figures_of_the_standards_stand_beside_what_noise_explains() -> None:
     page = Page(synthetic.documents()["html"])
     cells = page.rows["compensation/gyro/linearity_error_x"]
-    assert cells == ["x", "30.0", "±\u202f4.0", "11.0", "ppm", "10.0 °/s", "8"]
+    assert cells == ["x", "30.0", "±\u202f4.0", "11", "ppm", "10.0 °/s", "8"]
     assert "y gyro, linearity error: not determined, for nothing was applied." in page.text
 
 

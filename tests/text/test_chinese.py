@@ -120,6 +120,7 @@ def test_a_process_speaks_the_language_that_it_is_told(chinese: None) -> None:
         ("陀螺仪 (已内插), 加速度计", "陀螺仪（已内插），加速度计"),
         ("bias: 3.2 µg, f(x), 1.5.", "bias: 3.2 µg, f(x), 1.5."),
         ("x-up.asc: 静止 300 s.", "x-up.asc：静止 300 s。"),
+        ("各轴按记录值.数据中断共 2 s.", "各轴按记录值。数据中断共 2 s。"),
     ],
 )
 def test_marks_are_those_of_the_language(put_together: str, right: str) -> None:

@@ -13,7 +13,10 @@ from inertial.text.units import quantity
         (0.43, 2),
         (1.0, 1),
         (12.4, 0),
-        (250.0, 0),
+        (250.0, -1),
+        (4406.0, -2),
+        (64843.0, -3),
+        (99.7, -1),
         (0.0996, 2),
         (4.2e-7, 8),
         (None, None),
@@ -24,10 +27,29 @@ def test_a_sigma_is_shown_to_two_digits(sigma: float | None, decimals: int | Non
     assert numbers.decimals_of(sigma) == decimals
 
 
-def test_one_very_sure_number_does_not_lengthen_the_others() -> None:
+def test_the_surest_of_a_column_says_how_many_decimals_it_has() -> None:
     assert numbers.common_decimals([1.2, 0.9]) == 2
-    assert numbers.common_decimals([1.2, 0.00012]) == 3
     assert numbers.common_decimals([None, None]) is None
+    assert numbers.common_decimals([64843.0, 4406.0]) == -2
+
+
+@pytest.mark.parametrize(
+    ("value", "sigma", "decimals", "written"),
+    [  # GUM, 7.2.6: two digits of the uncertainty, and the value to the same place
+        (-127641.0, 4406.0, -2, ("−127600", "4400")),
+        (191789.0, 65161.0, 1, ("192000", "65000")),  # beside another of ± 5.4
+        (615.13, 15.2, 0, ("615", "15")),
+        (615.13, 5.42, 1, ("615.1", "5.4")),
+        (0.553, 22.31, 2, ("1", "22")),  # beside another of ± 0.15
+        (-13.0, 640.0, 0, ("−10", "640")),
+        (3.0, 640.0, 0, ("0", "640")),
+        (15586.0, None, None, ("15586", "—")),
+    ],
+)
+def test_a_value_has_no_digits_that_its_sigma_lacks(
+    value: float, sigma: float | None, decimals: int | None, written: tuple[str, str]
+) -> None:
+    assert numbers.with_sigma(value, sigma, decimals) == written
 
 
 def test_decimal_points_stand_below_each_other() -> None:
@@ -45,6 +67,13 @@ def test_decimal_points_stand_below_each_other() -> None:
 )
 def test_significant_digits(value: float | None, text: str) -> None:
     assert numbers.significant(value) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(15586.0, "16000"), (-996.0, "−1000"), (0.0996, "0.10"), (42.4, "42")]
+)
+def test_a_limit_has_two_digits_before_the_point_too(value: float, text: str) -> None:
+    assert numbers.significant(value, 2) == text
 
 
 def test_no_negative_zero() -> None:

@@ -34,6 +34,7 @@ class Triad:
     columns: tuple[Column | None, ...] = (None, None, None)  # x, y, z
     rows: tuple[tuple[Column, str], ...] = ()  # only rows with these texts hold the triad
     missing: float | None = None  # this value means: not recorded
+    sigmas: tuple[Column | None, ...] = (None, None, None)  # of means: their standard deviations
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ class ColumnLayout:
     @property
     def number_indices(self) -> list[int]:
         """The columns of numbers whose text is not required."""
-        numbers = {column.index for column in (*self.of_every_row, *self.axes)}
+        numbers = {column.index for column in (*self.of_every_row, *self.axes, *self.sigmas)}
         return sorted(numbers - set(self.text_indices))
 
     @property
@@ -91,9 +92,14 @@ class ColumnLayout:
         return [column for triad in self.triads for column in triad.columns if column]
 
     @property
+    def sigmas(self) -> list[Column]:
+        """The columns with the standard deviations of means, of both triads."""
+        return [column for triad in self.triads for column in triad.sigmas if column]
+
+    @property
     def all(self) -> list[Column]:
         """Every column that is required."""
-        return [*self.of_every_row, *self.texts, *self.axes]
+        return [*self.of_every_row, *self.texts, *self.axes, *self.sigmas]
 
 
 def without_comment_mark(header: str) -> str:
@@ -159,6 +165,10 @@ class _Finder:
                 for name, value in (stated.get("rows") or {}).items()
             ),
             stated.get("missing"),
+            tuple(
+                self.column(f"{key}.sigma_columns", name)
+                for name in stated.get("sigma_columns", [None] * 3)
+            ),
         )
 
     def column_of(self, key: str, stated: Mapping[str, Any] | None) -> Column | None:

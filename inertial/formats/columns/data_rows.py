@@ -1,6 +1,6 @@
 """The data rows of a log of columns, in text or not: their samples, and why one is refused."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +25,9 @@ class Rows:
     table_angle: Reals | None  # as it stands in the file, (n,)
     temperature: Reals | None  # likewise
     label: list[str] | None  # "column=value; …" of the columns that the plan selects by, (n,)
+    # Of rows that are means: their standard deviations, as they stand in the file, (n, 3).
+    accelerometer_sigma: Reals | None = None
+    gyro_sigma: Reals | None = None
 
 
 @dataclass(frozen=True)
@@ -71,11 +74,12 @@ def sort_rows(
     intact = np.ones(count, bool)
     intact[list(reasons)] = False
     exact = columns.exact_time
-    required = dict.fromkeys([*columns.of_every_row, *columns.axes])
+    required = dict.fromkeys([*columns.of_every_row, *columns.axes, *columns.sigmas])
     numbers = {each: fields[each.index].numbers() for each in required if each != exact}
     held = [_held(triad, fields, numbers, count) for triad in columns.triads]
     selected = _selected(columns, held)
     wanted = [(column, selected) for column in columns.of_every_row if column != exact]
+    axes = [_axes(*each, numbers) for each in zip(columns.triads, held, strict=True)]
     for triad, holds in zip(columns.triads, held, strict=True):
         wanted += [(column, holds) for column in triad.columns if column]
 
@@ -96,6 +100,8 @@ def sort_rows(
         refuse(exact, selected & ~known, whole)
     for column, needed in wanted:
         refuse(column, needed & ~np.isfinite(numbers[column]), _("a finite number"))
+    for column, unusable in _unusable_sigmas(columns, numbers, axes):
+        refuse(column, unusable, _("the standard deviation of a mean, above 0"))
     taken = intact & selected
 
     def ticks() -> Reals | Integers | None:
@@ -107,10 +113,7 @@ def sort_rows(
         return None if column is None else numbers[column][taken]
 
     record = place.record[taken]
-    accelerometer, gyro = (
-        _axes(triad, numbers, holds)[taken]
-        for triad, holds in zip(columns.triads, held, strict=True)
-    )
+    accelerometer, gyro = (own[taken] for own in axes)
     rows = Rows(
         record=record,
         offset=place.offset[taken],
@@ -122,6 +125,8 @@ def sort_rows(
         table_angle=of(columns.table_angle),
         temperature=of(columns.temperature),
         label=_label(columns.label, fields, taken),
+        accelerometer_sigma=_sigmas(columns.accelerometer, numbers, taken),
+        gyro_sigma=_sigmas(columns.gyro, numbers, taken),
     )
     return SortedRows(rows, taken, intact & ~selected, reasons)
 
@@ -150,7 +155,27 @@ def _selected(columns: ColumnLayout, held: Sequence[Truths]) -> Truths:
     return np.logical_or.reduce(recorded) if recorded else held[0]
 
 
-def _axes(triad: Triad, numbers: Mapping[Column, Reals], holds: Truths) -> Reals:
+def _sigmas(triad: Triad, numbers: Mapping[Column, Reals], taken: Truths) -> Reals | None:
+    """The standard deviations of means, (m, 3), NaN where none is stated; None without any."""
+    if not any(triad.sigmas):
+        return None
+    none = np.full(len(taken), np.nan)
+    own = [none if column is None else numbers[column] for column in triad.sigmas]
+    return np.column_stack(own)[taken]
+
+
+def _unusable_sigmas(
+    columns: ColumnLayout, numbers: Mapping[Column, Reals], axes: Sequence[Reals]
+) -> Iterator[tuple[Column, Truths]]:
+    """The columns of standard deviations, and in which rows a mean has none."""
+    for triad, means in zip(columns.triads, axes, strict=True):
+        for column, mean in zip(triad.sigmas, means.T, strict=True):
+            if column is not None:
+                known = np.isfinite(numbers[column]) & (numbers[column] > 0)
+                yield column, np.isfinite(mean) & ~known
+
+
+def _axes(triad: Triad, holds: Truths, numbers: Mapping[Column, Reals]) -> Reals:
     """The three axes of a triad; NaN where it is not recorded, (n, 3)."""
     axes = np.full((len(holds), 3), np.nan)
     for axis, column in enumerate(triad.columns):

@@ -30,7 +30,6 @@ from stages.report.words import term
 KINDS = ("decoded", "other message", "header", "blank", "not selected", "refused")
 MOST_LINES = 20
 MOST_REASONS = 20
-NUMBERS = slice(3, 10)  # of the cells of a manoeuvre
 UNIT_VECTOR = 1e-9  # by which the length along an axis may be off 1
 
 
@@ -38,9 +37,6 @@ def recorded_parts(tables: Tables) -> Iterator[Part]:
     """One row per manoeuvre of the plan."""
     done = {row["manoeuvre"]: row for row in tables.rows("performed")}
     rows = [_manoeuvre(row, done.get(row["manoeuvre"])) for row in tables.rows("manoeuvres")]
-    cells = [
-        numbers.aligned(column) for column in zip(*(r.cells[NUMBERS] for r in rows), strict=True)
-    ]
     yield Table(
         _("{counted} of the plan.", counted=numbers.counted(len(rows), "manoeuvre")).capitalize(),
         (
@@ -51,10 +47,7 @@ def recorded_parts(tables: Tables) -> Iterator[Part]:
             *columns("number", _("plan"), _("recorded"), group=_("Time, s")),
             Column(_("Remarks"), "note"),
         ),
-        [
-            table_row(*line.cells[:3], *own, *line.cells[10:], tone=line.tone)
-            for line, own in zip(rows, zip(*cells, strict=True), strict=True)
-        ],
+        rows,
         _("None: the plan has no manoeuvre."),
     )
 
@@ -287,13 +280,10 @@ KNOWN = Section(
 
 
 def _quantities(known: list[Record]) -> Iterator[Row]:
-    cells = [_cells(row) for row in known]
-    columns_of = [numbers.aligned(column) for column in zip(*cells, strict=True)]
-    for row, (value, sigma) in zip(known, zip(*columns_of, strict=True), strict=True):
+    for row in known:
         yield table_row(
             NAME.get(row["quantity"]) or numbers.shortened(row["quantity"], 60),
-            value,
-            sigma,
+            *_cells(row),
             _unit(row).name,
             numbers.shortened(row["origin"], 300),
             anchor=f"known/{row['quantity']}",
@@ -315,7 +305,7 @@ def _cells(row: Record) -> tuple[str, str]:
         return _("as set"), numbers.significant(sigma, 2) if sigma else "—"
     if decimals is None:
         return numbers.significant(value, 7), "—"
-    return numbers.fixed(value, decimals), numbers.fixed(sigma, decimals)
+    return numbers.with_sigma(value, sigma, decimals)
 
 
 def provenance_parts(tables: Tables) -> Iterator[Part]:

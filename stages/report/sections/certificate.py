@@ -47,7 +47,7 @@ from stages.report.results import (
 from stages.report.sections.axes_of_case import axes_of_case
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, capital, term
+from stages.report.words import SENSOR, SENSORS, capital, term, with_mount
 
 ITEMS = {  # of the left and of the right column, each with the items that it joins
     _("Laboratory"): ("laboratory.name", "laboratory.address", "laboratory.accreditation"),
@@ -66,6 +66,7 @@ ITEMS = {  # of the left and of the right column, each with the items that it jo
     _("Measured with"): ("conditions.measured_with",),
 }
 IF_STATED = {"laboratory.place", "item.axes", "conditions.humidity", "conditions.measured_with"}
+NOT_USABLE = "not_usable"  # the verdict
 KNOWN = ("gravity", "latitude")  # of the known quantities what results rest on
 
 
@@ -94,6 +95,17 @@ def parts(tables: Tables) -> Iterator[Part]:
         yield _values(own, mount, earlier)
         if effects := [row for result in own for row in result.effects]:
             yield _effects(effects)
+    for row in tables.rows("verdict"):
+        if row["verdict"] == NOT_USABLE:
+            sensor = capital(with_mount(SENSORS[row["sensor"]], row["mount"]))
+            yield Paragraph(
+                _(
+                    "{sensor}: not usable. The values above are evidence, not for use; none is "
+                    "assessed or exported.",
+                    sensor=sensor,
+                ),
+                "poor",
+            )
     yield from _conformity(tables)
     yield Sentences(tuple(_statements(tables, earlier)))
     yield Signatures(
@@ -132,7 +144,9 @@ def _facts(tables: Tables) -> Iterator[tuple[str, str]]:
     item = [campaign["instrument"], _("serial {serial}", serial=campaign["serial"])]
     item += [_("part {part}", part=part)] if part else []
     item += [_("firmware {firmware}", firmware=firmware)] if firmware else []
-    yield _("Item"), ", ".join([*([maker] if maker else []), *item])
+    if maker and not str(campaign["instrument"]).lower().startswith(maker.lower()):
+        item.insert(0, maker)
+    yield _("Item"), ", ".join(item)
     for name, items in ITEMS.items():
         texts = [stated[one] for one in items if one in stated]
         if texts or not IF_STATED.issuperset(items):
@@ -232,7 +246,7 @@ def _values(results: Sequence[Estimate], mount: str, earlier: Mapping[str, Recor
         rows,
         _("None: no parameter was determined."),
         _("—: not determined; “Undetermined parameters” says why.")
-        if any("—" in row.cells for row in rows)
+        if any(len(texts) < len(names) for texts in written)
         else "",
     )
 
@@ -242,19 +256,19 @@ def _name(row: Record) -> str:
 
 
 def _with_uncertainty(rows: Sequence[Record]) -> dict[str, tuple[str, str, str]]:
-    """Value, U and unit of each, with common decimals for those of one kind."""
-    by_kind: dict[str, list[Record]] = {}
-    for row in rows:
-        by_kind.setdefault(kind_of(row["parameter"]), []).append(row)
+    """Value, U and unit of each, to two digits of its U."""
     written: dict[str, tuple[str, str, str]] = {}
-    for own in by_kind.values():
-        unit = quantity_of(own[0]).shown
-        decimals = numbers.common_decimals([_expanded(row, unit) for row in own])
-        for row in own:
-            if row["value"] is not None:
-                pair = numbers.with_sigma(unit.of(row["value"]), _expanded(row, unit), decimals)
-                written[_name(row)] = (Traced(pair[0], row["id"]), pair[1], unit.name)
+    for row in rows:
+        if row["value"] is not None:
+            unit = quantity_of(row).shown
+            value, spread = _pair(row, unit)
+            written[_name(row)] = (Traced(value, row["id"]), spread, unit.name)
     return written
+
+
+def _pair(row: Record, unit: Unit) -> tuple[str, str]:
+    spread = _expanded(row, unit)
+    return numbers.with_sigma(unit.of(row["value"]), spread, numbers.decimals_of(spread))
 
 
 def _expanded(row: Record, unit: Unit) -> float | None:
@@ -268,11 +282,8 @@ def _effects(rows: Sequence[Record]) -> Table:
         for row in rows:
             if row["effect"] == effect and row["value"] is not None:
                 unit = quantity_of(row).shown
-                spread = _expanded(row, unit)
-                value, spread_text = numbers.with_sigma(
-                    unit.of(row["value"]), spread, numbers.decimals_of(spread)
-                )
-                cells = (Traced(value, row["id"]), spread_text, unit.name, row["meaning"])
+                value, spread = _pair(row, unit)
+                cells = (Traced(value, row["id"]), spread, unit.name, row["meaning"])
                 lines.append(table_row(symbol(row["parameter"]), *cells))
     return Table(
         _("Effects that the result contains beside them; they hold together with it."),
@@ -284,6 +295,9 @@ def _effects(rows: Sequence[Record]) -> Table:
             Column(_("meaning"), "note"),
         ),
         lines,
+        note=_("Where a parameter depends on the temperature, the value above is that at T0.")
+        if any(symbol(row["parameter"]) == "T0" for row in rows)
+        else "",
     )
 
 
@@ -292,13 +306,14 @@ def _effects(rows: Sequence[Record]) -> Table:
 
 @once
 def _earlier(tables: Tables) -> Mapping[str, Record]:
-    """The parameters of the latest earlier calibration, by sensor, mount and name."""
-    rows = [row for row in tables.rows("earlier") if row["date"][:1].isdigit()]
-    latest = max((row["date"] for row in rows), default="")
+    """The parameters of the latest earlier calibration that is usable, by sensor, mount, name."""
+    dated = [row for row in tables.rows("earlier") if row["date"][:1].isdigit()]
+    rows = [row for row in dated if row["verdict"] != NOT_USABLE]
+    latest = max(((row["date"], row["file"]) for row in rows), default=None)
     return {
         _key(row["sensor"], row["mount"], row["quantity"]): row
         for row in rows
-        if row["date"] == latest
+        if (row["date"], row["file"]) == latest
     }
 
 
@@ -380,8 +395,9 @@ def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
     if earlier:
         before = next(iter(earlier.values()))
         yield _(
-            "Change: this result less that of {date} ({campaign}), which is the error as found of "
-            "an IMU that was used with that one; as left it is this result.",
+            "Change: this result less that of {date} ({campaign}). Of an IMU that was used with "
+            "the earlier result, the change is the error as found; as left, this result is its "
+            "own.",
             date=before["date"],
             campaign=before["campaign"],
         )

@@ -99,7 +99,7 @@ def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
         row["axis"] + mount,
         value,
         sigma,
-        numbers.fixed(unit.of(row["by_noise"]), decimals or 0) if row["by_noise"] else "–",
+        numbers.significant(unit.of(row["by_noise"]), 2) if row["by_noise"] else "–",
         unit.name,
         largest or "–",
         numbers.whole(row["points"]),

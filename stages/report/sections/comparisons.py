@@ -16,7 +16,7 @@ from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
 from stages.report.results import KIND
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, with_mount
+from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, parameter, with_mount
 
 KINDS = {
     "static_against_turns": _("Static, rotation"),
@@ -98,11 +98,12 @@ def _beyond(row: Record) -> bool:
     return bool(row["significant"]) or _fencepost(row)
 
 
-def _differences(rows: Sequence[Record], none: str) -> outline.Table:
+def _differences(rows: Sequence[Record], none: str) -> outline.Part:
     apart = [row for row in rows if row["in_sigmas"] is None and not _fencepost(row)]
     rows = [row for row in rows if row not in apart]
+    if not rows:
+        return outline.Paragraph(" ".join(filter(None, (none, _not_compared(apart)))))
     shown = rows[:MOST_DIFFERENCES]
-    sigmas = numbers.aligned([numbers.fixed(row["in_sigmas"], 1) for row in shown])
     return outline.Table(
         _("Differences: {counted} of values.", counted=numbers.counted(len(rows), "pair")),
         (
@@ -111,9 +112,8 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Table:
             outline.Column(_("unit"), "unit", _("Values")),
             *outline.columns("number", _("in σ"), "p"),
         ),
-        [_difference(row, sigma) for row, sigma in zip(shown, sigmas, strict=True)],
-        none,
-        " ".join(
+        [_difference(row) for row in shown],
+        note=" ".join(
             filter(
                 None,
                 (
@@ -137,21 +137,27 @@ def _not_compared(rows: Sequence[Record]) -> str:
     return _("Not compared. {each}", each=numbers.shortened(" ".join(each), 900)) if rows else ""
 
 
-def _difference(row: Record, sigma: str) -> outline.Row:
+def _difference(row: Record) -> outline.Row:
     kind = str(row["kind"])
     unit = units.quantity(row["quantity"], row["unit"]).shown
     decimals = numbers.decimals_of(unit.of(row["sigma"]))
-    first, second = (
-        numbers.significant(value, 5) if decimals is None else numbers.fixed(value, decimals)
-        for value in (unit.of(row["first_value"]), unit.of(row["second_value"]))
-    )
+    first, second = (_value(unit.of(row[key]), decimals) for key in ("first_value", "second_value"))
     return outline.table_row(
         with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), row["mount"]),
         capital(numbers.shortened(str(row["sentence"]).partition(": ")[0], 600)),
-        *(first, second, unit.name, sigma, numbers.probability(row["p_value"])),
+        *(first, second, unit.name, numbers.fixed(row["in_sigmas"], 1)),
+        numbers.probability(row["p_value"]),
         anchor=row["id"],
         tone="fair" if _beyond(row) else "",
     )
+
+
+def _value(value: float | None, decimals: int | None) -> str:
+    """As far as the sigma of the difference goes, but at least to two digits: it may be surer."""
+    if value is None or decimals is None:
+        return numbers.significant(value, 5)
+    own = numbers.decimals_of(abs(value))
+    return numbers.fixed(value, decimals if own is None else max(decimals, min(own, 0)))
 
 
 # ---- earlier calibrations of the same instrument
@@ -252,17 +258,17 @@ def _calibrations(calibrations: Sequence[Sequence[Record]], now: Calibration) ->
 
 def _calibration(rows: Sequence[Record], now: Calibration) -> outline.Row:
     changes = [
-        (abs(like["value"] - row["value"]) / both, row["id"])
+        (abs(like["value"] - row["value"]) / both, parameter(row["sensor"], row["quantity"]))
         for row in rows
         if (like := now.get(_key(row))) and (both := hypot(row["sigma"], like["sigma"] or 0.0)) > 0
     ]
-    largest, identifier = max(changes, default=(None, ""))
+    largest, name = max(changes, default=(None, ""))
     return outline.table_row(
         numbers.shortened(rows[0]["date"], 20),
         numbers.shortened(rows[0]["campaign"], 80),
         numbers.whole(len(rows)),
         numbers.fixed(largest, 1),
-        numbers.shortened(identifier, 80) or "—",
+        name or "—",
         _verdicts(rows),
         numbers.shortened(rows[0]["file"], 200),
     )

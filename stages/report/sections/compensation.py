@@ -17,7 +17,7 @@ from inertial.text.messages import _
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, capital
+from stages.report.words import SENSOR, capital, phases_in_words
 
 MAX_SIGMAS = 3.0  # from which a check is marked
 MOST_ROWS = 60
@@ -175,7 +175,7 @@ def _table(checked: Checked, rows: Sequence[Record]) -> outline.Table:
         ),
         [
             outline.table_row(
-                numbers.shortened(row["manoeuvre"] or "", 60),
+                phases_in_words(numbers.shortened(row["manoeuvre"] or "", 60)),
                 *line,
                 anchor=row["id"],
                 tone="fair" if abs(row["in_sigmas_after"] or 0.0) > MAX_SIGMAS else "",

@@ -115,8 +115,8 @@ def _shifts(each: Sequence[Shift]) -> Iterator[outline.Row]:
         cells += in_units(both, units)
     extended, joint = cells[::2], cells[1::2]
     sides = [column for side in (joint, extended) for column in zip(*side, strict=True)]
-    sigmas = numbers.aligned([numbers.fixed(shift.sigmas, 1) for shift in each])
-    lines = iter(zip(sigmas, *map(numbers.aligned, sides), strict=True))
+    sigmas = [numbers.fixed(shift.sigmas, 1) for shift in each]
+    lines = iter(zip(sigmas, *sides, strict=True))
     for kind, own in kinds.items():
         yield outline.head(KIND.get(kind, kind))
         for shift, (text, *line) in zip(own, lines, strict=False):

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from inertial.tables import AXES
 from inertial.text.messages import _
-from inertial.text.numbers import aligned, common_decimals, fixed, shortened, significant
+from inertial.text.numbers import common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
 from stages.report.sections.noise_figures import allan_figure, spectrum_figure
@@ -125,7 +125,7 @@ def _terms_table(sensor: str, rows: Sequence[Record], note: str) -> outline.Tabl
         shown = next((v for v in stated.values() if v is not None), None)
         cells.append([*values, significant(units[term].of(shown), 3) if shown else ""])
         cells.append([*sigmas, ""])
-    by_row = list(zip(*(aligned(column) for column in cells), strict=True))
+    by_row = list(zip(*cells, strict=True))
     seconds = {row["channel"][-1]: row["seconds"] for row in rows}
     lines = [
         outline.table_row(axis, *own, significant(seconds[axis], 3))
@@ -149,15 +149,17 @@ def _written(rows: Sequence[Record | None], unit: Unit) -> tuple[list[str], list
     for row in rows:
         found = bool(row and row["detected"])
         upper = unit.of(row["upper"]) if row and not found else None
+        sigma = unit.of(row["sigma"]) if row and found else None
+        pair = ("", "")
         if row is None or (not found and upper is None):
             values.append("—")
         elif found and decimals is not None:
-            values.append(fixed(unit.of(row["value"]), decimals))
+            pair = with_sigma(unit.of(row["value"]), sigma, decimals)
+            values.append(pair[0])
         else:
             text = significant(unit.of(row["value"]) if found else upper, 3 if found else 2)
             values.append(text if found else f"< {text}")
-        sigma = unit.of(row["sigma"]) if row and found else None
-        spread.append(fixed(sigma, decimals) if sigma and decimals is not None else "")
+        spread.append(pair[1] if sigma else "")
     return values, spread
 
 

@@ -36,6 +36,7 @@ MOST_LINES = 5  # named in one panel
 SAME_LINE = 1.12  # ratio of two frequencies of one oscillation
 DASHES = (4, 2.5)
 LABEL_SIZE = 6.0
+LABEL_SPAN = 2.5  # ratio of the frequencies where a label begins and ends
 # What a data sheet states, as Allan deviation at tau, and as density of both sides at f.
 Curve = Callable[[Array, float], Array]
 ALLAN_OF: dict[str, Curve] = {
@@ -189,13 +190,17 @@ def _spectrum_panel(
     levels = [value / unit.size for term, value in _stated(sheet) if term == "white_noise"]
     _log_log(panel, levels)
     _data_sheet(panel, sheet, unit, ROOT_DENSITY_OF)
+    ends: list[float] = []  # of the labels so far, in each line of them
     for frequency_of_line in _oscillations(rows):
+        free = (i for i, end in enumerate(ends) if frequency_of_line > end)
+        lane = next(free, len(ends))
+        ends[lane : lane + 1] = [frequency_of_line * LABEL_SPAN]
         drawing.mark_place(panel, frequency_of_line / 1.01, frequency_of_line * 1.01)
         panel.annotate(
             f"{significant(frequency_of_line, 3)} Hz",
             (frequency_of_line, 1.0),
             xycoords=("data", "axes fraction"),
-            xytext=(4, -1),
+            xytext=(4, -1 - 1.2 * LABEL_SIZE * lane),
             textcoords="offset points",
             va="top",
             fontsize=LABEL_SIZE,

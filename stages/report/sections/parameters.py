@@ -49,7 +49,7 @@ from stages.report.results import (
 )
 from stages.report.sections.effect_tables import extended
 from stages.report.tables import Record, Tables
-from stages.report.words import capital, term
+from stages.report.words import capital, phases_in_words, term
 
 BY_METHOD = _(
     "What follows is no result of its own: the same parameters by each method, side by side. How "
@@ -80,8 +80,11 @@ def parts(tables: Tables) -> Iterator[Part]:
     yield Heading(_("By method"))
     yield Paragraph(BY_METHOD)
     yield _fits(estimates(tables))
+    counted_ones = {result.method for result in final_results(tables)}
     for _place, own in groupby(estimates(tables), lambda estimate: estimate.place):
         methods = [estimate for estimate in own if estimate.determined]
+        if len(methods) == 1 and methods[0].method in counted_ones:
+            continue  # it stands above as the result
         for first in range(0, len(methods), MAX_METHODS):
             yield _side_by_side(methods[first : first + MAX_METHODS])
     yield from extended(tables)
@@ -309,8 +312,8 @@ def undetermined_parts(tables: Tables) -> Iterator[Part]:
         [
             table_row(
                 estimate.name,
-                shortened(labels(estimate.manoeuvres) or _("none"), 1500),
-                shortened(omissions(estimate.manoeuvres) or _("none"), 1500),
+                shortened(phases_in_words(labels(estimate.manoeuvres)) or _("none"), 1500),
+                shortened(phases_in_words(omissions(estimate.manoeuvres)) or _("none"), 1500),
                 tone="fair" if omissions(estimate.manoeuvres) else "",
             )
             for estimate in estimates(tables)

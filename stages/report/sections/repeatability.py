@@ -11,7 +11,7 @@ from inertial.text.parameters import JOINT
 from inertial.text.units import Unit, quantity
 from stages.report import outline
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, capital
+from stages.report.words import SENSOR, capital, parameter
 
 FIRST = ("repeatability", "within")  # columns; what is left are components
 NAMES = {
@@ -88,7 +88,7 @@ def _components(rows: Sequence[Record]) -> outline.Table:
         unit = _unit(next(iter(own.values())))
         lines.append(
             outline.table_row(
-                f"{SENSOR[sensor]} {name}",
+                parameter(sensor, name),
                 numbers.whole(own["within"]["calibrations"]),
                 *(_cell(own.get(component), unit) for component in names),
                 unit.name,
@@ -151,7 +151,7 @@ def _forecast_row(row: Record) -> outline.Row:
     decimals = numbers.decimals_of(unit.of(row["drift_sigma"]))
     width = unit.of(row["high"] - row["low"])
     return outline.table_row(
-        f"{SENSOR[row['sensor']]} {row['quantity']}",
+        parameter(row["sensor"], row["quantity"]),
         *numbers.with_sigma(unit.of(row["drift"]), unit.of(row["drift_sigma"]), decimals),
         row["at"],
         *(numbers.fixed(unit.of(row[k]), numbers.decimals_of(width) or 0) for k in ("low", "high")),
@@ -176,7 +176,7 @@ def _power_cycles(rows: Sequence[Record]) -> outline.Table:
         ),
         [
             outline.table_row(
-                f"{SENSOR[row['sensor']]} {row['quantity']}",
+                parameter(row["sensor"], row["quantity"]),
                 _cell(row, _unit(row)),
                 numbers.significant(_unit(row).of(row["upper"]), 2),
                 _unit(row).name,
@@ -248,7 +248,7 @@ def _stability(rows: Sequence[Record]) -> outline.Table:
         ),
         [
             outline.table_row(
-                f"{SENSOR[row['sensor']]} {row['quantity']}",
+                parameter(row["sensor"], row["quantity"]),
                 *numbers.with_sigma(
                     _unit(row).of(row["value"]),
                     _unit(row).of(row["sigma"]),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from inertial.tables import AXES, CHANNELS, GYRO
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
-from inertial.text.numbers import aligned, counted, fixed, shortened
+from inertial.text.numbers import counted, fixed, shortened
 from inertial.text.units import DEGREES_PER_SECOND, Unit
 from stages.report.drawing import (
     AXIS_COLOUR,
@@ -313,7 +313,7 @@ def _table(rows: Sequence[Record]) -> Table:
 
 def _rows(keys: Sequence[tuple[str, str]], ratios: Ratios) -> Iterator[Row]:
     order = [f"{sensor}_{axis}" for sensor in ("accel", "gyro") for axis in AXES]
-    cells = [aligned([_written(ratios[key].get(name)) for key in keys]) for name in order]
+    cells = [[_written(ratios[key].get(name)) for key in keys] for name in order]
     headed = ""
     for (profile, manoeuvre), *own in zip(keys, *cells, strict=True):
         if profile != headed:

@@ -316,12 +316,16 @@ def _middle(row: Record, whole_turn: Record) -> Row:
     if row["by"] != WHOLE_TURN:
         off = row["scale"] - whole_turn["scale"]
         sigma = float(np.hypot(own_sigma, whole_turn["scale_sigma"])) if own_sigma else None
-    decimals = numbers.decimals_of(PPM.of(whole_turn["scale_sigma"])) or 1
-    values = (row["scale"], row["scale_sigma"], off, sigma)
+    decimals = max(numbers.decimals_of(PPM.of(whole_turn["scale_sigma"])) or 1, 1)
+    pairs = ((row["scale"], row["scale_sigma"]), (off, sigma))
     return table_row(
         _names(row),
         BY.get(row["by"], str(row["by"])),
-        *(numbers.fixed(PPM.of(value), decimals) for value in values),
+        *(
+            cell
+            for value, spread in pairs
+            for cell in numbers.with_sigma(PPM.of(value), PPM.of(spread), decimals)
+        ),
     )
 
 

@@ -31,6 +31,7 @@ SOURCES = {
     "position": _("table, position"),
     "angle": _("table, angle"),
     "interpolation": _("interpolated gaps"),
+    "clock": _("rate of the clock"),
     "azimuth": _("azimuth"),
     "gravity": _("gravity"),
     "latitude": _("latitude"),

@@ -1,0 +1,162 @@
+"""Several at work on one folder, a disk that fills, runs that are killed: nothing is lost."""
+
+import fcntl
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import chain
+import pyarrow.parquet as pq
+import pytest
+
+from benchmarks import kills
+from turntable_calibration.workflow_run import LOCK
+
+pytestmark = pytest.mark.workflow
+
+PATIENCE = 900  # s
+ESTIMATED = ("accelerometer", "gyroscope")
+WAITS = "Another run is at work here; this one waits for it."
+KILLS = 20
+ROOM, MORE_ROOM = "2200k", "200m"  # the logs have 1.7 MB, the tables up to the gyros 3 MB
+INDEX = [sys.executable, "-m", "turntable_calibration", "--cores", "1"]
+
+
+def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Snakemake on a folder."""
+    where = ["--snakefile", str(chain.ROOT / "Snakefile"), "--directory", str(folder)]
+    command = [sys.executable, "-m", "snakemake", "--nolock", "--cores", "1", *where]
+    return subprocess.run([*command, *arguments], capture_output=True, text=True, cwd=chain.ROOT)
+
+
+def goals(campaign: str) -> list[str]:
+    return [f"data/derived/{campaign}/{stage}/parameters.parquet" for stage in ESTIMATED]
+
+
+def index_of(folder: Path) -> subprocess.Popen[str]:
+    """The command that makes the page of all campaigns, of which there are none."""
+    command = [*INDEX, "--folder", str(folder), "index"]
+    return subprocess.Popen(command, cwd=chain.ROOT, stdout=subprocess.PIPE, text=True, bufsize=1)
+
+
+def test_a_second_run_on_a_folder_waits_for_the_first(tmp_path: Path) -> None:
+    (tmp_path / LOCK).parent.mkdir()
+    page = tmp_path / "reports/index.html"
+    with (tmp_path / LOCK).open("a") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        second = index_of(tmp_path)
+        assert second.stdout is not None
+        assert second.stdout.readline().strip() == WAITS
+        assert not page.exists()
+    assert second.wait(PATIENCE) == 0
+    assert page.exists()
+
+
+@pytest.mark.slow
+def test_a_killed_run_keeps_nobody_waiting_and_of_two_at_once_one_waits(tmp_path: Path) -> None:
+    first = index_of(tmp_path)
+    while not (tmp_path / ".snakemake/log").exists():  # it is at work
+        assert first.poll() is None
+    second = index_of(tmp_path)
+    assert second.stdout is not None
+    assert second.stdout.readline().strip() == WAITS
+    # Snakemake itself has the lock, too: it goes on where only the command is killed.
+    (snakemake,) = _children(first.pid)
+    for pid in (first.pid, snakemake):
+        os.kill(pid, 9)
+    assert second.wait(PATIENCE) == 0
+    first.wait()
+    both = [index_of(tmp_path), index_of(tmp_path)]
+    said = [each.communicate(timeout=PATIENCE)[0] for each in both]
+    assert [each.returncode for each in both] == [0, 0]
+    assert sum(WAITS in text for text in said) == 1
+
+
+def _children(pid: int) -> list[int]:
+    return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
+
+
+def test_two_campaigns_of_one_imu_that_end_at_once_are_both_in_its_history(
+    whole: Path, tmp_path: Path
+) -> None:
+    names = ("left", "right")
+    for name in names:
+        derived = tmp_path / "data/derived" / name
+        shutil.copytree(whole / "data/derived/june", derived)
+        made_by = pq.read_metadata(derived / "plan/campaign.parquet").metadata
+        facts = pq.read_table(derived / "plan/campaign.parquet").replace_schema_metadata(made_by)
+        place = facts.schema.get_field_index("campaign")
+        renamed = facts.set_column(place, facts.schema.field(place), [[name]])
+        pq.write_table(renamed, derived / "plan/campaign.parquet")
+    history = tmp_path / "data/history"
+
+    def end(*ending: str) -> None:
+        command = [sys.executable, "-m", "stages.history", "--archive", str(history)]
+        command += ["--settings", json.dumps(chain.SETTINGS["history"])]
+        at_once = [
+            subprocess.Popen([*command, str(tmp_path / "data/derived" / name)], cwd=chain.ROOT)
+            for name in ending
+        ]
+        assert [each.wait(PATIENCE) for each in at_once] == [0] * len(ending)
+
+    end(*names)
+    kept = _contents(history)
+    assert sorted(re.sub(r"-[0-9a-f]{12}\.parquet", "", Path(f).name) for f in kept) == [
+        "2026-11-02-left",
+        "2026-11-02-right",
+    ]
+    # Each finds the other when it runs again, and the archive stays as it is.
+    end(*names)
+    for name, other in (names, names[::-1]):
+        earlier = pq.read_table(tmp_path / f"data/derived/{name}/history/earlier.parquet")
+        assert set(earlier["campaign"].to_pylist()) == {other}
+    assert _contents(history) == kept
+
+
+def _contents(folder: Path) -> dict[str, bytes]:
+    return {str(path): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system of its own, whose size can be changed."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", f"size={ROOM}", "tmpfs", str(disk)]
+    if os.geteuid() != 0 or shutil.which("mount") is None or subprocess.run(mount).returncode:
+        pytest.skip("needs leave to mount a small file system")
+    yield disk
+    subprocess.run(["umount", "--lazy", str(disk)], check=True)
+
+
+@pytest.mark.slow
+def test_on_a_full_disk_it_says_so_and_with_more_room_it_completes(
+    small_disk: Path, tmp_path: Path
+) -> None:
+    chain.simulate(chain.short(), small_disk / "data/raw/june")
+    full = run(small_disk, "--", *goals("june"))
+    assert full.returncode != 0
+    assert "No space left on device" in full.stdout + full.stderr
+    for table in small_disk.rglob("*.parquet"):
+        pq.read_table(table)
+    subprocess.run(["mount", "-o", f"remount,size={MORE_ROOM}", str(small_disk)], check=True)
+    last = run(small_disk, "--", *goals("june"))
+    assert last.returncode == 0, last.stderr
+    shutil.copytree(small_disk / "data/raw", tmp_path / "data/raw")
+    other = chain.run(tmp_path / "data/raw/june", tmp_path / "derived/june")
+    for stage in ESTIMATED:
+        made = pq.read_table(small_disk / f"data/derived/june/{stage}/parameters.parquet")
+        assert made.equals(pq.read_table(other.folder / f"{stage}/parameters.parquet"))
+
+
+@pytest.mark.slow
+def test_runs_killed_at_random_moments_end_as_an_undisturbed_one(tmp_path: Path) -> None:
+    killed = kills.survived(tmp_path, KILLS, goals(kills.CAMPAIGN))
+    assert not killed.damaged
+    assert killed.last == 0
+    assert not killed.different
