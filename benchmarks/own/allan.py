@@ -40,7 +40,6 @@ def main(path: str, rate: str, runs: str, factors: str) -> None:
         powers.end()
         found.append(noise_terms(powers)[0])
 
-    deviation()  # compiled once
     seconds, of_terms = timed(deviation, int(runs)), timed(terms, int(runs))
     fit, curve = found[-1], deviations[-1]
     assert fit is not None

@@ -31,12 +31,14 @@ from inertial.text.units import DEGREE, STANDARD_GRAVITY
 
 MAX_ORDER = 3
 # "Powers" of the change of slope at a knot, and of that times a shift of the knot: the derivative
-# by its temperature, so that the covariance holds what the knot is uncertain by.
-BEND, SHIFT = 0, -1
-NAMES = {BEND: "bend", SHIFT: "shift"}
+# by its temperature. A mean over knots has two more, to either side of it.
+BEND, SHIFT, BELOW, ABOVE = 0, -1, -2, -3
+NAMES = {BEND: "bend", SHIFT: "shift", BELOW: "bend_below", ABOVE: "bend_above"}
+BENDS = (BELOW, BEND, ABOVE)
+SIDES = {BELOW: "_below", BEND: "", ABOVE: "_above"}  # of the three knots of a function
 FUNCTIONS = tuple(name for name, parts in PARTS.items() if parts.kind in ("bias", "scale", "cross"))
 # Per K, K², K³ and per K beyond a knot, in units of the first.
-TYPICAL_SHARES = {1: 1.0, 2: 0.1, 3: 3e-3, BEND: 1.0, SHIFT: 1.0}
+TYPICAL_SHARES = {1: 1.0, 2: 0.1, 3: 3e-3, BEND: 1.0, SHIFT: 1.0, BELOW: 1.0, ABOVE: 1.0}
 TYPICAL = {
     ("accel", "bias"): ("m/s²", 1e-4 * STANDARD_GRAVITY),
     ("gyro", "bias"): ("rad/s", 5e-3 * DEGREE),
@@ -46,9 +48,18 @@ POWER = _("coefficient of {function} of power {power} of T − T0")
 MEANINGS = {
     BEND: _("change of the slope of {function} at its knot"),
     SHIFT: _("the same times what its knot is uncertain by"),
+    BELOW: _("change of the slope of {function} at the lower of the knots that it may have"),
+    ABOVE: _("change of the slope of {function} at the upper of the knots that it may have"),
 }
+KNOTS = {
+    "": _("knot of {function}"),
+    "_below": _("lower of the knots that {function} may have"),
+    "_above": _("upper of the knots that {function} may have"),
+}
+OF_DEGREE = _("degree of the likeliest shape of {function}; 1: a line with a knot")
+LIKELIEST = _("probability of the likeliest shape of {function}")
 LAG = "lag"  # constant: of the sensors behind the thermometer
-POWERS = {1: "/K", 2: "/K²", 3: "/K³", BEND: "/K", SHIFT: ""}
+POWERS = {1: "/K", 2: "/K²", 3: "/K³", BEND: "/K", SHIFT: "", BELOW: "/K", ABOVE: "/K"}
 
 
 @dataclass(frozen=True, order=True)
@@ -63,6 +74,11 @@ class Piece:
         """The name of its coefficient."""
         return f"{self.function}_{NAMES.get(self.power, self.power)}"
 
+    @property
+    def knot(self) -> str:
+        """The key of its knot: the function, or the function and the side."""
+        return self.function + SIDES.get(self.power, "")
+
 
 def polynomials(orders: Mapping[str, int]) -> tuple[Piece, ...]:
     """The pieces of polynomials without constants, of these degrees by function."""
@@ -71,17 +87,18 @@ def polynomials(orders: Mapping[str, int]) -> tuple[Piece, ...]:
 
 EVERY = (
     *polynomials(dict.fromkeys(FUNCTIONS, MAX_ORDER)),
-    *(Piece(function, power) for power in (BEND, SHIFT) for function in FUNCTIONS),
+    *(Piece(function, power) for power in NAMES for function in FUNCTIONS),
 )
 
 
 class TemperatureModel(Effect):
     """The selected functions of one sensor; those that are not selected are absent.
 
-    `pieces`: of the functions; `knots`: by function the temperature, K, at which its slope changes;
-    `lag`: s, of the sensors behind the thermometer, see `drift.delay`; `course`: times, s, and by
-    how much the sensors are warmer than the thermometer at each, K, where the motion is not all of
-    the campaign.
+    `pieces`: of the functions; `knots`: by function, or `Piece.knot`, the temperature, K, at which
+    its slope changes; `likeliest`: by function, of one that is a mean over shapes, the degree of
+    the likeliest, 1 with a knot, and its probability; `lag`: s, of the sensors behind the
+    thermometer, see `drift.delay`; `course`: times, s, and by how much the sensors are warmer than
+    the thermometer at each, K, where the motion is not all of the campaign.
     """
 
     source = (
@@ -99,6 +116,7 @@ class TemperatureModel(Effect):
     ) -> None:
         self.sensor, self.lag = sensor, lag
         self.course: tuple[Array, Array] | None = None
+        self.likeliest: Mapping[str, tuple[int, float]] = {}
         self.pieces = tuple(pieces)
         self.knots = dict(knots or {})
         self.name = temperature_name(sensor)  # type: ignore[misc]
@@ -120,10 +138,11 @@ class TemperatureModel(Effect):
 
     def _term(self, piece: Piece) -> Term:
         parts = PARTS[piece.function]
-        knot = knot_name(piece.function)
-        factor = {BEND: f"(T > {knot}) * (T - {knot})", SHIFT: f"(T > {knot})"}.get(
-            piece.power, " * ".join(["(T - T0)"] * piece.power)
-        )
+        knot = knot_name(piece.knot)
+        if piece.power > 0:
+            factor = " * ".join(["(T - T0)"] * piece.power)
+        else:
+            factor = f"(T > {knot})" + f" * (T - {knot})" * (piece.power in BENDS)
         if parts.kind != "bias":
             factor += f" * {'f' if self.sensor == 'accel' else 'w'}_{parts.input_axis}"
         return Term(f"{self.sensor}_{parts.sensor_axis}", piece.name, factor)
@@ -139,8 +158,10 @@ class TemperatureModel(Effect):
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
         knots = [
-            Constant(knot_name(f), "K", _("knot of {function}", function=f), at)
-            for f, at in self.knots.items()
+            Constant(knot_name(f + side), "K", KNOTS[side].format(function=f), self.knots[f + side])
+            for f in FUNCTIONS
+            for side in SIDES.values()
+            if f + side in self.knots
         ]
         lag = Constant(
             LAG,
@@ -148,15 +169,25 @@ class TemperatureModel(Effect):
             _("time constant with which T follows the recorded temperature; below 0: it precedes"),
             self.lag,
         )
+        shapes = [
+            constant
+            for f, (degree, probability) in self.likeliest.items()
+            for constant in (
+                Constant(degree_name(f), "1", OF_DEGREE.format(function=f), degree),
+                Constant(probability_name(f), "1", LIKELIEST.format(function=f), probability),
+            )
+        ]
         return [
             *temperature_constants(motion, self.reference, self.valid),
             *knots,
+            *shapes,
             *([lag] if self.lag else []),
         ]
 
     def with_constants(self, values: Mapping[str, float]) -> Self:
         effect = super().with_constants(values)
-        effect.knots = {f: values[knot_name(f)] for f in FUNCTIONS if knot_name(f) in values}
+        keys = [f + side for f in FUNCTIONS for side in SIDES.values()]
+        effect.knots = {key: values[knot_name(key)] for key in keys if knot_name(key) in values}
         effect.lag = values.get(LAG, 0.0)
         return effect
 
@@ -184,8 +215,8 @@ class TemperatureModel(Effect):
         above = warmer(motion, self.reference, self.valid) + ahead
         if piece.power > 0:
             return np.asarray(above**piece.power)
-        beyond = motion.temperature + ahead - self.knots.get(piece.function, np.nan)
-        bent = np.maximum(beyond, 0.0) if piece.power == BEND else 1.0 * (beyond > 0)
+        beyond = motion.temperature + ahead - self.knots.get(piece.knot, np.nan)
+        bent = np.maximum(beyond, 0.0) if piece.power in BENDS else 1.0 * (beyond > 0)
         return np.asarray(bent + 0.0 * above)
 
     def _ahead(self, motion: Motion) -> Array:
@@ -223,6 +254,16 @@ def temperature_name(sensor: str) -> str:
     return f"{sensor}_temperature"
 
 
-def knot_name(function: str) -> str:
-    """The name of the constant that is the temperature of a knot."""
-    return f"knot_{function}"
+def knot_name(knot: str) -> str:
+    """The name of the constant that is the temperature of a knot; `knot`: see `Piece.knot`."""
+    return f"knot_{knot}"
+
+
+def degree_name(function: str) -> str:
+    """The name of the constant that is the degree of the likeliest shape, 1 with a knot."""
+    return f"degree_{function}"
+
+
+def probability_name(function: str) -> str:
+    """The name of the constant that is the probability of the likeliest shape."""
+    return f"probability_{function}"

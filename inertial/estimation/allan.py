@@ -15,7 +15,6 @@ those of stretches are combined as independent.
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,7 +28,7 @@ FACTORS_PER_DECADE = 10
 MAX_SHARE = 0.25  # of a stretch, that an averaging time may be: 3 independent differences
 MAX_EXACT_FACTOR = 1 << 20  # samples; longer averages start at every STRIDE-th sample only
 STRIDE = 64
-BLOCK = 8192  # samples that are differenced together: three arrays of them fit into a cache
+BLOCK = 16384  # samples that are differenced together: three arrays of them fit into a cache
 LAGS_PER_TAU = 32  # of the sum over lags that gives the degrees of freedom
 MAX_LAG_TAUS = 16  # farther off, differences are independent
 ONE_SIGMA = 0.15865525393145707  # probability of each tail
@@ -221,20 +220,23 @@ class _Differences:
         self._sums, self._filled = room, kept
 
 
-@numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz"})
 def _square(sums: Array, first: int, after: int, factors: Integers, squares: Array) -> None:
-    """Add the squares of x(i) − 2 x(i − m) + x(i − 2m) for i from first to after."""
-    for channel in range(sums.shape[0]):
-        x = sums[channel]
-        for j in range(len(factors)):
-            m = factors[j]
-            total = 0.0
-            start = max(first, 2 * m)
-            now, before, earliest = x[start:after], x[start - m : after], x[start - 2 * m : after]
-            for i in range(after - start):
-                difference = now[i] - 2 * before[i] + earliest[i]
-                total += difference * difference
-            squares[j, channel] += total
+    """Add the squares of x(i) − 2 x(i − m) + x(i − 2m) for i from first to after.
+
+    In numpy, for a compiled loop takes longer to load than most recordings to be differenced.
+    """
+    workspace = np.empty((2, after - first))
+    for j, m in enumerate(factors.tolist()):
+        start = max(first, 2 * m)
+        if start >= after:
+            break  # factors ascend
+        rise, fall = workspace[:, : after - start]
+        for channel, x in enumerate(sums):
+            before = x[start - m : after - m]
+            np.subtract(x[start:after], before, out=rise)
+            np.subtract(x[start - 2 * m : after - 2 * m], before, out=fall)
+            rise += fall
+            squares[j, channel] += rise @ rise
 
 
 def pooled_degrees(

@@ -1,7 +1,10 @@
 """White noise of a record from its spectrum, and deviations of a steady rate of the table."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import rfft
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
@@ -24,13 +27,38 @@ def band_levels(values: Array, rate: float, band: tuple[float, float]) -> Array:
     -------
     (bins, c), U²/Hz; white noise of random walk N (U/√Hz) has the level N²
     """
-    from scipy.signal import periodogram  # here, for it loads half of scipy
+    time = np.arange(len(values)) - (len(values) - 1) / 2
+    level = values - values.mean(axis=0)
+    level -= np.outer(time, time @ level / (time @ time))
+    density = periodogram(level.T, rate).T
+    frequency = np.arange(1, len(density) + 1) * rate / len(values)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    return np.asarray(density[inside] if inside.sum() >= MIN_BAND_BINS else density[1:])
 
-    # The stubs know arrays of one dimension only.
-    frequency, density = periodogram(values, rate, "hann", detrend="linear", axis=0)  # type: ignore[call-overload]
-    half = density[1:-1] / 2
-    inside = (frequency[1:-1] >= band[0]) & (frequency[1:-1] <= band[1])
-    return np.asarray(half[inside] if inside.sum() >= MIN_BAND_BINS else half[1:])
+
+def periodogram(values: Array, rate: float) -> Array:
+    """The power density of both sides with a Hann window, without the first and the last bin.
+
+    By the transform itself, for scipy.signal takes longer to load than most recordings to be
+    transformed.
+
+    Parameters
+    ----------
+    values : (..., n), less their means or lines, in any unit U
+    rate : Hz, samples per second
+
+    Returns
+    -------
+    (..., n // 2 - 1), U²/Hz, at the frequencies k rate / n from k = 1 on
+    """
+    window = _hann(values.shape[-1])
+    amplitude = rfft(values * window)[..., 1:-1]
+    return np.asarray((amplitude.real**2 + amplitude.imag**2) / (rate * (window @ window)))
+
+
+@lru_cache(maxsize=4)
+def _hann(samples: int) -> Array:
+    return np.asarray(0.5 - 0.5 * np.cos(2 * np.pi * np.arange(samples) / samples))
 
 
 def white_level(levels: Array) -> tuple[Array, Array]:

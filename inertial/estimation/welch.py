@@ -16,6 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.estimation.spectrum import periodogram
+
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
@@ -88,8 +90,6 @@ class WelchSums:
 
     def _segments(self, level: int, values: Array) -> Array:
         """Add the segments of a level; what the next one needs is returned."""
-        from scipy.signal import periodogram  # here, for it loads half of scipy
-
         half = self.segment // 2
         count = len(values) // half - 1
         if count < 1:
@@ -101,8 +101,8 @@ class WelchSums:
         windows = np.lib.stride_tricks.sliding_window_view(values, self.segment, axis=0)[::half]
         for start in range(0, count, BATCH):  # a few at a time: memory
             some = windows[start : min(start + BATCH, count)]
-            _, density = periodogram(some, rate, "hann", detrend="constant")
-            self._power[level] += density[:, :, 1:-1].sum(axis=0).T / 2
+            centred = some - some.mean(axis=-1, keepdims=True)
+            self._power[level] += periodogram(centred, rate).sum(axis=0).T
         self._count[level] += count
         return values[count * half :]
 

@@ -220,7 +220,7 @@ VERDICTS = Table(
 
 TEMPERATURE_CURVES = Table(
     "temperature_curves",
-    1,
+    2,
     (
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
@@ -231,6 +231,13 @@ TEMPERATURE_CURVES = Table(
         Column("unit", TEXT, "", "unit of value and sigma"),
         Column("order", INTEGER, "1", "degree of the polynomial, or of the lines beside a knot"),
         Column("knot", DOUBLE, "K", "where the slope changes, if it does", nullable=True),
+        Column(
+            "probability",
+            DOUBLE,
+            "1",
+            "of this order or knot, where the value is the mean over several shapes",
+            nullable=True,
+        ),
         Column(
             "relative_to",
             DOUBLE,

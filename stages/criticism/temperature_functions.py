@@ -239,7 +239,7 @@ class _Search:
         degrees = self.campaign.noise_degrees(self.sensor, self.noise_degrees)
         raw = system.raw_information()
         whole = (system.effect_information(),)
-        equations = Evidence(whole, (self.sensor,), (degrees,), raw).observable()
+        equations = Evidence(whole, (self.sensor,), (degrees,), raw[None]).observable()
         own = equations.sensors[0]
         column = {name: i for i, name in enumerate(own.names)}
         given = tuple(column[name] for effect in self.others for name in columns_of(effect))

@@ -8,10 +8,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Row, rows_of, with_mount
+from inertial.estimation.mixture import beside_effects, disagree, mixture
 from inertial.estimation.triad import UNKNOWNS, linear_names
 from inertial.text.messages import _
 from inertial.text.parameters import STAGES
-from stages.diagnosis.mixture import beside_effects, disagree, mixture
 
 Array = NDArray[np.float64]
 

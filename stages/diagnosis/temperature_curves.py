@@ -10,7 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Row
-from inertial.effects.temperature_model import BEND, EVERY, Piece, knot_name
+from inertial.effects.temperature_model import (
+    BEND,
+    BENDS,
+    EVERY,
+    Piece,
+    degree_name,
+    knot_name,
+    probability_name,
+)
 from inertial.physics.effect import COLDEST, MEAN_TEMPERATURE, WARMEST
 from stages.diagnosis.result import Result
 
@@ -39,7 +47,9 @@ def curve_rows(result: Result) -> Iterator[Row]:
         value = design @ np.array([result.rows[i]["value"] for i in places], np.float64)
         spread = result.covariance[np.ix_(places, places)]
         sigma = np.sqrt(np.einsum("ti,ij,tj->t", design, spread, design))
-        bent = any(piece.power == BEND for piece in pieces.values())
+        highest = max(piece.power for piece in pieces.values())
+        degree = int(numbers.get(degree_name(own["parameter"]), highest))
+        bent = degree <= 1 and any(piece.power == BEND for piece in pieces.values())
         for temperature, here, scatter in zip(at, value, sigma, strict=True):
             yield {
                 "mount": own["mount"],
@@ -49,8 +59,9 @@ def curve_rows(result: Result) -> Iterator[Row]:
                 "value": float(here),
                 "sigma": float(scatter),
                 "unit": own["unit"],
-                "order": max(piece.power for piece in pieces.values()),
+                "order": degree,
                 "knot": numbers[knot_name(own["parameter"])] if bent else None,
+                "probability": numbers.get(probability_name(own["parameter"])),
                 "relative_to": None,
                 "not_separated": None,
             }
@@ -73,6 +84,6 @@ def _pieces(result: Result, parameter: str) -> Iterator[tuple[int, Piece]]:
 
 def _shape(piece: Piece, numbers: Mapping[str, float], at: Array) -> Array:
     if piece.power <= 0:
-        beyond = at - numbers[knot_name(piece.function)]
-        return np.asarray(np.maximum(beyond, 0.0) if piece.power == BEND else 1.0 * (beyond > 0))
+        beyond = at - numbers[knot_name(piece.knot)]
+        return np.asarray(np.maximum(beyond, 0.0) if piece.power in BENDS else 1.0 * (beyond > 0))
     return np.asarray((at - numbers[MEAN_TEMPERATURE]) ** piece.power)

@@ -42,6 +42,7 @@ from stages.extension.proposed import proposed_rows
 from stages.extension.scanned_values import with_scanned_values
 from stages.extension.selected_sizes import SelectedSizes, selected_sizes
 from stages.extension.sentences import sentence_of
+from stages.extension.temperature_shapes import with_shapes
 from stages.extension.warm_up import warm_up_rows
 
 Row = Mapping[str, Any]
@@ -198,15 +199,14 @@ class Extension:
             sensor, system = SENSORS[number], systems[number]
             candidates = candidates_of(combinations, models.shown[number], models.absorbed[number])
             shown, of_shown = solutions, tested
-            solutions = {
-                candidate.method: solution
+            pairs = {
+                candidate.method: pair
                 for candidate in candidates
                 if system is not None
                 and candidate.effects
-                and (
-                    solution := self._solved(sensor, system, candidate, models, sizes, shown)
-                ).effects
+                and (pair := self._solved(sensor, system, candidate, models, sizes, shown))
             }
+            solutions = {method: solution for method, (solution, _mean) in pairs.items()}
             tested = {
                 candidate.method: validation
                 for candidate in candidates
@@ -219,8 +219,8 @@ class Extension:
             }
             there = [c for c in candidates if c.method in (JOINT, *solutions)]
             yield from self._candidates(sensor, there, solutions, tested, trainings)
-            for solution in solutions.values():
-                yield from self._solution(solution)
+            for _solution, mean in pairs.values():
+                yield from self._solution(mean)
             if EXTENDED in solutions:
                 likeliest[sensor] = solutions[EXTENDED]
                 if tested[EXTENDED].sensor == sensor:
@@ -242,8 +242,11 @@ class Extension:
         models: Models,
         sizes: SelectedSizes,
         shown: Mapping[str, Solved],
-    ) -> Solved:
-        """`shown`: by method the fits of the sensor that shows what this one absorbs."""
+    ) -> tuple[Solved, Solved] | None:
+        """The fit, and its mean over shapes of functions of temperature; None without an effect.
+
+        `shown`: by method the fits of the sensor that shows what this one absorbs.
+        """
         told = shown[candidate.method].of_effects if candidate.method in shown else []
         sized = {row["parameter"]: (row["value"], row["sigma"]) for row in told if row["sigma"]}
         sized = {name: sized[name] for name in candidate.absorbed if name in sized}
@@ -259,7 +262,10 @@ class Extension:
             names = {name for effect in further for name in names_of(effect)}
             return given(with_columns(every, columns | names), sized)
 
-        return with_scanned_values(solution, candidate.effects, system_of)
+        if not solution.effects:
+            return None
+        solution = with_scanned_values(solution, candidate.effects, system_of)
+        return solution, with_shapes(solution, candidate.effects, motion, system_of)
 
     def _solution(self, solution: Solved) -> Iterator[tuple[str, Any]]:
         """The rows of a fit, and of the likeliest how far its parameters move."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stages.diagnosis.mixture import beside_effects, disagree, mixture
+from inertial.estimation.mixture import beside_effects, disagree, mixture
 
 
 def spread(seed: int, size: int) -> np.ndarray:

@@ -9,8 +9,8 @@ from soaks import ICE_POINT, MIDDLE
 
 from inertial.effects import CATALOGUE, KNOWN, TEMPERATURE_MODELS
 from inertial.effects.temperature_model import (
-    BEND,
     FUNCTIONS,
+    NAMES,
     SHIFT,
     Piece,
     TemperatureModel,
@@ -234,6 +234,25 @@ def test_hysteresis_is_told_from_a_drift_in_time():
     assert cause.values[2] == pytest.approx(4e-5 * G, abs=4 * cause.covariance[2, 2] ** 0.5)
 
 
+def test_hysteresis_and_a_drift_in_time_are_one_class_where_it_turns_back_once():
+    """Three temperatures, the first and the last alike: a jump between them does the same."""
+    plan = soaks.soak((0, 40, 0), 10.0)
+    ends = np.array([rows["time"].iloc[-1] for rows in plan.rows])
+
+    def loop(above: Array, read: Array, time: Array) -> Array:
+        soak = np.searchsorted(ends, time[0]) // (len(plan.rows) // 3)
+        change = np.zeros_like(read)
+        change[:, 2] = 1.5e-5 * G * (0, 1, -1)[soak]
+        return change
+
+    campaign = soaks.recorded(plan, 17, loop)
+    effects = [CATALOGUE[f"accel_{what}"] for what in ("warm_up", "bias_ramp", "bias_jump")]
+    selection = select_with_temperature(campaign, effects, LEVEL, TEMPERATURE_LEVEL, np.inf)
+    (cause,) = selection.named.causes
+    assert cause.verdict == "one_of_class"
+    assert {"accel_thermal_hysteresis", "accel_bias_jump"} <= set(cause.members)
+
+
 def test_a_delay_is_that_of_a_first_order():
     """After a long ramp a part is behind by rate × τ, and a part before it ahead by as much."""
     time = np.arange(0.0, 3000.0, 10.0)
@@ -340,14 +359,18 @@ def test_a_knot_is_told_from_a_parabola_and_a_cubic(shape, is_knot):
 # ---- what the model adds to a reading
 
 
-KNOTS = {"bias_x": ICE_POINT + 27, "cross_yz": ICE_POINT + 31}
+KNOTS = {
+    f"{function}{side}": ICE_POINT + at + off
+    for function, at in (("bias_x", 27), ("cross_yz", 31))
+    for side, off in (("_below", -3), ("", 0), ("_above", 2))
+}
 
 
 @pytest.mark.parametrize("sensor", ["accel", "gyro"])
 def test_its_terms_say_in_text_what_is_read(sensor):
     pieces = [
         *polynomials(dict.fromkeys(FUNCTIONS, 3)),
-        *(Piece(f, power) for power in (BEND, SHIFT) for f in KNOTS),
+        *(Piece(f, power) for power in NAMES for f in ("bias_x", "cross_yz")),
     ]
     effect: Effect = TemperatureModel(sensor, pieces, KNOTS)
     rng = np.random.default_rng(2)
@@ -379,7 +402,7 @@ def test_nothing_is_extrapolated(name):
     effect = KNOWN[name].with_constants({c.name: c.value for c in KNOWN[name].constants(campaign)})
     own = stretches(np.zeros(4), np.ones(4), np.array([278.0, 279.5, 310.5, 312.0]))
     values = np.ones(len(effect.parameters)) * np.array(
-        [not p.name.endswith(("bend", "shift")) for p in effect.parameters]
+        [not p.name.endswith(tuple(NAMES.values())) for p in effect.parameters]
     )
     ones = np.ones((4, 3))
     read = effect.reads(Reading(ones, ones), Truth(ones, ones), own, values)

@@ -13,8 +13,10 @@ from inertial.campaign.measurement import EffectOfResult
 from inertial.effects import KNOWN
 from stages.export.autopilots import ARDUPILOT, PX4, parameter_file
 from stages.export.calibration import Calibration
+from stages.export.document import document
 from tests.export.made_up import calibration, mount
 from tests.export.readers import Array, mavproxy, qgroundcontrol
+from tests.expressions import value_of
 
 ICE = 273.15
 T0, LOWEST, HIGHEST = 22.0, -15.0, 65.0  # °C
@@ -30,6 +32,7 @@ def effect(name: str, numbers: Functions, knots: Functions | None = None) -> Eff
     def rows(values: Functions) -> dict[str, dict[str, Any]]:
         return {
             key: {"parameter": f"{name}.{key}", "value": value, "sigma": 1e-9, "unit": "1"}
+            | {"meaning": ""}
             for key, value in values.items()
         }
 
@@ -124,6 +127,34 @@ def test_a_knee_becomes_the_best_cubic_and_its_error_is_stated() -> None:
         at_reference = offsets(made, "accelerometer", np.array([T0]))
         assert [one[0, 2] for one in at_reference] == pytest.approx([at_t0] * 2, abs=1e-8)
     assert f"off by up to 0, 0, {error:.2g} m/s^2" in head(made)
+
+
+def test_the_equation_of_the_json_is_the_mean_over_three_knots_and_says_its_range() -> None:
+    """Below all knots only the powers count, above them each bend by its way beyond its knot."""
+    numbers = {"bias_z_1": 2e-4, "bias_z_2": 1e-6} | {
+        f"bias_z_bend{side}": size
+        for side, size in (("_below", 1e-4), ("", 4e-4), ("_above", 1e-4))
+    }
+    knots = {"knot_bias_z_below": 20.0, "knot_bias_z": 25.0, "knot_bias_z_above": 30.0}
+    own = warm(effect("accel_temperature", numbers, knots), None)
+    triad = document(own)["mounts"][0]["accelerometer"]
+    (stated,) = triad["effects"]
+    names = {row["name"]: row["value"] for row in (*stated["parameters"], *stated["constants"])}
+    limits = [names[f"accel_temperature.{key}"] - ICE for key in ("T_min", "T_max")]
+    assert limits == pytest.approx([LOWEST, HIGHEST])
+    names |= {
+        "f_x": 0.0,
+        "f_y": 0.0,
+        "f_z": 0.0,
+        "M_zx": 0.0,
+        "M_zy": 0.0,
+        "M_zz": 1.0,
+        "bias_z": 0.0,
+    }
+    for celsius, bends in ((0.0, 0.0), (22.0, 1e-4 * 2), (60.0, 1e-4 * 40 + 4e-4 * 35 + 1e-4 * 30)):
+        d = celsius - T0
+        read = value_of(triad["equation"]["z"], names | {"T": celsius + ICE})
+        assert read == pytest.approx(2e-4 * d + 1e-6 * d**2 + bends, rel=1e-9)
 
 
 def test_scale_factors_along_the_temperature_are_named_as_left_out() -> None:

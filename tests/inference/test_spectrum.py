@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.signal
 
 from inertial.estimation.spectrum import band_levels, white_level
 
@@ -30,3 +31,12 @@ def test_an_oscillation_and_a_drift_are_no_noise():
     clean, _ = white_level(band_levels(noise, 100.0, BAND))
     level, sigma = white_level(band_levels(disturbed, 100.0, BAND))
     assert abs(level[0] - clean[0]) < sigma[0]
+
+
+@pytest.mark.parametrize("samples", [64, 999, 4096])
+def test_a_periodogram_is_that_of_scipy(samples):
+    """On a line of any slope, which is none of the noise; two-sided, so half of scipy's."""
+    values = np.random.default_rng(5).standard_normal((samples, 2)) + np.arange(samples)[:, None]
+    _, density = scipy.signal.periodogram(values, 50.0, "hann", detrend="linear", axis=0)
+    found = band_levels(values, 50.0, (0.0, 25.0))
+    np.testing.assert_allclose(found, density[1:-1] / 2, rtol=1e-9)

@@ -81,7 +81,13 @@ def brief(*logs: str) -> dict[str, Any]:
 
 def curve(parameter: str, **changed: Any) -> list[dict[str, Any]]:
     """A parabola of the temperature, from 1.4 to 65.5 °C."""
-    nothing = {"order": 2, "knot": None, "relative_to": None, "not_separated": None}
+    nothing = {
+        "order": 2,
+        "knot": None,
+        "probability": None,
+        "relative_to": None,
+        "not_separated": None,
+    }
     return [
         {"mount": "", "sensor": "accel", "parameter": parameter, "temperature": t, "unit": "m/s²"}
         | {"value": 1e-6 * (t - 300) ** 2, "sigma": 1e-4}

@@ -22,7 +22,7 @@ def test_nothing_where_nothing_depends_on_the_temperature() -> None:
 
 
 def test_a_figure_a_table_with_range_and_knot_and_the_warm_up() -> None:
-    curves = curve("bias_x") + curve(
+    curves = curve("bias_x", probability=0.834) + curve(
         "bias_z", order=1, knot=297.95, relative_to=306.15, not_separated="or a tilt"
     )
     warm = {"mount": "", "sensor": "accel", "axis": "x", "band": 1e-4, "unit": "m/s²"}
@@ -35,6 +35,7 @@ def test_a_figure_a_table_with_range_and_knot_and_the_warm_up() -> None:
     assert isinstance(table, Table)
     x, z = (row.cells for row in table.rows)
     assert x[:5] == ("bias_x", "parabola", "1.4", "65.5", "")
+    assert x[-1].startswith("of this shape with a probability of 0.83;")
     assert z[1] == "two straight lines" and z[4] == "24.8"
     assert "change from 33.0 °C" in z[-1] and "or a tilt" in z[-1]
     assert isinstance(sentences, Sentences) and "3521 s" in sentences.items[0]

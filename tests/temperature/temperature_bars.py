@@ -41,6 +41,12 @@ def rms(curves: Sequence[Curve]) -> float:
     return float(np.sqrt(np.nanmean(np.square(ratios)))) if np.isfinite(ratios).any() else np.nan
 
 
+def attainable(curves: Sequence[Curve]) -> float:
+    """The same of the ideal estimator, which knows how the curves were drawn."""
+    ratios = [np.divide(curve["ideal"], curve["bound"]) for curve in curves if curve["ideal"]]
+    return float(np.sqrt(np.mean(np.square(np.concatenate(ratios))))) if ratios else np.nan
+
+
 def coverage(curves: Sequence[Curve]) -> float:
     """Share of temperatures between nodes at which the truth is within the 95 % interval."""
     inside = [

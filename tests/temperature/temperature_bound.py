@@ -69,13 +69,13 @@ class Bound:
         self, layout: Layout, temperature: Array, gyro: float, accelerometer: float
     ) -> None:
         """gyro, accelerometer: white noise, °/√h and m/s/√h."""
-        self._layout, self._temperature = layout, temperature
+        self.layout, self.temperature = layout, temperature
         self._density = np.repeat([accelerometer / 60, np.radians(gyro) / 60], 3)
 
     @cached_property
     def _jacobian(self) -> Array:
         """By the unknowns of the layout, (blocks, 6, n)."""
-        layout = self._layout
+        layout = self.layout
         truth, known = layout.truth(), layout.known
         step = np.where(known == LEVER_ARM, 1e-2, ARC_SECOND)
         step[:9] = step[12:21] = 1e-5
@@ -89,51 +89,49 @@ class Bound:
         )
 
     @cached_property
-    def _rows(self) -> Array:
+    def rows(self) -> Array:
         """The same in units of the noise of what is known, (m, n)."""
-        return known_rows(self._layout, self._jacobian, self._density)
+        return known_rows(self.layout, self._jacobian, self._density)
 
     def covariance(self, shapes: Sequence[tuple[int, Array]]) -> Array:
         """Of the 24 parameters at the middle, then the coefficients of (parameter, shapes) each.
 
         shapes: of the coefficients, (blocks, k). Table errors are eliminated.
         """
-        n = len(self._layout.known)
-        rows = np.hstack([self._rows, *(self._of(p, s) for p, s in shapes)])
+        n = len(self.layout.known)
+        rows = np.hstack([self.rows, *(self.rows_of(p, s) for p, s in shapes)])
         information = rows.T @ rows
-        information[np.arange(n), np.arange(n)] += np.nan_to_num(1 / self._layout.known**2)
+        information[np.arange(n), np.arange(n)] += np.nan_to_num(1 / self.layout.known**2)
         spread = inverse(information)
         kept = [*range(24), *range(n, len(spread))]
         return np.asarray(spread[np.ix_(kept, kept)])
 
-    def _of(self, parameter: int, shapes: Array) -> Array:
+    def rows_of(self, parameter: int, shapes: Array) -> Array:
         """The columns of the coefficients of a parameter, (m, k)."""
         columns = self._jacobian[:, :, [parameter]] * shapes[:, None]
-        return known_rows(self._layout, columns, self._density)
+        return known_rows(self.layout, columns, self._density)
 
     @cached_property
     def _constant(self) -> Array:
         """Covariance of all unknowns where no parameter is a curve, (n, n)."""
-        return inverse(
-            self._rows.T @ self._rows + np.diag(np.nan_to_num(1 / self._layout.known**2))
-        )
+        return inverse(self.rows.T @ self.rows + np.diag(np.nan_to_num(1 / self.layout.known**2)))
 
     def alone(self, curve: Curve) -> Array:
         """Sigmas of the coefficients of the only curve of a campaign, (k,), its knot known."""
-        own = self._of(curve.parameter, curve.shapes(self._temperature))
-        shared = self._rows.T @ own
+        own = self.rows_of(curve.parameter, curve.shapes(self.temperature))
+        shared = self.rows.T @ own
         left = own.T @ own - shared.T @ self._constant @ shared
         return np.asarray(np.sqrt(np.diag(inverse(left))))
 
     def sigmas(self, curves: Sequence[Curve]) -> Array:
         """Of the 24 parameters at the middle and the coefficients of curves, knots known."""
-        shapes = [(c.parameter, c.shapes(self._temperature)) for c in curves]
+        shapes = [(c.parameter, c.shapes(self.temperature)) for c in curves]
         return np.sqrt(np.diag(self.covariance(shapes)))
 
     def of_curves(self, curves: Sequence[Curve], coefficients: Sequence[Array], at: Array) -> Array:
         """Sigma of each of the 24 parameters at temperatures, K, knots not known; (24, k)."""
         told = list(zip(curves, coefficients, strict=True))
-        blocks = [(c.parameter, c.with_knot(self._temperature, n)) for c, n in told]
+        blocks = [(c.parameter, c.with_knot(self.temperature, n)) for c, n in told]
         covariance = self.covariance(blocks)
         sigma: Array = np.sqrt(np.repeat(np.diag(covariance)[:24, None], len(at), axis=1))
         start = 24

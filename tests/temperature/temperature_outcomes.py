@@ -1,6 +1,7 @@
 """A drawn campaign through the stages: each parameter's curve beside the truth and the bound."""
 
 import time
+import zlib
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pandas as pd
 from temperature_bars import Outcome
 from temperature_draws import Drawn, drawn, planned
+from temperature_ideal import ideal
 
 import laboratory
 from inertial.estimation.triad import linear_names
@@ -18,6 +20,7 @@ from inertial.tables.code import code_of, hash_of
 HERE = Path(__file__).parent
 NAMES = [(sensor, name) for sensor in ("accel", "gyro") for name in linear_names()]
 POINTS = 41  # temperatures over the range
+IDEAL_DRAWS = 3  # of noise, for the ideal estimator
 AWAY = 0.15  # of the distance between two nodes, at least so far from both: between nodes
 
 
@@ -28,7 +31,7 @@ def code() -> str:
     stages = [name for name in every if name not in chain.BESIDE]
     files = {file for stage in stages for file in code_of(stage)}
     files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {HERE / f"temperature_{name}.py" for name in ("draws", "bound", "outcomes")}
+    files |= {HERE / f"temperature_{name}.py" for name in ("draws", "bound", "ideal", "outcomes")}
     return hash_of(sorted(files))[:16]
 
 
@@ -49,6 +52,7 @@ def _told(name: str, hidden: Drawn) -> Outcome:
     tables = chain.in_memory(recording, "diagnosis", chain.BESIDE)
     at = np.linspace(plan.low, plan.high, POINTS)
     bound = plan.bound.of_curves(hidden.curves, hidden.coefficients, at)
+    random = np.random.default_rng([2034, zlib.crc32(name.encode())])
     curves = []
     for p, (sensor, parameter) in enumerate(NAMES):
         own = [i for i, curve in enumerate(hidden.curves) if curve.parameter == p]
@@ -62,6 +66,11 @@ def _told(name: str, hidden: Drawn) -> Outcome:
                 "error": (value - hidden.truth(p, at)).tolist(),
                 "sigma": sigma.tolist(),
                 "bound": bound[p].tolist(),
+                "ideal": [
+                    ideal(hidden, i, name.split("|")[0], at, random).error.tolist()
+                    for i in own
+                    for _ in range(IDEAL_DRAWS)
+                ],
             }
         )
     causes = tables["diagnosis/causes"]["cause"].tolist()

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from temperature_bars import (
     Outcome,
+    attainable,
     bars,
     clear,
     constant,
@@ -39,6 +40,7 @@ def write(outcomes: Sequence[Outcome], page: Path = PAGE) -> str:
         "hours": f"{sum(one['seconds'] for one in outcomes) / 3600:.1f}",
         "number": CURVES,
         "bars": [(bar.words, bar.wanted, bar.measured, bar.verdict) for bar in told],
+        "attainable": f"{attainable(clear(curves_of(outcomes))):.3f}",
         "plans": list(_plans(outcomes)),
         "shapes": list(_shapes(outcomes)),
         "constants": list(_constants(outcomes)),
@@ -55,7 +57,7 @@ def _plans(outcomes: Sequence[Outcome]) -> Iterator[Row]:
     for plan in PLANS:
         own = clear(curves_of(outcomes, plan))
         count = sum(one["plan"] == plan for one in outcomes)
-        measured = (f"{rms(own):.3f}", f"{coverage(own):.3f}")
+        measured = (f"{rms(own):.3f}", f"{attainable(own):.3f}", f"{coverage(own):.3f}")
         counts = (count, len(own), len(own) - len(given(own)))
         shapes = (right(own), len(straight(own)))
         yield plan, *map(str, counts), *measured, *map(str, shapes)
@@ -69,7 +71,8 @@ def _shapes(outcomes: Sequence[Outcome]) -> Iterator[Row]:
         good = [curve for curve in own if curve["found"] == shape]
         bad = [curve for curve in own if curve["found"] != shape]
         found = ", ".join(f"{name}: {counts[name]}" for name in sorted(counts))
-        yield shape, f"{len(own)}", found, f"{rms(good):.3f}", f"{rms(bad):.3f}"
+        measured = (f"{rms(good):.3f}", f"{rms(bad):.3f}", f"{attainable(own):.3f}")
+        yield shape, f"{len(own)}", found, *measured
 
 
 def _constants(outcomes: Sequence[Outcome]) -> Iterator[Row]:

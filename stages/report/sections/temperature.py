@@ -95,6 +95,12 @@ def _row(name: str, rows: Sequence[Record]) -> outline.Row:
     values = [row["value"] / unit.size for row in rows]
     knot = first["knot"]
     remark = ""
+    if first["probability"] is not None:
+        remark = _(
+            "of this shape with a probability of {probability}; value and σ are those of the mean "
+            "over all shapes",
+            probability=fixed(first["probability"], 2),
+        )
     if first["relative_to"] is not None:
         remark = _(
             "change from {reference} °C, its level is not known",

@@ -1,4 +1,4 @@
-"""The result where the members of a class disagree: their mixture, weighted by probability."""
+"""The distribution where models of a class disagree: their mixture, weighted by probability."""
 
 import numpy as np
 from numpy.typing import NDArray
