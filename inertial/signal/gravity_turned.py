@@ -80,7 +80,8 @@ def turned(stretches: Sequence[tuple[Array, Array, float]]) -> Turned | None:
         inverse = np.linalg.inv(normal + PRIOR * np.eye(UNKNOWNS))
         left = change - design @ (inverse @ (weighted.T @ change))
         scatter = MAD_TO_SIGMA * float(np.median(np.abs(left))) or 1.0
-        weight = 1 / (1 + (left / (ROBUST_SIGMA * scatter)) ** 2)
+        with np.errstate(over="ignore"):  # without noise: far out the weight is 0
+            weight = 1 / (1 + (left / (ROBUST_SIGMA * scatter)) ** 2)
     of_each = design * (weight * left)[:, None]
     covariance = inverse @ (of_each.T @ of_each) @ inverse  # whatever the scatter of each
     # What is not determined at all stays at 0: its sigma is that of the prior.

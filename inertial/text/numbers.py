@@ -96,11 +96,14 @@ def whole(value: float | None) -> str:
 
 
 def probability(p_value: float | None) -> str:
-    """A p-value, with its order of magnitude where it is small."""
+    """A p-value, with its order of magnitude where it is small.
+
+    Of one below 10⁻¹² only that is said: no noise is known to be Gaussian so far out.
+    """
     if p_value is None or not isfinite(p_value):
         return "—"
-    if p_value < 1e-300:
-        return "< 10⁻³⁰⁰"
+    if p_value < 1e-12:
+        return "< 10⁻¹²"
     if p_value < 1e-3:
         digit, _, exponent = f"{p_value:.0e}".partition("e")
         return f"{digit} × 10{raised(int(exponent))}"
@@ -108,7 +111,7 @@ def probability(p_value: float | None) -> str:
 
 
 def p_is(p_value: float | None) -> str:
-    """A p-value as part of a sentence: p = 0.41, p < 10⁻³⁰⁰."""
+    """A p-value as part of a sentence: p = 0.41, p < 10⁻¹²."""
     text = probability(p_value)
     return f"p {text}" if text.startswith("<") else f"p = {text}"
 

@@ -100,7 +100,7 @@ def test_a_gravity_that_is_not_of_the_place_is_named():
     assert event.size == pytest.approx(9.80665 - 9.7935882)
     words = GravityError().describe(event, "")
     assert "the size of the unit g" in words.sentence
-    assert "off by −1332 ppm" in words.consequence
+    assert "off by −1330 ppm" in words.consequence
     assert "Normal gravity is used" in words.action
     (event,) = GravityError().detect_in_campaign(given(gravity=9.80665, refuted_gravity=9.80665))
     assert "The stated value is used" in GravityError().describe(event, "").action

@@ -63,7 +63,7 @@ def test_a_number_stands_beside_what_was_expected(identifier: str, said: str) ->
 
 def test_a_gap_is_shown_by_its_two_lines() -> None:
     html = faulty()[GAP_FINDING]
-    rows = re.findall(r"<tr><td[^>]*>(before|after)</td>(.*?)</tr>", html)
+    rows = re.findall(r"<tr>\s*<td[^>]*>(before|after)</td>(.*?)</tr>", html, re.DOTALL)
     cells = {side: re.findall(r"<td[^>]*>([^<]*)</td>", row) for side, row in rows}
     assert cells["before"][:2] == ["2\u202f192", "21.890"]
     assert cells["after"][:2] == ["2\u202f193", "33.870"]

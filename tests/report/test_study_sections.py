@@ -91,7 +91,7 @@ def test_a_fencepost_stands_on_top_of_the_published_values():
     )
     assert "1 value of 1 comparison" in text(section) or "1 value of one" in text(section)
     assert "Scale factors of the gyros: fencepost." in text(section)
-    (_, table) = of(section, Table)
+    (table,) = of(section, Table)
     assert table.rows[0].anchor == named["id"] and table.rows[0].tone == "fair"
 
 

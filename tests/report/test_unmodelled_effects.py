@@ -52,7 +52,7 @@ def test_what_is_identified_says_how_sure_it_is_and_what_it_gains() -> None:
     assert (
         "Identified: no other effect of the catalogue has the same signature in these data." in html
     )
-    assert "Signal-to-noise ratio: 77. Probability under noise alone: p &lt; 10⁻³⁰⁰." in html
+    assert "Signal-to-noise ratio: 77. Probability under noise alone: p &lt; 10⁻¹²." in html
     assert "χ² of the gyros falls by 12 070 of 12 897, which captures 99." in html
     assert "mass unbalance" not in html.partition("Certainty")[0]  # the sentence is criticism's own
 

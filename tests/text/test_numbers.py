@@ -82,7 +82,7 @@ def test_no_negative_zero() -> None:
 
 @pytest.mark.parametrize(
     ("p_value", "text"),
-    [(0.41, "p = 0.41"), (9.6e-5, "p = 1 × 10⁻⁴"), (2.4e-9, "p = 2 × 10⁻⁹"), (0.0, "p < 10⁻³⁰⁰")],
+    [(0.41, "p = 0.41"), (9.6e-5, "p = 1 × 10⁻⁴"), (2.4e-9, "p = 2 × 10⁻⁹"), (0.0, "p < 10⁻¹²")],
 )
 def test_p_values(p_value: float, text: str) -> None:
     assert numbers.p_is(p_value) == text
