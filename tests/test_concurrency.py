@@ -74,7 +74,8 @@ def test_a_killed_run_keeps_nobody_waiting_and_of_two_at_once_one_waits(tmp_path
     both = [index_of(tmp_path), index_of(tmp_path)]
     said = [each.communicate(timeout=PATIENCE)[0] for each in both]
     assert [each.returncode for each in both] == [0, 0]
-    assert sum(WAITS in text for text in said) == 1
+    # Either makes its pages in two runs, so that each may have to wait for the other.
+    assert any(WAITS in text for text in said)
 
 
 def _children(pid: int) -> list[int]:
