@@ -205,7 +205,7 @@ def _summary(recording: Recording) -> str:
     elif refused := sum(recording.refused.values()):
         lines = counted(refused, "line")
         sentences.append(_("No cause, but {refused} cannot be read.", refused=lines))
-    return " ".join(sentences) or _("Nothing is wrong with this recording.")
+    return " ".join(sentences) or _("No cause of a fault was found in this recording.")
 
 
 def _wrapped(text: str, indent: str = "") -> str:

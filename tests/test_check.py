@@ -227,7 +227,7 @@ def test_nothing_is_wrong(clean: list[Results], tmp_path: Path, capsys) -> None:
     assert capsys.readouterr().out.splitlines() == [
         "demo: 12 of 12 manoeuvres found, 12 complete.",
         "",
-        "Nothing is wrong with this recording.",
+        "No cause of a fault was found in this recording.",
     ]
 
 
