@@ -46,6 +46,7 @@ class GyroDeadBand(Effect):
     )
     sizes = by_grade(1, 0.01, 0.01, 0.01, 1)
     thinkable = 1.0
+    positive = True
     scan = Scan("width", "rad/s", _("largest rate that is lost"))
 
     def __init__(self, axis: str) -> None:

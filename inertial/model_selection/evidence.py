@@ -23,7 +23,9 @@ class SearchedEffect:
     physical effect but an arbitrary function, such as a drift without a law; it replaces several
     effects that together imitate it, but never a single effect that suffices.
     `between`: whether the true value of a scan may lie between two candidates. `only`: the value
-    of its single column, where it is there with that value or not at all.
+    of its single column, where it is there with that value or not at all; `positive`: whether the
+    value of its single column cannot be negative: then a drop of chi-squared by a negative one is
+    none, and the test is one-sided, its p-value at most half of that stated.
     """
 
     name: str
@@ -31,6 +33,7 @@ class SearchedEffect:
     free: bool = False
     between: bool = True
     only: float | None = None
+    positive: bool = False
 
 
 def searched_effect(
@@ -39,10 +42,11 @@ def searched_effect(
     free: bool = False,
     between: bool = True,
     only: float | None = None,
+    positive: bool = False,
 ) -> SearchedEffect:
     """An effect by the columns of its candidates."""
     columns = tuple(tuple(int(i) for i in candidate) for candidate in candidates)
-    return SearchedEffect(name, columns, free, between, only)
+    return SearchedEffect(name, columns, free, between, only, positive)
 
 
 # ---- The information of the equations of all sensors about the effects.

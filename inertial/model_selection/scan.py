@@ -41,6 +41,7 @@ class Candidates:
         self.value = np.array([value for _, value, _ in listed], dtype=np.int64)
         only = np.array([np.nan if e.only is None else e.only for e in effects], np.float64)
         self.only = only[self.effect]
+        self.positive = np.array([e.positive for e in effects], dtype=bool)[self.effect]
         widths = np.array([len(columns) for columns in self.columns], dtype=np.int64)
         self.widths = [
             Width(
@@ -97,7 +98,9 @@ class Candidates:
             for batch in _batches(len(c), many.shape[1]):
                 along = white[batch] @ many[c[batch]]
                 misfit = self._misfit(width.places[batch], values[batch], vectors[batch], along)
-                drop[width.places[batch]] = np.einsum("gij,gij->gj", along, along) - misfit
+                drops = np.einsum("gij,gij->gj", along, along) - misfit
+                drops[self.positive[width.places[batch], None] & (many[c[batch, 0]] < 0)] = 0.0
+                drop[width.places[batch]] = drops
             degrees[width.places] = np.sum(values > 0, axis=1)
         return np.maximum(drop, 0.0).reshape(len(self), *right.shape[1:]), degrees
 

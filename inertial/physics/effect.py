@@ -132,7 +132,7 @@ class Effect(ABC):
     fibre-optic gyro and its accelerometers), tactical (MEMS of the STIM300 class), mti (of the
     MTi-100 class), consumer; of a table: good table, poor table; of a site: usual. Sizes of more
     than `thinkable` times the largest of them are excluded. `only`: the value of its parameter
-    if it is there, where no other is possible.
+    if it is there, where no other is possible; `positive`: whether that value cannot be negative.
 
     `sought_in`: where it is detected: in the "blocks" of means on which all equations rest; in the
     "spectrum" of the full-rate residuals, for it is faster than a block or periodic in the angle of
@@ -160,6 +160,7 @@ class Effect(ABC):
     sizes: ClassVar[Mapping[str, float]]
     thinkable: ClassVar[float] = 100.0
     only: ClassVar[float | None] = None
+    positive: ClassVar[bool] = False
     sought_in: ClassVar[str] = "blocks"
     finding: ClassVar[str] = ""
     absorbed_by: ClassVar[str] = ""

@@ -438,9 +438,17 @@ def evidence_of(
 
     searched = []
     for name, family in families.items():
-        between = family[0].scan is None or family[0].scan.between
-        only = family[0].only
-        searched.append(searched_effect(name, *map(columns, family), between=between, only=only))
+        first = family[0]
+        between = first.scan is None or first.scan.between
+        searched.append(
+            searched_effect(
+                name,
+                *map(columns, family),
+                between=between,
+                only=first.only,
+                positive=first.positive,
+            )
+        )
     for name, waves in drifts.items():
         axes = np.array([columns(wave) for wave in waves]).T  # (3, waves)
         searched.append(searched_effect(name, *axes.tolist(), axes.ravel().tolist(), free=True))

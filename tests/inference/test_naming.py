@@ -53,6 +53,22 @@ def test_noise_is_named_at_the_level(plan: str):
     assert share == pytest.approx(LEVEL, abs=0.0065)
 
 
+def test_a_share_that_cannot_be_negative_is_found_at_most_half_as_often_in_noise():
+    rng = np.random.default_rng(11)
+    information = np.array([[4.0, 1.0], [1.0, 2.0]])
+    other, share = searched_effect("other", (0,)), searched_effect("share", (1,), positive=True)
+    candidates = Candidates([other, share])
+    right = np.linalg.cholesky(information) @ rng.standard_normal((2, 20_000))
+    for given in ((), (0,)):
+        drops, _ = candidates.drops(information, right, given)
+        assert np.mean(drops[1] > 3.841) == pytest.approx(0.025, abs=0.004)  # χ² of 1 at 5 %, half
+    both, _ = Candidates([other, searched_effect("share", (1,))]).drops(information, right, (0,))
+    estimate = np.linalg.solve(information, right)[1]
+    drops, _ = candidates.drops(information, right, (0,))
+    assert (drops[1][estimate < 0] == 0).all()
+    np.testing.assert_allclose(drops[1][estimate > 0], both[1][estimate > 0])
+
+
 def test_what_is_named_is_what_stands_above_its_price():
     p, rng = plan_of("b"), np.random.default_rng(2)
     quiet = np.zeros(p.raw.shape[1])
