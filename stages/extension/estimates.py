@@ -51,6 +51,11 @@ class Solved:
         return STAGES[self.sensor]
 
     @property
+    def values(self) -> Array:
+        """The values of its rows, 0 where there is none."""
+        return np.array([row["value"] or 0.0 for row in self.rows])
+
+    @property
     def of_sensor(self) -> list[Row]:
         """The rows of the twelve parameters."""
         return self.rows[:UNKNOWNS]

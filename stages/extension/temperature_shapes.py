@@ -207,40 +207,57 @@ class _Equations:
 
     def mixed(self, solution: Solved, shapes: Shapes, motion: Motion) -> Solved:
         """The fit with the mixture of all shapes in place of those that were named."""
+        places = self._places(solution, shapes)
         chosen = sorted(product(*shapes.values()), key=lambda one: -_probability(one))[:MOST]
-        pieces = sorted({p for f, own in shapes.items() for s in own for p in s.pieces(f)})
-        rows = list(solution.rows)
+        fits = [self._placed(shapes, one, places) for one in chosen]
+        values, covariances, together = (np.array(each) for each in zip(*fits, strict=True))
+        weights = self._weights(shapes, chosen, together)
+        mean, covariance = mixture(values, covariances, weights)
+        # What the sizes of effects and scanned values have changed in the fit stays.
+        old, named = places.kept, slice(len(places.kept))
+        before = np.ix_(own := places.columns(self.before), own)
+        mean[named] += solution.values[old] - self.before.values[own]
+        covariance[named, named] += solution.covariance[np.ix_(old, old)]
+        covariance[named, named] -= self.before.covariance[before]
+        likeliest = {
+            f: _likeliest([one[i].degree for one in chosen], weights) for i, f in enumerate(shapes)
+        }
+        model = _of_shapes(self.model, places.pieces, shapes, likeliest)
+        return _written(solution, places, model, motion, mean, covariance)
+
+    def _places(self, solution: Solved, shapes: Shapes) -> "_Places":
         dropped = {_named(self.model, piece) for piece in self.named}
-        kept = [i for i, row in enumerate(rows) if row["parameter"] not in dropped]
+        kept = [i for i, row in enumerate(solution.rows) if row["parameter"] not in dropped]
         labels = {
             f"{e.name}.{p.name}": f"{e.label}.{p.name}" for e in self.effects for p in e.parameters
         }
-        wanted = [labels.get(rows[i]["parameter"], "") for i in kept if i >= UNKNOWNS]
-        place = {piece: len(kept) + i for i, piece in enumerate(pieces)}
-        size = len(kept) + len(pieces)
+        wanted = [labels.get(solution.rows[i]["parameter"], "") for i in kept if i >= UNKNOWNS]
+        pieces = sorted({p for f, own in shapes.items() for s in own for p in s.pieces(f)})
+        return _Places(kept, wanted, pieces)
 
-        def embedded(columns: Mapping[str, int]) -> tuple[Array, Array, float]:
-            """Values and covariance of the rows that are kept, and of columns at their places."""
-            fit = self.fit(list(columns))
-            column = {name: i for i, (kind, name) in enumerate(fit.names) if kind == "effect"}
-            own = [*range(UNKNOWNS), *(column[name] for name in (*wanted, *columns))]
-            to = [*range(len(kept)), *columns.values()]
-            values, covariance = np.zeros(size), np.zeros((size, size))
-            values[to] = fit.values[own]
-            covariance[np.ix_(to, to)] = fit.covariance[np.ix_(own, own)]
-            return values, covariance, fit.chi_squared
+    def _placed(
+        self, shapes: Shapes, combination: Sequence[Shape], places: "_Places"
+    ) -> tuple[Array, Array, float]:
+        """Values and covariance, zero for pieces of other shapes, and chi-squared of a fit."""
+        columns = {
+            name: places.of(piece)
+            for f, shape in zip(shapes, combination, strict=True)
+            for name, piece in zip(self.columns(f, shape), shape.pieces(f), strict=True)
+        }
+        fit = self.fit(list(columns))
+        own = places.columns(fit, list(columns))
+        to = [*range(len(places.kept)), *columns.values()]
+        values, covariance = np.zeros(places.size), np.zeros((places.size, places.size))
+        values[to] = fit.values[own]
+        covariance[np.ix_(to, to)] = fit.covariance[np.ix_(own, own)]
+        return values, covariance, fit.chi_squared
 
-        fits = [
-            embedded(
-                {
-                    name: place[piece]
-                    for f, shape in zip(shapes, one, strict=True)
-                    for name, piece in zip(self.columns(f, shape), shape.pieces(f), strict=True)
-                }
-            )
-            for one in chosen
-        ]
-        values, covariances, together = (np.array(each) for each in zip(*fits, strict=True))
+    def _weights(self, shapes: Shapes, chosen: Sequence[Sequence[Shape]], together: Array) -> Array:
+        """Of combinations of shapes, from the product of the probabilities of each by itself.
+
+        Together they are more or less likely than that; `together`: chi-squared of their fits,
+        which is measured in the noise that they leave.
+        """
         alone = {
             (f, shape): self.fit([*self.beside(f), *self.columns(f, shape)]).chi_squared
             for f, own in shapes.items()
@@ -249,51 +266,75 @@ class _Equations:
         expected = [
             sum(alone[f, shape] for f, shape in zip(shapes, one, strict=True)) for one in chosen
         ]
-        # More or less likely together than each by itself, in the noise that they leave.
         log_odds = (np.array(expected) - together) / 2 / self.excess
         weights = np.array([_probability(one) for one in chosen])
-        weights = weights * np.exp(log_odds - log_odds.max())
-        mean, spread = mixture(values, covariances, weights)
-        # What the sizes of effects and scanned values have changed in the fit stays.
-        before = self.before
-        column = {name: i for i, (kind, name) in enumerate(before.names) if kind == "effect"}
-        own = [*range(UNKNOWNS), *(column[name] for name in wanted)]
-        old = len(kept)
-        mean[:old] += np.array([rows[i]["value"] or 0.0 for i in kept]) - before.values[own]
-        spread[:old, :old] += solution.covariance[np.ix_(kept, kept)]
-        spread[:old, :old] -= before.covariance[np.ix_(own, own)]
-        sigma = np.sqrt(np.maximum(np.diag(spread), 0.0))
-        template = next(row for row in rows if row["parameter"] in dropped)
-        known = {_named(self.model, p): p for p in pieces}
-        likeliest = {
-            f: _likeliest([one[i].degree for one in chosen], weights) for i, f in enumerate(shapes)
-        }
-        model = _of_shapes(self.model, pieces, shapes, likeliest)
-        described = {parameter.name: parameter for parameter in model.parameters}
-        written = [rows[i] for i in kept] + [
-            _renamed(template, name, described[piece.name].unit, described[piece.name].meaning)
-            for name, piece in known.items()
-        ]
-        constants = [row for row in solution.constants if row["effect"] != self.model.name]
-        constants += [
-            {
-                **_renamed(template, f"{model.name}.{one.name}", one.unit, one.meaning),
-                **{"frame": "", "value": one.value, "sigma": None},
-            }
-            for one in model.constants(motion)
-        ]
-        return replace(
-            solution,
-            rows=[
-                row
-                if i < old and row["value"] is None
-                else {**row, "value": float(value), "sigma": float(scatter)}
-                for i, (row, value, scatter) in enumerate(zip(written, mean, sigma, strict=True))
-            ],
-            covariance=spread,
-            effects=[row["effect"] for row in written[UNKNOWNS:]],
-            constants=constants,
+        return np.asarray(weights * np.exp(log_odds - log_odds.max()))
+
+
+@dataclass(frozen=True)
+class _Places:
+    """Where the unknowns of the mixture are: rows that are kept, then the pieces of all shapes.
+
+    `kept`: rows of the fit; `wanted`: columns of the effects among them, in the same order.
+    """
+
+    kept: Sequence[int]
+    wanted: Sequence[str]
+    pieces: Sequence[Piece]
+
+    @property
+    def size(self) -> int:
+        """The number of unknowns."""
+        return len(self.kept) + len(self.pieces)
+
+    def of(self, piece: Piece) -> int:
+        """That of a piece."""
+        return len(self.kept) + self.pieces.index(piece)
+
+    def columns(self, fit: Estimate, more: Sequence[str] = ()) -> list[int]:
+        """The unknowns of a fit that are kept, and those of more effects."""
+        column = {name: i for i, (kind, name) in enumerate(fit.names) if kind == "effect"}
+        return [*range(UNKNOWNS), *(column[name] for name in (*self.wanted, *more))]
+
+
+def _written(
+    solution: Solved,
+    places: _Places,
+    model: TemperatureModel,
+    motion: Motion,
+    mean: Array,
+    covariance: Array,
+) -> Solved:
+    """The fit with the rows and constants of a model of all pieces; what has no value has none."""
+    template = next(row for row in solution.of_effects if row["effect"] == model.name)
+    described = {parameter.name: parameter for parameter in model.parameters}
+    added = [
+        _renamed(template, _named(model, piece), parameter.unit, parameter.meaning)
+        for piece in places.pieces
+        for parameter in (described[piece.name],)
+    ]
+    sigma = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    without = {i for i, row in enumerate(places.kept) if solution.rows[row]["value"] is None}
+    rows = [
+        row if i in without else {**row, "value": float(value), "sigma": float(scatter)}
+        for i, (row, value, scatter) in enumerate(
+            zip([*(solution.rows[i] for i in places.kept), *added], mean, sigma, strict=True)
         )
+    ]
+    constants = [
+        {
+            **_renamed(template, f"{model.name}.{one.name}", one.unit, one.meaning),
+            **{"frame": "", "value": one.value, "sigma": None},
+        }
+        for one in model.constants(motion)
+    ]
+    return replace(
+        solution,
+        rows=rows,
+        covariance=covariance,
+        effects=[row["effect"] for row in rows[UNKNOWNS:]],
+        constants=[*(r for r in solution.constants if r["effect"] != model.name), *constants],
+    )
 
 
 def _compressed(system: System) -> System:
