@@ -7,7 +7,7 @@ import numpy as np
 
 from inertial.physics.motion import cross
 from inertial.signal.detector import CHANNELS, SENSORS, Array, Booleans, Integers, Log, Piece
-from inertial.signal.scatter import MAD_TO_SIGMA
+from inertial.signal.scatter import MAD_TO_SIGMA, median
 from inertial.signal.steps import MAX_SIDE_S, Step, steps
 
 MIN_RECORDED_SHARE = 0.2  # of the records of a rest that a channel must be in
@@ -144,16 +144,16 @@ class Resting:
     def shaken(self, length: int) -> Booleans:
         """Which blocks of so many records jerk in both sensors: k = n // length, (k,).
 
-        By the median of the changes from reading to reading, which no spike moves.
+        By the median of the changes within each, which no spike moves.
         """
         k = len(self) // length
         both = np.ones(k, bool)
         for sensor in ("accel", "gyro"):
             own = np.flatnonzero(np.isfinite(self.noise[SENSORS[sensor]])) + SENSORS[sensor].start
-            change = np.abs(np.diff(self.values[: k * length, own], axis=0, append=np.nan))
+            blocks = self.values[: k * length, own].reshape(k, length, len(own))
+            change = median(np.abs(np.diff(blocks, axis=1)), axis=1)
             usual = self.noise[own] * np.sqrt(2) / MAD_TO_SIGMA
-            blocks = np.nanmedian(change.reshape(k, length, len(own)), axis=1)
-            both &= (blocks > MIN_JERK_RATIO * usual).any(axis=1)
+            both &= (change > MIN_JERK_RATIO * usual).any(axis=1)
         return both
 
 

@@ -20,6 +20,7 @@ MIN_LEVEL_READINGS = 4  # readings that a level has to last
 MIN_WINDOWS = 16
 MIN_SURE_WINDOWS = 128  # and as many for the noise to be known well: about 30 degrees of freedom
 DIFFERENCES_PER_WIDTH = 8  # differences that are examined in each width
+MAX_DIFFERENCES = 2**14  # differences that give a scatter, which is then known to one per cent
 MAX_DEVIATION_SIGMA = 5.0  # sigmas from the running median: a spike is no step
 # Fall of twice the log likelihood about a change, 95 %: Hansen, Econometrica 68, 2000
 PLACE_LIKELIHOOD = 7.35
@@ -174,12 +175,16 @@ def _cumulative(readings: Array) -> Array:
     return np.append(0.0, np.cumsum(readings - readings[0]))
 
 
-def _differences(total: Array, width: int) -> Array:
+def _differences(total: Array, width: int, apart: int = 1) -> Array:
     """Mean of the `width` readings from k on, less that of those before, k = width … n − width.
 
-    total : sums of the readings, from `_cumulative`
+    total : sums of the readings, from `_cumulative`; apart : from one k to the next
     """
-    before, here, after = total[: -2 * width], total[width:-width], total[2 * width :]
+    before, here, after = (
+        total[: -2 * width : apart],
+        total[width:-width:apart],
+        total[2 * width :: apart],
+    )
     return np.asarray((after - 2 * here + before) / width)
 
 
@@ -203,7 +208,8 @@ class _Noise:
         width = 1
         while width <= min(longest, len(readings) // MIN_WINDOWS):
             # Neighbours share nearly all their readings: some give the scatter as well as all.
-            change = _differences(self.total, width)[:: max(width // DIFFERENCES_PER_WIDTH, 1)]
+            apart = max(width // DIFFERENCES_PER_WIDTH, len(readings) // MAX_DIFFERENCES, 1)
+            change = _differences(self.total, width, apart)
             trend = float(median(change))
             self.widths.append(width)
             self.trend.append(trend)
