@@ -41,7 +41,7 @@ class Stage:
 
     `gathers`: arguments of the function that are made from other inputs; the function that makes
     one names them as its own arguments. A function that takes `provenance` gets what made each
-    of its tables, by argument; that of documents also what makes them, by the name of the stage.
+    of the tables, by argument; that of documents also what makes them, by the name of the stage.
     """
 
     function: Callable[..., Any]
@@ -52,6 +52,11 @@ class Stage:
     def name(self) -> str:
         """The name of its function, which is that of its folder."""
         return self.function.__name__
+
+    @property
+    def _functions(self) -> list[Callable[..., Any]]:
+        """Its function, and those that make arguments of it."""
+        return [self.function, *self.gathers.values()]
 
     @property
     def reads(self) -> Mapping[str, Table]:
@@ -80,7 +85,7 @@ class Stage:
             name: table.stream(paths[name]) if name in streams else table.read(paths[name])
             for name, table in self.reads.items()
         }
-        if "provenance" in inspect.signature(self.function).parameters:
+        if any("provenance" in inspect.signature(f).parameters for f in self._functions):
             read["provenance"] = {name: provenance(paths[name]) for name in self.reads}
             if self.declared.documents:
                 made_by = self._made_by({}) | {"inputs": _hashes([*paths.values()])}

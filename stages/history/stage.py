@@ -1,7 +1,7 @@
 """This calibration into its IMU's archive, against the earlier ones and what others published."""
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -39,26 +39,59 @@ KEPT = (
 )
 
 
-def history(
-    archive: list[Path],
+def calibration_of(
     campaign: pd.DataFrame,
     inputs: pd.DataFrame,
     accelerometer_parameters: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
-    accelerometer_fit: pd.DataFrame,
-    gyroscope_fit: pd.DataFrame,
     result: pd.DataFrame,
     covariance: pd.DataFrame,
     verdict: pd.DataFrame,
-    allowed_changes: pd.DataFrame,
-    published: pd.DataFrame,
-    growing: pd.DataFrame,
-    motions: pd.DataFrame,
-    blocks: pd.DataFrame,
     known: pd.DataFrame,
     manoeuvres: pd.DataFrame,
     uncertainty_budget: pd.DataFrame,
     provenance: Mapping[str, Mapping[str, Any]],
+) -> Row:
+    """What is archived of a campaign; the parameters by all methods are kept beside the result."""
+    (facts,) = rows_of(campaign)
+    references = references_of(facts, rows_of(known), rows_of(manoeuvres))
+    tables = (accelerometer_parameters, gyroscope_parameters, result)
+    return facts | {
+        "parameters": [row for table in tables for row in rows_of(table)],
+        "covariance": rows_of(covariance),
+        "references": reference_rows(references, rows_of(uncertainty_budget)),
+        "verdicts": rows_of(verdict),
+        "inputs": rows_of(inputs),
+        "made_by": _made_by(made for name, made in provenance.items() if name in KEPT),
+    }
+
+
+def published_differences_of(
+    published: pd.DataFrame,
+    result: pd.DataFrame,
+    gyroscope_parameters: pd.DataFrame,
+    growing: pd.DataFrame,
+    motions: pd.DataFrame,
+    level: float,
+) -> list[Difference]:
+    """The result against what others published, and why it may differ."""
+    methods = rows_of(gyroscope_parameters)
+    differences: list[Difference] = []
+    for mount, counted in measurements_of(result).items():
+        own = [row for row in methods if row["mount"] == mount]
+        differences += against_published(published, counted, mount, own)
+        differences += off_by_a_sample(published, counted.gyro, mount, growing, motions, level)
+    return differences
+
+
+def history(
+    archive: list[Path],
+    calibration: Row,
+    published_differences: list[Difference],
+    accelerometer_fit: pd.DataFrame,
+    gyroscope_fit: pd.DataFrame,
+    blocks: pd.DataFrame,
+    allowed_changes: pd.DataFrame,
     *,
     level: float,
     tolerance: Mapping[str, float] | None = None,
@@ -69,20 +102,9 @@ def history(
     when the IMU is due, by `tolerance` where the campaign does not state the allowed changes.
 
     The archive grows with every campaign. Later additions are read when this stage runs, but
-    never cause a rerun. The parameters by all methods are kept beside the result.
+    never cause a rerun.
     """
-    (facts,) = rows_of(campaign)
-    methods = rows_of(gyroscope_parameters)
-    references = references_of(facts, rows_of(known), rows_of(manoeuvres))
-    calibration = facts | {
-        "parameters": [*rows_of(accelerometer_parameters), *methods, *rows_of(result)],
-        "covariance": rows_of(covariance),
-        "references": reference_rows(references, rows_of(uncertainty_budget)),
-        "verdicts": rows_of(verdict),
-        "inputs": rows_of(inputs),
-        "made_by": _made_by(made for name, made in provenance.items() if name in KEPT),
-    }
-    kept = Archive(archive[0], simulated=facts["simulated"])
+    kept = Archive(archive[0], simulated=calibration["simulated"])
     entry = kept.add(calibration)
     archived = {
         "file": entry.file,
@@ -90,13 +112,6 @@ def history(
         "content": entry.row["content"],
         "supersedes": " ".join(entry.row["supersedes"]),
     }
-
-    def differences() -> Iterator[Difference]:
-        for mount, counted in measurements_of(result).items():
-            own = [row for row in methods if row["mount"] == mount]
-            yield from against_published(published, counted, mount, own)
-            yield from off_by_a_sample(published, counted.gyro, mount, growing, motions, level)
-
     others = kept.earlier(calibration)
     series = series_of([(each.row, results(each)) for each in [*others, entry]])
     jumps = jumps_of(series, level)
@@ -104,7 +119,7 @@ def history(
     return {
         "archived": [archived],
         "earlier": [row for other in others for row in results(other)],
-        "published_differences": table_of(list(differences()), level),
+        "published_differences": table_of(published_differences, level),
         "repeatability": [
             *repeatability_rows(series, blocks),
             *power_cycle_rows([*rows_of(gyroscope_fit), *rows_of(accelerometer_fit)]),
@@ -128,4 +143,8 @@ def _made_by(provenance: Iterable[Mapping[str, Any]]) -> list[Row]:
     ]
 
 
-STAGE = Stage(history, DECLARED)
+STAGE = Stage(
+    history,
+    DECLARED,
+    gathers={"calibration": calibration_of, "published_differences": published_differences_of},
+)

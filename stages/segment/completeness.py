@@ -201,6 +201,24 @@ def rest(binned: Binned, m: Manoeuvre, stretch: Stretch) -> Performed:
     )
 
 
+@dataclass(frozen=True)
+class _Turned:
+    """A turn as it is in its log.
+
+    `angle`: rad, without what is missing; None without time; `rate`: of its steady part, rad/s;
+    `seconds`: from rest to rest; `reasons` against it, for the log begins or ends while it turns;
+    `remark`: what its sigma covers, or what is interpolated.
+    """
+
+    m: Manoeuvre
+    angle: float | None
+    rate: float | None
+    seconds: float
+    missing: Missing
+    reasons: tuple[str, ...]
+    remark: str
+
+
 def turn(
     binned: Binned,
     stretches: Sequence[Stretch],
@@ -223,73 +241,97 @@ def turn(
     about = _about(moving, m.axis, level)
     length = moving["seconds"].to_numpy(np.float64)
     timed = bool(np.isfinite(length).all())
-    angle = float(np.nansum(about * length)) if timed else None
-    lacking = missing_of(moving, np.nan_to_num(about), gaps[gaps["log"] == binned.window.log])
-    seconds = binned.duration(first, after)
+    of_log = gaps[gaps["log"] == binned.window.log]
+    reasons, remark = _cut_off(binned, first, after, binned.about(m.axis, level), m)
+    turned = _Turned(
+        m,
+        float(np.nansum(about * length)) if timed else None,
+        _steady_rate(moving, about),
+        binned.duration(first, after),
+        missing_of(moving, np.nan_to_num(about), of_log),
+        tuple(reasons),
+        remark,
+    )
     if (clipped & (m.axis != 0)).any():
-        reasons, remark = _cut_off(binned, first, after, binned.about(m.axis, level), m)
-        reasons += [lacking.hindrance] if lacking.hindrance else []
-        whole = lacking.seconds == 0 and not (reasons and m.recorded == "whole")
-        sentence = _("turned, by an angle that is not measured")
-        sentence = (
-            f"{sentence}{remark}: {_(', and ').join(reasons)}." if reasons else f"{sentence}."
-        )
-        bridged = not whole and not reasons
-        return Performed(
-            m.name,
-            sentence,
-            True,
-            whole,
-            seconds=seconds,
-            missing_s=lacking.seconds,
-            bridged=bridged,
-            lost=not whole,
-        )
-    rate = _steady_rate(moving, about)
-    interpolated = ""
-    if _few_are_masked(moving, lacking, gaps[gaps["log"] == binned.window.log]):
-        interpolated = _("; {seconds:.2f} s are masked and interpolated", seconds=lacking.seconds)
-        angle = None if angle is None else angle + lacking.angle
-        lacking = Missing(0.0, 0.0, "")
+        return _clipped(turned)
+    if _few_are_masked(moving, turned.missing, of_log):
+        turned = _interpolated(turned)
     if m.recorded == "steady":
-        sentence = (
-            _("steady at {signed} °/s.", signed=_signed(degrees(rate), 4))
-            if rate is not None
-            else _("no steady rate.")
-        )
-        whole = lacking.seconds == 0
-        return Performed(m.name, sentence, True, whole, angle, None, lacking.seconds, rate, seconds)
+        return _at_steady_rate(turned)
+    return _from_rest_to_rest(turned, tolerance)
 
+
+def _clipped(turned: _Turned) -> Performed:
+    """A turn whose gyro is cut off: its angle is not measured."""
+    missing, reasons = turned.missing, list(turned.reasons)
+    reasons += [missing.hindrance] if missing.hindrance else []
+    whole = missing.seconds == 0 and not (reasons and turned.m.recorded == "whole")
+    sentence = _("turned, by an angle that is not measured")
+    sentence += f"{turned.remark}: {_(', and ').join(reasons)}." if reasons else "."
+    return Performed(
+        turned.m.name,
+        sentence,
+        True,
+        whole,
+        seconds=turned.seconds,
+        missing_s=missing.seconds,
+        bridged=not whole and not reasons,
+        lost=not whole,
+    )
+
+
+def _interpolated(turned: _Turned) -> _Turned:
+    """The same turn with the few samples that are masked in it."""
+    missing = turned.missing
+    masked = _("; {seconds:.2f} s are masked and interpolated", seconds=missing.seconds)
+    return replace(
+        turned,
+        angle=None if turned.angle is None else turned.angle + missing.angle,
+        missing=Missing(0.0, 0.0, ""),
+        remark=masked + turned.remark,
+    )
+
+
+def _at_steady_rate(turned: _Turned) -> Performed:
+    """A turn of which only the steady part is in the log."""
+    m, rate, missing_s = turned.m, turned.rate, turned.missing.seconds
+    sentence = _("no steady rate.")
+    if rate is not None:
+        sentence = _("steady at {signed} °/s.", signed=_signed(degrees(rate), 4))
+    whole = missing_s == 0
+    return Performed(
+        m.name, sentence, True, whole, turned.angle, None, missing_s, rate, turned.seconds
+    )
+
+
+def _from_rest_to_rest(turned: _Turned, tolerance: float) -> Performed:
+    """A turn with the rests beside it; `tolerance`: of its angle, a share of the planned one."""
+    m, angle, rate, missing = turned.m, turned.angle, turned.rate, turned.missing
     if angle is None:
         return Performed(m.name, _("it turns, but has no time."), True, False, rate=rate)
     of = f"{_signed(degrees(angle), 2)}°"
     of += _(" of {signed}°", signed=_signed(degrees(m.angle), 0)) if m.angle else ""
-    reasons, remark = _cut_off(binned, first, after, binned.about(m.axis, level), m)
-    remark = interpolated + remark
-    known = 0.0 if lacking.hindrance else lacking.angle
+    reasons = list(turned.reasons)
+    known = 0.0 if missing.hindrance else missing.angle
     off = m.angle and abs((angle + known) / m.angle - 1) > tolerance
-    if off and not (reasons or lacking.hindrance):
+    if off and not (reasons or missing.hindrance):
         reasons.append(_("the angle is not the planned one"))
     lost = (
-        [_("{seconds:.2f} s are missing while it turns", seconds=lacking.seconds)]
-        if lacking.seconds
+        [_("{seconds:.2f} s are missing while it turns", seconds=missing.seconds)]
+        if missing.seconds
         else []
     )
-    lost += [lacking.hindrance] if lacking.hindrance else []
+    lost += [missing.hindrance] if missing.hindrance else []
     if not reasons and not lost:
-        sentence = _("{of} from rest to rest{remark}.", of=of, remark=remark)
-        return Performed(m.name, sentence, True, True, angle, 0.0, 0.0, rate, seconds)
-    bridged = not reasons and not lacking.hindrance
-    missing = lacking.angle if bridged else m.angle - angle if m.angle is not None else None
-    sentence = _(
-        "{of} recorded{remark}: {why}",
-        of=of,
-        remark=remark,
-        why=_(", and ").join([*lost, *reasons]),
-    )
+        sentence = _("{of} from rest to rest{remark}.", of=of, remark=turned.remark)
+        return Performed(m.name, sentence, True, True, angle, 0.0, 0.0, rate, turned.seconds)
+    bridged = not reasons and not missing.hindrance
+    lacking = missing.angle if bridged else m.angle - angle if m.angle is not None else None
+    why = _(", and ").join([*lost, *reasons])
+    sentence = _("{of} recorded{remark}: {why}", of=of, remark=turned.remark, why=why)
     sentence += (
-        _("; {signed}° are missing.", signed=_signed(degrees(missing), 2))
-        if missing is not None
+        _("; {signed}° are missing.", signed=_signed(degrees(lacking), 2))
+        if lacking is not None
         else "."
     )
     if bridged:
@@ -300,10 +342,10 @@ def turn(
         True,
         False,
         angle,
-        missing,
-        lacking.seconds,
+        lacking,
+        missing.seconds,
         rate,
-        seconds,
+        turned.seconds,
         bridged,
         lost=not reasons,
     )

@@ -110,27 +110,8 @@ def segment(
     blocks, segments = block_sums.table(), segment_times.table()
     turned = plan_by_encoder(plan, blocks, stated.angle_sigma, angle_tolerance)
     plan = [turned[m.name].manoeuvre if m.name in turned else m for m in plan]
-    in_motion = dict(list(blocks[~blocks["phase"].isin(STATIC_PHASES)].groupby("manoeuvre")))
-    for located, place, stated_turn in turns:
-        told = turned.get(stated_turn.name, ByEncoder(stated_turn))
-        m = told.manoeuvre
-        own = in_motion.get(m.name, blocks.iloc[:0])
-        done = completeness.turn(
-            located.binned,
-            located.stretches,
-            place,
-            m,
-            own,
-            gaps,
-            level,
-            angle_tolerance,
-            block_sums.clipped(m.name).get("", np.zeros(6, bool))[3:],
-        )
-        as_named = located.axes.gyro == AS_NAMED
-        if not as_named:
-            done, told = completeness.by_other_axes(done), replace(told, used=False)
-        turned[m.name] = told
-        performed[m.name] = replace(done, sentence=f"{done.sentence} {told.remark}".rstrip())
+    done, turned = _turned(turns, turned, blocks, block_sums, gaps, level, angle_tolerance)
+    performed |= done
     for m in plan:
         performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
     for located in explained.located:
@@ -200,6 +181,40 @@ def _parts(
         if any(m.do == "positions" for m in located.plan):
             parts += between_parts([p for p in parts[first:] if p.phase in STATIC_PHASES])
     return parts, performed, turns
+
+
+def _turned(
+    turns: Sequence[tuple[Located, int, Manoeuvre]],
+    by_encoder: Mapping[str, ByEncoder],
+    blocks: pd.DataFrame,
+    sums: reduction.Blocks,
+    gaps: pd.DataFrame,
+    level: Array,
+    tolerance: float,
+) -> tuple[dict[str, Performed], dict[str, ByEncoder]]:
+    """What was performed of the turns, and what the encoder gives of each."""
+    in_motion = dict(list(blocks[~blocks["phase"].isin(STATIC_PHASES)].groupby("manoeuvre")))
+    performed, told_of = {}, dict(by_encoder)
+    for located, place, stated in turns:
+        told = told_of.get(stated.name, ByEncoder(stated))
+        m = told.manoeuvre
+        clipped = sums.clipped(m.name).get("", np.zeros(6, bool))[3:]
+        done = completeness.turn(
+            located.binned,
+            located.stretches,
+            place,
+            m,
+            in_motion.get(m.name, blocks.iloc[:0]),
+            gaps,
+            level,
+            tolerance,
+            clipped,
+        )
+        if located.axes.gyro != AS_NAMED:
+            done, told = completeness.by_other_axes(done), replace(told, used=False)
+        told_of[m.name] = told
+        performed[m.name] = replace(done, sentence=f"{done.sentence} {told.remark}".rstrip())
+    return performed, told_of
 
 
 def _refuse_unknown(accepted: pd.DataFrame, known: Sequence[str]) -> None:
