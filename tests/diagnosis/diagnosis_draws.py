@@ -205,12 +205,14 @@ def _without_bar(
     plan: str, what: str, number: float, random: Random, document: Document
 ) -> dict[str, Any]:
     told = WITHOUT_BAR[what][1](random)
-    names = {what, "saturation"} if what.endswith("saturation") else set(DEAD_BANDS)
+    saturated = what.endswith("saturation")
+    # Each gyro has a dead band of its own.
+    each = [{what, "saturation"}] if saturated else [{name} for name in DEAD_BANDS]
     return {
         "what": what,
         "size": None,
         "changes": cases.effect(**told),
-        "causes": (cause(names),),
+        "causes": tuple(map(cause, each)),
     }
 
 
