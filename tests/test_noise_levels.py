@@ -35,7 +35,7 @@ def test_the_common_level_is_known_as_well_as_the_mean_of_all_that_share_it(leve
     assert NoiseLevels(levels).degrees == common["degrees"]
 
 
-def test_what_differs_by_more_than_three_sigma_keeps_its_own_level(levels):
+def test_what_differs_by_more_than_chance_keeps_its_own_level(levels):
     own = levels[levels["source"] == "own"]
     assert list(own["manoeuvre"]) == ["m20"]
     assert own["white_noise"].item() == pytest.approx(1.5 * TRUE)
@@ -45,3 +45,17 @@ def test_what_differs_by_more_than_three_sigma_keeps_its_own_level(levels):
     assert elsewhere[0] == effective.of("m3", "rest", ["gyro_x"])[0] != levels["measured"][4]
     assert np.isnan(elsewhere[1])
     assert effective.oscillates("m20", ["gyro_x"]) and not effective.oscillates("m3", ["gyro_x"])
+
+
+def test_of_short_rests_no_level_is_its_own_by_chance():
+    rng, degrees, rests = np.random.default_rng(5), 10, 100
+    own, common = [], []
+    for _ in range(40):
+        white = TRUE * np.sqrt(rng.chisquare(degrees, rests) / degrees)
+        measured = pd.DataFrame({"manoeuvre": range(rests), "phase": "rest", "channel": "gyro_x"})
+        measured = measured.assign(white_noise=white, sigma=white / np.sqrt(2 * degrees))
+        levels = effective_levels(measured.assign(per_sample=white))
+        own.append(np.sum(levels["source"] == "own"))
+        common.append(levels["white_noise"].iloc[0])
+    assert np.sum(own) <= 2  # of 4000, where 3.5 % are below the mean by three sigma of their own
+    assert np.mean(common) == pytest.approx(TRUE, rel=0.012)  # a mean of roots is 2.5 % too low

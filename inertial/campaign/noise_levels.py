@@ -2,7 +2,7 @@
 
 A level is known to some per cent only, and a sensor alone has the same in every manoeuvre. So the
 level that is common to the campaign is taken, but for a manoeuvre and phase whose own level differs
-from it by more than three of its sigmas: there the table, or the air, adds to the noise.
+from it by more than chance: there the table, or the air, adds to the noise.
 
 Beside the common level of a channel stand the bias instability and the random walk that the static
 stretches show. From here they enter the covariance of every estimate, and from nowhere else.
@@ -18,13 +18,14 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.noise_terms import NoiseTerms
+from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import MeasuredDrift
 
 Array = NDArray[np.float64]
 Key = tuple[str | None, str | None, str]  # manoeuvre, phase, channel
 
 MIN_SCATTER_RATIO = 1.5  # of a rate segment to static positions, from which a channel oscillates
-MAX_COMMON_SIGMA = 3.0  # sigmas by which a level may differ from the common one and still be it
+LEVEL_P_VALUE = 2.7e-3  # that any level of a channel differs so by chance: three sigma
 DRIFTS = ("bias_instability", "random_walk")  # terms of the noise
 MAX_P_VALUE = 1e-3  # of a drift that enters: of 12 that are absent, one in a campaign of a hundred
 LEVEL_COLUMNS = [column.name for column in tables.LEVELS.columns]
@@ -50,9 +51,9 @@ def effective_levels(
 
     `drifts`: see `drift_of`, by channel.
 
-    Weighted with w = (N/σ)², their relative precision, for else a level that came out low would
-    weigh more for it. Then the common level has the relative sigma (Σw)^−½, and Σw/2 degrees of
-    freedom: a variance known to √(2/ν).
+    The common variance is the mean of theirs, weighted with w = (N/σ)², their relative precision,
+    for else a level that came out low would weigh more for it. Then the common level has the
+    relative sigma (Σw)^−½, and Σw/2 degrees of freedom: a variance known to √(2/ν).
     """
     by_channel: dict[str, list[Row]] = {}
     for row in rows_of(noise):
@@ -60,19 +61,19 @@ def effective_levels(
     rows: list[Row] = []
     for channel, own in by_channel.items():
         white, sigma = np.array([(row["white_noise"], row["sigma"]) for row in own]).T
-        alike = np.abs(white - np.median(white)) <= MAX_COMMON_SIGMA * sigma
-        alike = alike if alike.any() else np.ones(len(white), bool)
         weight = (white / sigma) ** 2
+        alike = ~_differ(white, float(np.median(white)), weight / 2)
+        alike = alike if alike.any() else np.ones(len(white), bool)
         total = float(weight[alike].sum())
-        level = float(np.average(white[alike], weights=weight[alike]))
+        level = float(np.sqrt(np.average(white[alike] ** 2, weights=weight[alike])))
         common = {"white_noise": level, "sigma": level * total**-0.5, "source": COMMON}
         common["degrees"] = total / 2
         elsewhere = dict.fromkeys(("manoeuvre", "phase", "measured", "per_sample"))
         rows.append(
             elsewhere | {"channel": channel} | common | dict((drifts or {}).get(channel, {}))
         )
-        for row, precision in zip(own, weight, strict=True):
-            differs = abs(row["white_noise"] - level) > MAX_COMMON_SIGMA * row["sigma"]
+        differ = _differ(white, level, weight / 2)
+        for row, precision, differs in zip(own, weight, differ, strict=True):
             rows.append(
                 {key: row[key] for key in ("manoeuvre", "phase", "channel", "per_sample")}
                 | {"measured": row["white_noise"]}
@@ -85,6 +86,16 @@ def effective_levels(
                 )
             )
     return pd.DataFrame(rows, columns=LEVEL_COLUMNS) if rows else tables.LEVELS.empty()
+
+
+def _differ(white: Array, level: float, degrees: Array) -> NDArray[np.bool_]:
+    """Which levels, (n,), differ from a common one by more than chance, of all n together.
+
+    A variance of ν degrees of freedom is chi-squared. In sigmas of its own a low one of few degrees
+    would seem to differ far more often than a high one, and it would weigh too much besides.
+    """
+    above = chi2_sf(degrees * (white / level) ** 2, degrees)
+    return np.asarray(2 * np.minimum(above, 1 - above) * len(white) < LEVEL_P_VALUE)
 
 
 def only_noise(manoeuvres: pd.DataFrame, terms: pd.DataFrame) -> bool:
