@@ -1,20 +1,7 @@
 """A bias of the accelerometers that jumps once."""
 
-from dataclasses import replace
-
-import numpy as np
-
-from inertial.physics.drift import after, evenly, without_clock
-from inertial.physics.effect import (
-    Array,
-    Effect,
-    Parameter,
-    Reading,
-    Scan,
-    Truth,
-    by_grade,
-    on_each_axis,
-)
+from inertial.physics.drift import Drift, after, evenly
+from inertial.physics.effect import Array, Parameter, Scan, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -22,7 +9,7 @@ from inertial.text.units import STANDARD_GRAVITY
 CANDIDATES = 36  # times of the jump; in half an hour about one for every minute
 
 
-class AccelBiasJump(Effect):
+class AccelBiasJump(Drift):
     """Reading += b H(t − t₀); t₀ is scanned.
 
     Unlike a drift it is instantaneous. A jump between logs is observable only if they share a
@@ -30,6 +17,7 @@ class AccelBiasJump(Effect):
     """
 
     name = "accel_bias_jump"
+    sensor = "accel"
     cause = _(
         "stress is released, the electronics switch, or the instrument is knocked or restarted"
     )
@@ -47,12 +35,8 @@ class AccelBiasJump(Effect):
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 200, 1000)
     scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
 
-    def blind(self, motion: Motion) -> str:
-        return without_clock(motion)
-
     def grid(self, motion: Motion) -> Array:
         return evenly(motion, CANDIDATES)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        jumped = after(motion, self.value(motion))
-        return replace(reading, accel=reading.accel + np.outer(jumped, values))
+    def course(self, motion: Motion) -> Array:
+        return after(motion, self.value(motion))

@@ -1,23 +1,20 @@
 """A bias of the accelerometers that drifts evenly."""
 
-from dataclasses import replace
-
-import numpy as np
-
-from inertial.physics.drift import without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.physics.drift import Drift
+from inertial.physics.effect import Array, Parameter, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import HOUR, STANDARD_GRAVITY
 
 
-class AccelBiasRamp(Effect):
+class AccelBiasRamp(Drift):
     """Reading += c t, with t since the first sample of all logs.
 
     Told from a constant by the order of the positions. Only logs with a common clock show it.
     """
 
     name = "accel_bias_ramp"
+    sensor = "accel"
     cause = _(
         "the bias of the accelerometers drifts, as the sensor or its electronics warm up or age"
     )
@@ -34,8 +31,5 @@ class AccelBiasRamp(Effect):
     terms = on_each_axis("accel", "c_{i}", "t")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY / HOUR, 20, 100, 100, 1000)
 
-    def blind(self, motion: Motion) -> str:
-        return without_clock(motion)
-
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, accel=reading.accel + np.outer(motion.time, values))
+    def course(self, motion: Motion) -> Array:
+        return motion.time

@@ -1,20 +1,7 @@
 """A bias of the gyros that jumps once."""
 
-from dataclasses import replace
-
-import numpy as np
-
-from inertial.physics.drift import after, evenly, without_clock
-from inertial.physics.effect import (
-    Array,
-    Effect,
-    Parameter,
-    Reading,
-    Scan,
-    Truth,
-    by_grade,
-    on_each_axis,
-)
+from inertial.physics.drift import Drift, after, evenly
+from inertial.physics.effect import Array, Parameter, Scan, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
@@ -22,7 +9,7 @@ from inertial.text.units import DEGREE_PER_HOUR
 CANDIDATES = 36  # times of the jump; in half an hour about one for every minute
 
 
-class GyroBiasJump(Effect):
+class GyroBiasJump(Drift):
     """Reading += b H(t − t₀); t₀ is scanned.
 
     Unlike a drift it is instantaneous. A jump between logs is observable only if they share a
@@ -30,6 +17,7 @@ class GyroBiasJump(Effect):
     """
 
     name = "gyro_bias_jump"
+    sensor = "gyro"
     cause = _(
         "stress is released, the electronics switch, or the instrument is knocked or restarted"
     )
@@ -42,12 +30,8 @@ class GyroBiasJump(Effect):
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 10, 30, 100)
     scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
 
-    def blind(self, motion: Motion) -> str:
-        return without_clock(motion)
-
     def grid(self, motion: Motion) -> Array:
         return evenly(motion, CANDIDATES)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        jumped = after(motion, self.value(motion))
-        return replace(reading, gyro=reading.gyro + np.outer(jumped, values))
+    def course(self, motion: Motion) -> Array:
+        return after(motion, self.value(motion))

@@ -1,23 +1,20 @@
 """A bias of the gyros that drifts evenly."""
 
-from dataclasses import replace
-
-import numpy as np
-
-from inertial.physics.drift import without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.physics.drift import Drift
+from inertial.physics.effect import Array, Parameter, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, HOUR
 
 
-class GyroBiasRamp(Effect):
+class GyroBiasRamp(Drift):
     """Reading += c t, with t since the first sample of all logs.
 
     Told from a constant by the order of the positions. Only logs with a common clock show it.
     """
 
     name = "gyro_bias_ramp"
+    sensor = "gyro"
     cause = _("the bias of the gyros drifts, as the sensor or its electronics warm up or age")
     source = "IEEE Std 952-1997, annex C, rate ramp"
     parameters = tuple(
@@ -32,8 +29,5 @@ class GyroBiasRamp(Effect):
     terms = on_each_axis("gyro", "c_{i}", "t")
     sizes = by_grade(DEGREE_PER_HOUR / HOUR, 0.05, 1, 10, 100)
 
-    def blind(self, motion: Motion) -> str:
-        return without_clock(motion)
-
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, gyro=reading.gyro + np.outer(motion.time, values))
+    def course(self, motion: Motion) -> Array:
+        return motion.time

@@ -1,20 +1,9 @@
 """A bias of the gyros that settles after the instrument is switched on."""
 
-from dataclasses import replace
-
 import numpy as np
 
-from inertial.physics.drift import decayed, without_clock
-from inertial.physics.effect import (
-    Array,
-    Effect,
-    Parameter,
-    Reading,
-    Scan,
-    Truth,
-    by_grade,
-    on_each_axis,
-)
+from inertial.physics.drift import Drift, decayed
+from inertial.physics.effect import Array, Parameter, Scan, by_grade, on_each_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
@@ -23,7 +12,7 @@ SHORTEST, LONGEST = 30.0, 3000.0  # s, of τ: a shorter one is over before the f
 CANDIDATES = 9  # three in each decade of three; between two of them the trace changes by a tenth
 
 
-class GyroWarmUp(Effect):
+class GyroWarmUp(Drift):
     """Reading += b exp(−t/τ), with t since the first sample of all logs; τ is scanned.
 
     Told from an even drift by slowing down. Only logs with a common clock show it. Switched on
@@ -31,6 +20,7 @@ class GyroWarmUp(Effect):
     """
 
     name = "gyro_warm_up"
+    sensor = "gyro"
     cause = _("the sensor and its electronics warm up after they are switched on")
     source = "IEEE Std 528-2019, 'warm-up time'"
     parameters = tuple(
@@ -46,12 +36,8 @@ class GyroWarmUp(Effect):
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 5, 30, 300)
     scan = Scan("tau", "s", _("time constant of the settling"), smooth=True)
 
-    def blind(self, motion: Motion) -> str:
-        return without_clock(motion)
-
     def grid(self, motion: Motion) -> Array:
         return np.geomspace(SHORTEST, LONGEST, CANDIDATES)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        settling = decayed(motion, self.value(motion))
-        return replace(reading, gyro=reading.gyro + np.outer(settling, values))
+    def course(self, motion: Motion) -> Array:
+        return decayed(motion, self.value(motion))

@@ -5,10 +5,22 @@ middle. The start is the first sample of all logs: for an instrument that was sw
 a warm-up began earlier, and its amplitude differs by a factor.
 """
 
+from abc import abstractmethod
+from dataclasses import replace
+from typing import ClassVar
+
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.physics.effect import COLDEST, MEAN_TEMPERATURE, WARMEST, Constant
+from inertial.physics.effect import (
+    COLDEST,
+    MEAN_TEMPERATURE,
+    WARMEST,
+    Constant,
+    Effect,
+    Reading,
+    Truth,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -21,6 +33,26 @@ NO_CLOCK = _(
 )
 NO_TEMPERATURE = _("No temperature is recorded.")
 NOT_EVERYWHERE = _("The temperature is not recorded everywhere.")
+
+
+class Drift(Effect):
+    """A bias of each axis of a sensor, gyro or accel, that has a course in time.
+
+    Its parameters are the sizes on x, y and z.
+    """
+
+    sensor: ClassVar[str]
+
+    @abstractmethod
+    def course(self, motion: Motion) -> Array:
+        """The mean of the course over each stretch, (n,)."""
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        biases = np.outer(self.course(motion), values)
+        return replace(reading, **{self.sensor: getattr(reading, self.sensor) + biases})
 
 
 def without_clock(motion: Motion) -> str:
