@@ -161,7 +161,8 @@ def _captured(
     """Share of the estimated signal of a candidate that joint effect can mimic, (m,)."""
     signal = fitted(information, right, candidates.columns[place], given)
     shares, _ = candidates.drops(information, signal, given)
-    shares = np.where(possible, shares, 0.0) / max(float(shares[place]), np.finfo(float).tiny)
+    whole = float(shares[place])  # zero of a value that cannot be negative and is
+    shares = np.where(possible & (whole > 0), shares, 0.0) / (whole or 1.0)
     return np.array(
         [
             float(shares[candidates.effect == number].max(initial=0.0))

@@ -161,7 +161,8 @@ def _classes(evidence: Evidence, candidates: Candidates, law: Chance) -> list[Ef
             places[i] = group.place
             classes.append(group)
     classes = with_rivals(candidates, classes, best, peers)
-    return sorted(classes, key=lambda group: -group.drop)
+    explaining = [group for group in classes if group.drop > 0]
+    return sorted(explaining, key=lambda group: -group.drop)
 
 
 def _threshold(

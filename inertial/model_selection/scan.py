@@ -72,6 +72,16 @@ class Candidates:
         between = self.effects[self.effect[place]].between
         return (place, place - 1, place + 1) if between else (place,)
 
+    def possible(self, information: Array, right: Array, places: Sequence[int]) -> bool:
+        """Whether no value that cannot be negative is, where some candidates are together."""
+        positive = [place for place in places if self.positive[place]]
+        if not positive:
+            return True
+        own = self.together(places)
+        white = _white(information, own)
+        values = dict(zip(own, white.T @ (white @ right[own]), strict=True))
+        return all(values[self.columns[place][0]] >= 0 for place in positive)
+
     def drops(
         self, information: Array, right: Array, given: Sequence[int] = ()
     ) -> tuple[Array, Integers]:

@@ -132,7 +132,9 @@ class Search:
             place = int(np.argmax(more))
             if not np.isfinite(more[place]):
                 break
-            sets.append(Set(gain + float(more[place]), (*places, place)))
+            larger = (*places, place)
+            if self.candidates.possible(self.information, self.right, larger):
+                sets.append(Set(gain + float(more[place]), larger))
             more[self.candidates.effect == self.candidates.effect[place]] = -np.inf
         return sets
 

@@ -69,6 +69,19 @@ def test_a_share_that_cannot_be_negative_is_found_at_most_half_as_often_in_noise
     np.testing.assert_allclose(drops[1][estimate > 0], both[1][estimate > 0])
 
 
+def test_a_share_that_others_make_negative_is_not_in_their_set():
+    # Alone the share explains what the other does, with which it would have to be negative.
+    information = 400 * np.array([[1.0, 0.9], [0.9, 1.0]])
+    truth = np.array([1.0, -0.5])
+    both = [searched_effect("other", (0,)), searched_effect("share", (1,), positive=True)]
+    law = chance(information, both, LEVEL, draws=2000)
+    right = information @ truth
+    whole = truth @ right + 2000
+    sensor = EffectInformation(("other", "share"), information, right, whole, 2002)
+    named = causes(Evidence((sensor,), ("gyro",), ()), both, law)
+    assert right[1] > 0 and [cause.effect for cause in named.causes] == ["other"]
+
+
 def test_what_is_named_is_what_stands_above_its_price():
     p, rng = plan_of("b"), np.random.default_rng(2)
     quiet = np.zeros(p.raw.shape[1])
