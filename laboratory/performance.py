@@ -174,7 +174,9 @@ def saturated(noisy: Reading, interval: float, effects: Effects) -> Reading:
         np.diff(noisy.accelerometer, axis=0, prepend=0), np.diff(noisy.gyro, axis=0, prepend=0)
     )
     inside = reduce(
-        lambda rest, effect: effect.limit_increments(rest, interval), effects.values(), increments
+        lambda rest, effect: effect.recorded_increments(rest, interval),
+        effects.values(),
+        increments,
     )
     return noisy if inside is increments else running([inside])
 

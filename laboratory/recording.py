@@ -22,7 +22,7 @@ class LogTruth:
     temperature: Array  # K, (n,): of the thermometer, at the end of every sample
     table_angle: Array | None  # rad, (n,): as the encoder reads it; None where there is none
     noiseless: Reading  # (n, 3) m/s and rad: running integrals of what the sensors read
-    noisy: Reading  # the same with the noise, within the range of the sensors
+    noisy: Reading  # the same with the noise, after filters, within the range of the sensors
     accelerometer: Counts  # (n, 3): as counted, x y z
     gyro: Counts  # (n, 3)
     rows: Mapping[str, range]  # manoeuvre → its samples, rest before and after a turn included

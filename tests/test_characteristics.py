@@ -2,19 +2,22 @@
 
 import chain
 import numpy as np
+import pandas as pd
 import pytest
 from scipy import stats
 
 from inertial.effects import CATALOGUE
 from inertial.estimation.input_output import (
+    Limits,
     asymmetry,
     at_no_force,
     composite_error,
+    least_by_counts,
     linearity_error,
     resolution,
     threshold,
 )
-from stages.compensation.characteristics import OF_FORCE, OF_INPUT
+from stages.compensation.characteristics import OF_FORCE, OF_INPUT, least_changes
 
 DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
 PPM = 1e-6
@@ -65,11 +68,37 @@ def test_inputs_in_the_dead_band_are_below_the_threshold():
     applied = np.array([-3.0, -1.0, 1.0, 3.0, 50.0, 54.0])
     read = np.where(np.abs(applied) < 2, 0.0, applied)
     sigma = np.full(6, 0.1)
-    assert threshold(applied, read, sigma) == 3.0
-    assert resolution(applied, read, sigma) == 4.0
-    assert threshold(applied, applied, sigma) == 1.0
-    assert resolution(applied[:4], read[:4], sigma[:4]) is None
-    assert threshold(applied[:4], applied[:4], np.full(4, 2.0)) is None
+    assert threshold(applied, read, sigma) == Limits(1.0, 3.0)
+    assert resolution(applied, read, sigma) == Limits(None, 4.0)
+    assert threshold(applied, applied, sigma) == Limits(None, 1.0)
+    assert resolution(applied[:4], read[:4], sigma[:4]).upper is None
+    assert threshold(applied[:4], applied[:4], np.full(4, 2.0)) == Limits(None, None)
+
+
+def test_a_change_that_is_lost_is_below_the_resolution():
+    """From 50 to 51 nothing happens, from 50 to 54 all of it."""
+    found = resolution(
+        np.array([1.0, 50.0, 51.0, 54.0]), np.array([1.0, 50.0, 50.0, 54.0]), np.full(4, 0.1)
+    )
+    assert found == Limits(1.0, 3.0)
+
+
+@pytest.mark.parametrize(("noise", "least"), [(0.0, 1.0), (0.3, 0.0)])
+def test_counts_swallow_a_change_of_one_where_no_noise_dithers_them(noise, least):
+    assert least_by_counts(noise) == pytest.approx(least, abs=0.03)
+
+
+@pytest.mark.parametrize("noise", [0.05, 0.15, 0.2, 0.25])
+def test_the_mean_of_rounded_readings_is_less_than_half_below_that(noise):
+    """By a million rounded readings each, from the middle of a count, where most is lost."""
+    least = least_by_counts(noise)
+    random = np.random.default_rng(5)
+
+    def mean(at):
+        return np.rint(at + noise * random.standard_normal(1_000_000)).mean()
+
+    assert mean(least / 2 - 0.01) - mean(0.01 - least / 2) < 0.5 * least
+    assert mean(least / 2 + 0.03) - mean(-least / 2 - 0.03) > 0.5 * (least + 0.06)
 
 
 def test_noise_alone_is_sensed_in_one_case_of_twenty():
@@ -77,7 +106,7 @@ def test_noise_alone_is_sensed_in_one_case_of_twenty():
     random = np.random.default_rng(3)
     applied, sigma = np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.3, 0.2])
     noise = sigma * random.normal(size=(4000, 3))
-    sensed = sum(threshold(applied, applied / 2 + one, sigma) is not None for one in noise)
+    sensed = sum(threshold(applied, applied / 2 + one, sigma).upper is not None for one in noise)
     assert stats.binomtest(sensed, len(noise), 0.05).pvalue > 1e-3
 
 
@@ -159,3 +188,16 @@ def test_the_budget_adds_up_and_has_gravity_and_the_angle_of_the_table(compensat
     assert own["accel", "cross_xy", "position"] == pytest.approx(
         np.radians(2 / 3600) / np.sqrt(2), rel=0.3
     )
+
+
+def test_counts_that_are_coarser_than_the_noise_limit_the_resolution():
+    """Gyros in whole counts of 30 °/h without carry, noise 0.02: a change of one is needed."""
+    statistics = pd.DataFrame(
+        {"log": "a", "sensor": ["gyro", "accel"], "axis": "x", "resolution": 30.0, "noise": 0.0}
+    )
+    ranges = statistics[["log", "sensor", "axis"]].assign(increments=[False, True])
+    levels = pd.DataFrame({"phase": "rest", "channel": ["gyro_x"], "per_sample": [0.6]})
+    limit = least_changes(statistics, ranges, levels)
+    assert limit == {("gyro", "x"): pytest.approx(30, rel=0.05)}
+    dithered = least_changes(statistics, ranges, levels.assign(per_sample=15.0))
+    assert dithered == {}

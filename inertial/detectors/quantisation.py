@@ -15,7 +15,13 @@ from inertial.signal.detector import (
     Piece,
     read_in,
 )
-from inertial.signal.scatter import BLOCK, in_blocks, roughness, smallest_step
+from inertial.signal.scatter import (
+    BLOCK,
+    in_blocks,
+    noise_before_rounding,
+    roughness,
+    smallest_step,
+)
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 
@@ -24,15 +30,6 @@ TESTS = 6 * 12
 MIN_BLOCK_SHARE = 0.5  # of the blocks
 MIN_LARGE_CHANGE = 1.5  # steps: a change by two steps or more
 MAX_MULTIPLE_ERROR = 0.01  # counts: by how much a multiple of a count may be off
-
-# The variance of rounded readings in steps², on average over where the truth lies between two,
-# by their noise in steps: σ² + 1/12 less the variance of the mean, whose harmonics are known.
-_NOISE = np.linspace(0.0, 1.0, 201)
-_VARIANCE = (
-    _NOISE**2
-    + 1 / 12
-    - sum(np.exp(-((2 * np.pi * k * _NOISE) ** 2)) / k**2 for k in range(1, 200)) / (2 * np.pi**2)
-)
 
 
 @dataclass(frozen=True)
@@ -139,7 +136,7 @@ def _of_channel(piece: Piece, log: Log, i: int) -> Event | None:
     if times == 1 and not coarse:
         return None
     variance = float(np.mean(blocks[~fine] ** 2) / 2) if coarse else (roughness(values) / step) ** 2
-    noise = float(np.interp(variance, _VARIANCE, _NOISE)) if coarse else float(np.sqrt(variance))
+    noise = noise_before_rounding(variance) if coarse else float(np.sqrt(variance))
     return piece.event(
         int(places[0]),
         int(places[-1]) + 1,

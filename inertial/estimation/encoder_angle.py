@@ -29,11 +29,13 @@ from inertial.estimation.time_angle import Valued
 Array = NDArray[np.float64]
 
 BIN_S = 0.05  # s, between edges whose angles are compared
-SETTLED = 5.0  # time constants, after which a low pass has settled
+SETTLED = 8.0  # time constants, after which e⁻⁸ of an answer is left
 LONGEST_SETTLING_S = 0.3  # s
 MAX_CHANGE = 0.2  # of the acceleration near an edge, relative to the largest ones
 ACCELERATING = 0.98  # quantile of the accelerations, for the largest one may be an impact
-CURVED_S = 0.01  # s, to either side, of which the acceleration of the table is a difference
+CURVED_S = 0.01  # s, to either side at least, of which the acceleration is a difference
+THIRD = 0.6745 * np.sqrt(20 / 12)  # median of the third differences of angles, over their count
+MAX_ROUNDED = 1e-3  # of the acceleration of ramps, that counts of the encoder add: else κ is lost
 MAX_STEPS = 5  # of Gauss and Newton, for the delay alone is not linear
 ORDERS = (1, 2)  # of the encoder's own errors
 MIN_TURNED = 1.5 * np.pi  # rad, below which these are not told from scale factor and bias
@@ -77,18 +79,20 @@ def _compared(
 ) -> AgainstEncoder:
     """The comparison; `settled`: s, within which the low pass of the gyro settles."""
     time: Array = step * np.arange(len(rates), dtype=np.float64)
-    near = max(CURVED_S, 2 * step)
+    count = _count(angle)
     course = make_interp_spline(time, angle, k=3)
+    near = BIN_S
 
     def curved(at: Array) -> Array:
         at = np.clip(at, near, time[-1] - near)
         return np.asarray((course(at + near) - 2 * course(at) + course(at - near)) / near**2)
 
     edges = np.arange(0, len(rates), max(round(BIN_S / step), 1))
+    ramps = float(np.quantile(np.abs(curved(np.asarray(time[edges]))), ACCELERATING))
+    near = max(CURVED_S, 2 * step, min(BIN_S, float(np.sqrt(count / (MAX_ROUNDED * ramps)))))
     edges = edges[_calm(np.asarray(time[edges]), curved, near, settled)]
     read = np.diff((np.cumsum(rates) * step)[edges])
     speed = np.gradient(angle, step)
-    count = float(np.min(np.abs(np.diff(angle))[np.diff(angle) != 0], initial=0.0))
     sigma = np.hypot(density * np.sqrt(np.diff(time[edges])), count / np.sqrt(6))
     delay, orders = 0.0, ORDERS if np.ptp(angle) > MIN_TURNED else ()
     for _ in range(MAX_STEPS):
@@ -113,6 +117,13 @@ def _compared(
         {n: (found[4 + 2 * i], found[5 + 2 * i]) for i, n in enumerate(orders)},
         excess,
     )
+
+
+def _count(angle: Array) -> float:
+    """One count of the encoder, rad, by the roughness of its angles in motion, (n,)."""
+    moving = np.abs(np.diff(angle)[1:-1])
+    rough = np.abs(np.diff(angle, 3))[moving > moving.max() / 2]
+    return float(np.median(rough)) / THIRD if len(rough) else 0.0
 
 
 def _calm(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.special import log_ndtr
+from scipy.special import log_ndtr, ndtr
 from scipy.stats import norm
 
 from inertial.estimation.least_squares import pseudo_inverse
@@ -86,22 +86,31 @@ def at_no_force(rate: Array, sigma: Array, force: Array) -> tuple[float, float] 
     return float(weights @ (rate / sigma)), float(np.linalg.norm(weights))
 
 
-def threshold(applied: Array, read: Array, sigma: Array) -> float | None:
-    """An upper limit of 'threshold': the least input that gave half of its output, (n,) each.
+@dataclass(frozen=True)
+class Limits:
+    """Between which a threshold or a resolution lies, with 95 % confidence for all inputs together.
 
-    With 95 % confidence for all inputs together; None where no input is shown to have given it.
+    `lower`: the largest input that gave less than half of its output for certain; `upper`: the
+    least that gave more; None where there is none.
     """
-    return _least(np.abs(applied), np.sign(applied) * read, sigma)
+
+    lower: float | None
+    upper: float | None
 
 
-def resolution(applied: Array, read: Array, sigma: Array) -> float | None:
-    """An upper limit of 'resolution': the least change of input that gave half of its output.
+def threshold(applied: Array, read: Array, sigma: Array) -> Limits:
+    """Limits of 'threshold': the least input that gives half of its output, (n,) each."""
+    return _limits(np.abs(applied), np.sign(applied) * read, sigma)
+
+
+def resolution(applied: Array, read: Array, sigma: Array) -> Limits:
+    """Limits of 'resolution': the least change of input that gives half of its output.
 
     Between inputs on one side of zero, above the threshold, that are not far apart; as `threshold`.
     """
-    least = threshold(applied, read, sigma)
+    least = threshold(applied, read, sigma).upper
     if least is None:
-        return None
+        return Limits(None, None)
     i, j = np.triu_indices(len(applied), 1)
     above = (np.minimum(np.abs(applied[i]), np.abs(applied[j])) >= least) & (
         applied[i] * applied[j] > 0
@@ -109,16 +118,34 @@ def resolution(applied: Array, read: Array, sigma: Array) -> float | None:
     above &= np.abs(applied[i] - applied[j]) <= MAX_CHANGE * np.abs(applied).max()
     change = (applied[i] - applied[j])[above]
     output = np.sign(change) * (read[i] - read[j])[above]
-    return _least(np.abs(change), output, np.hypot(sigma[i], sigma[j])[above])
+    return _limits(np.abs(change), output, np.hypot(sigma[i], sigma[j])[above])
 
 
-def _least(inputs: Array, outputs: Array, sigma: Array) -> float | None:
-    """The least of n positive inputs whose output is at least half of it for certain."""
+def least_by_counts(noise: float) -> float:
+    """The least change that rounding to whole counts lets through at least by half, in counts.
+
+    At the place between two counts where it is lost most; `noise`: of a reading before rounding,
+    in counts. The mean of rounded readings is Σ Φ((x − j − ½)/σ) over the counts j (Widrow &
+    Kollár 2008), so noise above 0.27 counts lets the mean of many feel any change: 0.
+    """
+    size = max(noise, 1e-3)
+    counts = np.arange(-8, 12)[:, None, None] + 0.5
+    place, change = np.arange(0, 1, 0.01)[:, None], np.arange(0.01, 2.01, 0.01)
+    means = [ndtr((x - counts) / size).sum(axis=0) for x in (place + change, place)]
+    lost = ((means[0] - means[1]) < SENSED_SHARE * change - 1e-9).any(axis=0)
+    return float(change[lost].max(initial=0.0))
+
+
+def _limits(inputs: Array, outputs: Array, sigma: Array) -> Limits:
+    """Of n positive inputs the largest that was lost for certain, and the least that was not."""
     if not len(inputs):
-        return None
-    beyond = float(norm.isf((1 - CONFIDENCE) / len(inputs)))
-    sensed = inputs[outputs - SENSED_SHARE * inputs > beyond * sigma]
-    return float(sensed.min()) if len(sensed) else None
+        return Limits(None, None)
+    beyond = float(norm.isf((1 - CONFIDENCE) / len(inputs))) * sigma
+    excess = outputs - SENSED_SHARE * inputs
+    lost, sensed = inputs[excess < -beyond], inputs[excess > beyond]
+    return Limits(
+        float(lost.max()) if len(lost) else None, float(sensed.min()) if len(sensed) else None
+    )
 
 
 def _largest(errors: Array, sigma: Array, largest: float) -> LargestError:

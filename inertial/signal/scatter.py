@@ -51,3 +51,21 @@ def smallest_step(values: Array) -> float:
 def in_blocks(changes: Array) -> Array:
     """Changes in blocks, (k, BLOCK), without those that are left over."""
     return changes[: len(changes) // BLOCK * BLOCK].reshape(-1, BLOCK)
+
+
+# The variance of rounded readings in steps², on average over where the truth lies between two,
+# by their noise in steps: σ² + 1/12 less the variance of the mean, whose harmonics are known.
+_NOISE = np.linspace(0.0, 1.0, 201)
+_VARIANCE = (
+    _NOISE**2
+    + 1 / 12
+    - sum(np.exp(-((2 * np.pi * k * _NOISE) ** 2)) / k**2 for k in range(1, 200)) / (2 * np.pi**2)
+)
+
+
+def noise_before_rounding(variance: float) -> float:
+    """Noise of readings before they were rounded to steps, in steps, by the variance after it.
+
+    Up to a noise of 1 step; of 0.3 or more the mean of many readings is no longer rounded.
+    """
+    return float(np.interp(variance, _VARIANCE, _NOISE))

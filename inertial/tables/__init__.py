@@ -34,6 +34,7 @@ from inertial.tables.diagnosed import (
 from inertial.tables.estimated import (
     ALLAN,
     AVERAGING,
+    BANDWIDTHS,
     COVARIANCE,
     DIFFERENCES,
     ENCODER,
@@ -134,6 +135,7 @@ __all__ = [
     "ATTITUDE_ERRORS",
     "AVERAGING",
     "AXES",
+    "BANDWIDTHS",
     "BLOCKS",
     "BODY",
     "CALIBRATION",

@@ -81,7 +81,7 @@ RESIDUALS = Table(
 
 CHARACTERISTICS = Table(
     "characteristics",
-    2,
+    3,
     (
         Column("id", TEXT, "", "stable identifier: compensation/sensor/quantity_axis"),
         MOUNT,
@@ -107,6 +107,14 @@ CHARACTERISTICS = Table(
         ),
         Column(
             "sigma", DOUBLE, "as unit", "its standard deviation; null for limits", nullable=True
+        ),
+        Column(
+            "lower",
+            DOUBLE,
+            "as unit",
+            "of threshold and resolution a lower limit: the largest input that gave less than half"
+            " of its output, 95 %, or what counts without carry and noise let through",
+            nullable=True,
         ),
         Column(
             "by_noise",

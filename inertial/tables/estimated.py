@@ -1,6 +1,6 @@
 """Noise, parameters, covariance, fits, studies and comparisons."""
 
-from inertial.tables.shared import AXES, BODY, METHOD, MOUNT, QUANTITY, SENSOR
+from inertial.tables.shared import AXES, AXIS, BODY, METHOD, MOUNT, QUANTITY, SENSOR
 from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
 
 # --- Noise, parameters, covariance, fits and positions ---
@@ -360,7 +360,7 @@ MOTIONS = Table(
 )
 ENCODER = Table(
     "encoder",
-    2,
+    3,
     (
         MOUNT,
         Column(
@@ -373,9 +373,8 @@ ENCODER = Table(
             "scale: scale factor's error of the gyro less that of the encoder; delay of the gyro"
             " less that of the encoder; spread: variance of that delay, 0 where both are only late;"
             " low_pass: time constant of first order with that variance, where it is certain;"
-            " dead_time: delay less low_pass; bandwidth: that of low_pass; sine,"
-            " cosine: error of the encoder with its angle times order; ripple:"
-            " amplitude in the course of the encoder at the steady rate",
+            " dead_time: delay less low_pass; sine, cosine: error of the encoder with its angle"
+            " times order; ripple: amplitude in the course of the encoder at the steady rate",
         ),
         Column("order", DOUBLE, "1", "periods in a turn; none: not periodic", nullable=True),
         Column("value", DOUBLE, "as unit", "its value"),
@@ -388,6 +387,37 @@ ENCODER = Table(
             "of a ripple, without one; of all turns, that they have the value in common",
             nullable=True,
         ),
+    ),
+)
+BANDWIDTHS = Table(
+    "bandwidths",
+    1,
+    (
+        Column("id", TEXT, "", "stable identifier: studies/sensor/bandwidth_axis/by"),
+        MOUNT,
+        SENSOR,
+        AXIS,
+        Column(
+            "by",
+            TEXT,
+            "",
+            "encoder: ramps of the rate against the encoder of the table, the response of the gyro"
+            " to rates; ramps: as the gyro alone reads them, response of gyro and drive together;"
+            " noise: at rest, bandwidth of its white noise and not the response to an input",
+        ),
+        Column(
+            "value", DOUBLE, "Hz", "of a first-order low pass, where it is certain", nullable=True
+        ),
+        Column("sigma", DOUBLE, "Hz", "its standard deviation", nullable=True),
+        Column(
+            "lower",
+            DOUBLE,
+            "Hz",
+            "lower limit, one-sided 95 %; by ramps that of the gyro alone",
+            nullable=True,
+        ),
+        Column("turns", INTEGER, "1", "turns, each with two ramps; 0 by noise"),
+        Column("reason", SENTENCE, "", "why there is neither a value nor a limit"),
     ),
 )
 NOT_STUDIED = Table(

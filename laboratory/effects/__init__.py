@@ -40,6 +40,7 @@ from laboratory.effects.gyro_g_sensitivity import GyroGSensitivity
 from laboratory.effects.gyro_hysteresis import GyroHysteresis
 from laboratory.effects.gyro_late_drift import GyroLateDrift
 from laboratory.effects.gyro_latency import GyroLatency
+from laboratory.effects.gyro_low_pass import GyroLowPass
 from laboratory.effects.gyro_rate_power import GyroRatePower
 from laboratory.effects.gyro_remanence import GyroRemanence
 from laboratory.effects.gyro_saturation import GyroSaturation
@@ -123,6 +124,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_telegraph": GyroTelegraph.specified,
     "gyro_hysteresis": GyroHysteresis.specified,
     "gyro_flicker": GyroFlicker.specified,
+    "gyro_low_pass": GyroLowPass.specified,
     "gyro_saturation": GyroSaturation.specified,
     "gyro_latency": GyroLatency.specified,
     # both

@@ -18,6 +18,6 @@ class AccelSaturation(ArrayEffect):
     KEY = "limit_g"
     UNIT = STANDARD_GRAVITY
 
-    def limit_increments(self, increments: Reading, interval: float) -> Reading:
+    def recorded_increments(self, increments: Reading, interval: float) -> Reading:
         most = self.value * interval
         return replace(increments, accelerometer=np.clip(increments.accelerometer, -most, most))

@@ -103,8 +103,8 @@ class Effect:
         """Noise of the increments of the samples: (n, 3) m/s and (n, 3) rad."""
         return None
 
-    def limit_increments(self, increments: Reading, interval: float) -> Reading:
-        """The increments of the samples within the range of the sensors, noise included."""
+    def recorded_increments(self, increments: Reading, interval: float) -> Reading:
+        """The increments of the samples after filters and within the range, noise included."""
         return increments
 
 

@@ -18,6 +18,6 @@ class GyroSaturation(ArrayEffect):
     KEY = "limit_deg_s"
     UNIT = DEGREE
 
-    def limit_increments(self, increments: Reading, interval: float) -> Reading:
+    def recorded_increments(self, increments: Reading, interval: float) -> Reading:
         most = self.value * interval
         return replace(increments, gyro=np.clip(increments.gyro, -most, most))

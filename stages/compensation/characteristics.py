@@ -10,24 +10,28 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
 from inertial.campaign.rate_segments import Recorded, position_of
-from inertial.campaign.records import Manoeuvre, Row, with_mount
+from inertial.campaign.records import Manoeuvre, Row, rows_of, with_mount
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import Position
 from inertial.estimation.input_output import (
+    Limits,
     asymmetry,
     at_no_force,
     composite_error,
+    least_by_counts,
     linearity_error,
     resolution,
     threshold,
 )
 from inertial.physics.motion import stretches, turned
+from inertial.signal.scatter import noise_before_rounding
 from inertial.tables import AXES
 from inertial.text.messages import _
 from stages.compensation.checks import (
@@ -41,6 +45,7 @@ from stages.compensation.checks import (
 from stages.compensation.correction import UNKNOWN
 
 Array = NDArray[np.float64]
+ByCounts = dict[tuple[str, str], float]
 
 MIN_COSINE = 1 - 1e-9  # between an axis of the case and that of the input
 OF_INPUT = {
@@ -82,8 +87,13 @@ class Point:
     sigma: float
 
 
-def characteristics(data: CampaignData, measurement: Measurement) -> Iterator[Row]:
-    """The figures of both sensors on one mount, each with the reason where there is none."""
+def characteristics(
+    data: CampaignData, measurement: Measurement, by_counts: ByCounts
+) -> Iterator[Row]:
+    """The figures of both sensors on one mount, each with the reason where there is none.
+
+    `by_counts`: by sensor and axis the least change of input that counts let through.
+    """
     accel, gyro = measurement.accelerometer, measurement.gyro
     own = Measurement(_without(accel, OF_INPUT), _without(gyro, OF_INPUT))
     for sensor, result, points in (("accel", accel, _accelerometers), ("gyro", gyro, _gyros)):
@@ -91,7 +101,8 @@ def characteristics(data: CampaignData, measurement: Measurement) -> Iterator[Ro
         there = [] if reason else list(points(data, measurement, own))
         for axis in range(3):
             along = [p for p in there if p.axis == axis and np.isfinite(p.read + p.sigma)]
-            yield from _of_axis(sensor, axis, along, reason, data.mount)
+            least = by_counts.get((sensor, AXES[axis]))
+            yield from _of_axis(sensor, axis, along, reason, data.mount, least)
     yield from _drifts(data, measurement, reason)
 
 
@@ -100,7 +111,12 @@ def _without(result: SensorResult, names: set[str]) -> SensorResult:
 
 
 def _of_axis(
-    sensor: str, axis: int, points: Sequence[Point], reason: str, mount: str
+    sensor: str,
+    axis: int,
+    points: Sequence[Point],
+    reason: str,
+    mount: str,
+    by_counts: float | None,
 ) -> Iterator[Row]:
     """The figures of input and output along one axis."""
     applied, read, whole, sigma = (
@@ -111,14 +127,16 @@ def _of_axis(
     figures: dict[str, dict[str, Any]]
     if not largest:
         figures = {quantity: {"reason": reason or NO_INPUT} for quantity in FIGURES}
+        for quantity in ("threshold", "resolution"):
+            figures[quantity]["lower"] = by_counts
     else:
         line, both = linearity_error(applied, read, sigma), asymmetry(applied, read, sigma)
         figures = {
             "composite_error": asdict(composite_error(applied, whole, sigma)),
             "linearity_error": asdict(line) if line else {"reason": ONE_LINE},
             "asymmetry": {"value": both[0], "sigma": both[1]} if both else {"reason": NOT_BOTH},
-            "threshold": _limit(threshold(applied, read, sigma), NOT_SENSED),
-            "resolution": _limit(resolution(applied, read, sigma), NO_CHANGE),
+            "threshold": _limit(threshold(applied, read, sigma), by_counts, NOT_SENSED),
+            "resolution": _limit(resolution(applied, read, sigma), by_counts, NO_CHANGE),
         }
     shared: dict[str, Any] = {
         "largest_input": largest or None,
@@ -131,8 +149,35 @@ def _of_axis(
         )
 
 
-def _limit(limit: float | None, reason: str) -> dict[str, Any]:
-    return {"reason": reason} if limit is None else {"value": limit}
+def _limit(limits: Limits, by_counts: float | None, reason: str) -> dict[str, Any]:
+    """Limits by the inputs; where these show less than the counts, what was sensed counts."""
+    upper = limits.upper
+    lower = max(filter(None, (limits.lower, by_counts)), default=None)
+    if lower is not None and upper is not None and lower > upper:
+        lower = limits.lower
+    return {"value": upper, "lower": lower, "reason": reason if upper is None else ""}
+
+
+def least_changes(
+    channel_statistics: pd.DataFrame, ranges: pd.DataFrame, levels: pd.DataFrame
+) -> ByCounts:
+    """By sensor and axis the least change of input that the coarsest counts of a log let through.
+
+    None where counts are increments, which carry over what they leave, or noise is above them.
+    """
+    counts = channel_statistics.merge(ranges[["log", "sensor", "axis", "increments"]], how="left")
+    whole = counts[counts["increments"].eq(False) & (counts["resolution"] > 0)]
+    steps = whole.groupby(["sensor", "axis"])["resolution"].max().reset_index()
+    at_rest = levels[levels["phase"].eq("rest")].dropna(subset="per_sample")
+    squares = (at_rest["per_sample"] ** 2).groupby(at_rest["channel"]).mean()
+    found: ByCounts = {}
+    for row in rows_of(steps):
+        channel, step = f"{row['sensor']}_{row['axis']}", float(row["resolution"])
+        if channel in squares.index:
+            noise = noise_before_rounding(float(squares[channel]) / step**2)
+            if least := step * least_by_counts(noise):
+                found[row["sensor"], row["axis"]] = least
+    return found
 
 
 def _row(sensor: str, axis: int, quantity: str, unit: str, mount: str) -> dict[str, Any]:
@@ -142,7 +187,7 @@ def _row(sensor: str, axis: int, quantity: str, unit: str, mount: str) -> dict[s
         "sensor": sensor,
         "axis": AXES[axis],
         "quantity": quantity,
-        **dict.fromkeys(("value", "sigma", "by_noise", "largest_input")),
+        **dict.fromkeys(("value", "sigma", "lower", "by_noise", "largest_input")),
         "unit": unit,
         "input_unit": "",
         "points": 0,

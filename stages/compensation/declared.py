@@ -8,6 +8,8 @@ DECLARED = Declared(
         "samples": From("decode", tables.SAMPLES),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "traces": From("segment", tables.TRACES),
+        "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
+        "ranges": From("plan", tables.RANGES),
         "masks": From("quality", tables.MASKS),
         "segments": From("segment", tables.SEGMENTS),
         "blocks": From("segment", tables.BLOCKS),

@@ -20,7 +20,7 @@ from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
 from inertial.text.messages import _
 from inertial.text.parameters import FREE
-from stages.compensation.characteristics import characteristics
+from stages.compensation.characteristics import ByCounts, characteristics, least_changes
 from stages.compensation.checks import checks, not_compensated, table_of
 from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
@@ -57,6 +57,7 @@ def compensation(
     campaign: pd.DataFrame,
     result: pd.DataFrame,
     fits: Sequence[Row],
+    by_counts: ByCounts,
     provenance: Mapping[str, Mapping[str, Any]],
 ) -> Pieces:
     """The table compensated, and what is known of the result, in pieces.
@@ -95,7 +96,7 @@ def compensation(
         measurement = measurements.get(data.mount, NOTHING)
         scatter = _scatters(fits, data.mount) if by_hand.by_hand else _between_switch_ons(data)
         rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
-        figures += characteristics(data, measurement)
+        figures += characteristics(data, measurement, by_counts)
         shares += budget_rows(data, measurement, fits)
         for sensor in (measurement.accelerometer, measurement.gyro):
             rows += not_compensated(sensor, data.mount)
@@ -144,4 +145,8 @@ def fits_of(
     return [*rows_of(accelerometer_fit), *rows_of(gyroscope_fit), *rows_of(extended_fit)]
 
 
-STAGE = Stage(compensation, DECLARED, gathers={"mounts": campaigns_of, "fits": fits_of})
+STAGE = Stage(
+    compensation,
+    DECLARED,
+    gathers={"mounts": campaigns_of, "fits": fits_of, "by_counts": least_changes},
+)

@@ -56,6 +56,7 @@ DECLARED = Declared(
         "time_angle": From("studies", tables.TIME_ANGLE),
         "motions": From("studies", tables.MOTIONS),
         "encoder": From("studies", tables.ENCODER),
+        "bandwidths": From("studies", tables.BANDWIDTHS),
         "not_studied": From("studies", tables.NOT_STUDIED),
         "simulated": From("simulation", tables.SIMULATED),
         "fidelity": From("simulation", tables.FIDELITY),

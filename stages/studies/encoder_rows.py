@@ -72,7 +72,7 @@ def together(data: CampaignData, rows: Sequence[Row]) -> Iterator[Row]:
             alike.setdefault((row["quantity"], row["order"]), []).append(row)
     common: dict[tuple[str, int | None], Valued] = {}
     for (quantity, order), own in alike.items():
-        value, chance = _mean(own)
+        value, chance = mean_of([Valued(row["value"], row["sigma"]) for row in own])
         yield _row(data.mount, None, quantity, value, own[0]["unit"]) | {
             "order": order,
             "p_value": chance,
@@ -82,26 +82,23 @@ def together(data: CampaignData, rows: Sequence[Row]) -> Iterator[Row]:
         return
     constant = low_pass(common["spread", None], MIN_SPREAD_SIGMAS)
     if constant is not None:
-        hertz = 1 / (2 * np.pi * constant.value)
         delay = common["delay", None]
         rest = Valued(delay.value - constant.value, float(np.hypot(delay.sigma, constant.sigma)))
         yield _row(data.mount, None, "low_pass", constant, "s")
         yield _row(data.mount, None, "dead_time", rest, "s")
-        bandwidth = Valued(hertz, hertz * constant.sigma / constant.value)
-        yield _row(data.mount, None, "bandwidth", bandwidth, "Hz")
 
 
-def _mean(rows: Sequence[Row]) -> tuple[Valued, float | None]:
+def mean_of(every: Sequence[Valued]) -> tuple[Valued, float | None]:
     """Weighted mean, its sigma by the scatter where that is more, and the chance of the scatter."""
-    values, sigmas = (np.array([row[key] for row in rows]) for key in ("value", "sigma"))
+    values, sigmas = np.array([[each.value, each.sigma] for each in every]).T
     weights = sigmas**-2
     mean, sigma = float(np.average(values, weights=weights)), float(weights.sum() ** -0.5)
-    if len(rows) == 1:
+    if len(every) == 1:
         return Valued(mean, sigma), None
     chi_squared = float(weights @ (values - mean) ** 2)
-    chance = float(chi2_sf(chi_squared, len(rows) - 1))
+    chance = float(chi2_sf(chi_squared, len(every) - 1))
     if chance < MIN_SCATTER_P:
-        sigma *= float(np.sqrt(chi_squared / (len(rows) - 1)))
+        sigma *= float(np.sqrt(chi_squared / (len(every) - 1)))
     return Valued(mean, sigma), chance
 
 

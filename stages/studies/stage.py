@@ -13,6 +13,7 @@ from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from stages.studies import encoder_rows, motion_rows
+from stages.studies.bandwidths import bandwidths, of_ramps
 from stages.studies.declared import DECLARED
 from stages.studies.epochs import rests_of, studied
 from stages.studies.table_motion import (
@@ -36,6 +37,7 @@ def studies(
     masks: pd.DataFrame,
     channel_repairs: pd.DataFrame,
     segments: pd.DataFrame,
+    spectra: pd.DataFrame,
     gyroscope_parameters: pd.DataFrame,
     gyroscope_fit: pd.DataFrame,
 ) -> Tables:
@@ -52,8 +54,7 @@ def studies(
     encoded = set(blocks.loc[blocks["table_angle"].notna(), "manoeuvre"]) if len(blocks) else set()
     for r in (r for found in turns.values() for r in found):
         wanted[r.plan.name] = stretch_of(r, segments)
-        if r.plan.name in encoded:
-            wanted[encoder_rows.with_rests(r.plan.name)] = encoder_rows.whole_stretch(r, segments)
+        wanted[encoder_rows.with_rests(r.plan.name)] = encoder_rows.whole_stretch(r, segments)
     read = samples_in(samples, wanted, masks, Repairs(channel_repairs))
 
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
@@ -64,14 +65,21 @@ def studies(
         between = scatter.get(data.mount, 0.0)
         motions: dict[str, WholeMotion] = {}
         times = {r.plan.name: steady_times(r, segments) for r in turns[data.mount]}
+        whole = [
+            (r, read[name])
+            for r in turns[data.mount]
+            if (name := encoder_rows.with_rests(r.plan.name)) in read
+        ]
         encoder = [
             row
-            for r in turns[data.mount]
-            if (whole := read.get(encoder_rows.with_rests(r.plan.name))) is not None
-            for row in encoder_rows.of_turn(data, r, whole, times[r.plan.name])
+            for r, stretch in whole
+            if r.plan.name in encoded
+            for row in encoder_rows.of_turn(data, r, stretch, times[r.plan.name])
         ]
         common = list(encoder_rows.together(data, encoder))
         _add(rows, {"encoder": [*common, *encoder]})
+        ramps = {r.plan.name: of_ramps(data, r, stretch) for r, stretch in whole}
+        _add(rows, {"bandwidths": list(bandwidths(data, encoder, ramps, spectra))})
         harmonics = encoder_rows.harmonics_of(common)
         for r in turns[data.mount]:
             name = r.plan.name

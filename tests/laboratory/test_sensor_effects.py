@@ -541,3 +541,38 @@ def test_biases_are_others_after_each_switch_on(performed: Performed) -> None:
     assert forces.std() == pytest.approx(50 * MICRO_G, rel=0.25)
     assert rates.std() == pytest.approx(3 * DEG_H, rel=0.25)
     assert abs(np.corrcoef(rates[:-1].ravel(), rates[1:].ravel())[0, 1]) < 0.4
+
+
+def test_a_low_pass_delays_a_ramp_by_its_time_constant_and_loses_no_angle(
+    performed: Performed,
+) -> None:
+    """At 40 deg/s² by τ = 20 ms: 0.8 deg/s too little, after e⁻¹ of that at τ into the ramp."""
+    move = turn(40) | {"rate_deg_s": 40}
+    del move["seconds"]
+    also = {"handling": {"still_s": 1}}
+    low = {"gyro_low_pass": {"time_constant_ms": [0, 0, 20]}}
+    late, prompt = (
+        np.diff(performed(move, effects=effects, also=also).truth["still"].noisy.gyro[:, 2])
+        for effects in (low, {})
+    )
+    less = (prompt - late) / 0.01
+    assert less[120:198] == pytest.approx(radians(0.8), rel=0.01)
+    # The mean of 1 − e^(−t/τ) over the sample from τ/2 to τ after the ramp has begun.
+    begun = int(np.argmax(np.abs(prompt - prompt[0]) > 1e-9))
+    mean = 1 - 2 * (np.exp(-0.5) - np.exp(-1))
+    assert less[begun + 1] == pytest.approx(radians(0.8) * mean, rel=0.02)
+    assert late.sum() == pytest.approx(prompt.sum(), abs=1e-10)
+
+
+def test_a_low_pass_lessens_white_noise_by_its_bandwidth(performed: Performed) -> None:
+    """White noise sampled at T through τ = 10 T: its variance is about T/(2τ) of what it was."""
+    still = rest("+z") | {"seconds": 1200}
+    noise = {"angle_random_walk_deg_sqrt_h": 0.1}
+    low = {"gyro_low_pass": {"time_constant_ms": [100, 0, 0]}}
+    slow, plain = (
+        np.diff(performed(still, effects=one, **noise).truth["still"].noisy.gyro, axis=0)
+        for one in (low, {})
+    )
+    ratio = slow.var(axis=0) / plain.var(axis=0)
+    assert ratio[0] == pytest.approx(0.05, rel=0.1)
+    assert ratio[1:] == pytest.approx(1)

@@ -225,6 +225,7 @@ def characteristics() -> Rows:
         "quantity": "linearity_error",
         "value": 3e-5,
         "sigma": 4e-6,
+        "lower": None,
         "by_noise": 1.1e-5,
         "unit": "1",
         "largest_input": np.radians(10),

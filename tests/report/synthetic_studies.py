@@ -38,10 +38,26 @@ def studies(generator: np.random.Generator) -> dict[str, Rows]:
         "time_angle": [row for turn in turns for row in _angles(turn, generator)],
         "motions": [row for turn in turns for row in _motions(turn)],
         "encoder": _encoder(turns),
+        "bandwidths": bandwidths(),
         "not_studied": [
             {"study": "turns", "subject": "z-backward", "reason": "240.38° of 360° recorded"}
         ],
     }
+
+
+def bandwidths() -> Rows:
+    """A gyro of 53 Hz by the encoder, one with a limit only, and an accelerometer without."""
+
+    def row(sensor: str, axis: str, by: str, *numbers: float | None, reason: str = "") -> dict:
+        own = dict(zip(("value", "sigma", "lower"), numbers, strict=True))
+        place = {"id": f"studies/{sensor}/bandwidth_{axis}/{by}", "mount": "", "sensor": sensor}
+        return place | own | {"axis": axis, "by": by, "turns": 2, "reason": reason}
+
+    return [
+        row("gyro", "x", "encoder", 53.05, 0.42, 52.4),
+        row("gyro", "y", "ramps", None, None, 35.0),
+        row("accel", "z", "ramps", None, None, None, reason="nothing changes fast"),
+    ]
 
 
 def _encoder(turns: list[str]) -> Rows:
@@ -52,7 +68,7 @@ def _encoder(turns: list[str]) -> Rows:
     eccentric = {"order": 1.0, "p_value": 0.5}
     return [
         row(None, "delay", 3.0e-3, 3e-6, "s") | {"p_value": 0.2},
-        row(None, "bandwidth", 53.05, 0.05, "Hz"),
+        row(None, "low_pass", 3.0e-3, 3e-6, "s"),
         row(None, "sine", 5.03e-5, 1.4e-6, "rad") | eccentric,
         row(None, "cosine", -2.98e-5, 1.4e-6, "rad") | eccentric,
         *(row(turn, "scale", 5.61e-4, 4e-6, "1") for turn in turns),

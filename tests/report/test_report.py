@@ -547,3 +547,10 @@ def test_a_section_reads_no_table_but_those_it_declares() -> None:
     for section in (*EVIDENCE, *ANNEXES):
         own = {name: made[name] for name in (*section.reads, "provenance")}
         assert list(section.parts(synthetic.tables_of(own))), section.key
+
+
+def test_a_bandwidth_says_what_it_is_of() -> None:
+    text = Page(synthetic.report_on(synthetic.campaign(logs=("x-up.asc",)))["html"]).text
+    assert "gyro: ramps, by the encoder of the table: response to rates" in text
+    assert "53.05" in text
+    assert "accelerometer, bandwidth: not determined, for nothing changes fast." in text

@@ -15,8 +15,8 @@ NAMES = {
     "composite_error": _("Composite error, over the largest input"),
     "linearity_error": _("Linearity error, over the largest input"),
     "asymmetry": _("Scale factor asymmetry"),
-    "threshold": _("Threshold, at most"),
-    "resolution": _("Resolution, at most"),
+    "threshold": _("Threshold"),
+    "resolution": _("Resolution"),
     "acceleration_insensitive_drift": _("Acceleration-insensitive drift rate"),
 }
 UNITS = {"1": PPM, "rad/s": DEGREES_PER_HOUR, "m/s²": METRES}
@@ -26,10 +26,16 @@ INPUTS = {"rad/s": DEGREES_PER_SECOND, "m/s²": METRES}
 def parts(tables: Tables) -> Iterator[Part]:
     """One table of both sensors, and why figures are missing."""
     rows = tables.rows("characteristics")
-    known = [row for row in rows if row["value"] is not None]
-    if not known:
-        return
-    yield Table(
+    known = [row for row in rows if row["value"] is not None or row["lower"] is not None]
+    if known:
+        yield _figures(known)
+    if missing := list(dict.fromkeys(map(_missing, (row for row in rows if row["reason"])))):
+        yield Sentences(tuple(missing))
+    yield from _bandwidths(tables.rows("bandwidths"))
+
+
+def _figures(known: Sequence[Record]) -> Table:
+    return Table(
         _("Figures of each axis, as IEEE Std 528 defines them."),
         (
             Column(_("Axis"), "name"),
@@ -46,8 +52,75 @@ def parts(tables: Tables) -> Iterator[Part]:
             "cases if noise, the table and the site are all there is."
         ),
     )
-    if missing := list(dict.fromkeys(map(_missing, (row for row in rows if row["reason"])))):
+
+
+# ---- Bandwidth: of the response to rates, and of the noise, which are not the same.
+
+BY = {
+    "encoder": _("ramps, by the encoder of the table: response to rates"),
+    "ramps": _("ramps, as the gyro reads them: gyro and drive together"),
+    "noise": _("white noise at rest: bandwidth of the noise"),
+}
+
+
+def _bandwidths(rows: Sequence[Record]) -> Iterator[Part]:
+    """One table of both sensors, and why there is no bandwidth of some axes."""
+    known = [row for row in rows if row["lower"] is not None or row["value"] is not None]
+    if known:
+        yield Table(
+            _("Bandwidth (−3 dB) of each axis."),
+            (
+                Column(_("Axis"), "name"),
+                Column(_("value"), "number"),
+                Column("± σ", "sigma"),
+                Column(_("at least, 95 %"), "number"),
+                Column(_("unit"), "unit"),
+                Column(_("turns"), "number"),
+            ),
+            list(_bandwidth_rows(known)),
+            note=_(
+                "As of a first-order low pass; one of second order with the damping 1/√2 delays "
+                "all ramps alike, which ramps do not tell from dead time. Without an encoder a "
+                "drive that rounds the corners of its ramps makes the bandwidth smaller, so only "
+                "the limit is one of the gyro. The noise shows the filters that it passes, and "
+                "not what is before its source."
+            ),
+        )
+    if missing := list(dict.fromkeys(_no_bandwidth(row) for row in rows if row["reason"])):
         yield Sentences(tuple(missing))
+
+
+def _bandwidth_rows(rows: Sequence[Record]) -> Iterator[Row]:
+    for by, name in BY.items():
+        for sensor in ("accel", "gyro"):
+            own = [r for r in rows if (r["by"], r["sensor"]) == (by, sensor)]
+            if own:
+                yield head(f"{SENSOR[sensor]}: {name}")
+            for row in own:
+                value, sigma = "–", "–"
+                if row["value"] is not None:
+                    value, sigma = numbers.with_sigma(
+                        row["value"], row["sigma"], numbers.decimals_of(row["sigma"])
+                    )
+                mount = f" ({row['mount']})" if row["mount"] else ""
+                yield table_row(
+                    row["axis"] + mount,
+                    value,
+                    sigma,
+                    numbers.significant(row["lower"], 2) if row["lower"] else "–",
+                    "Hz",
+                    numbers.whole(row["turns"]) if row["turns"] else "–",
+                    anchor=row["id"],
+                )
+
+
+def _no_bandwidth(row: Record) -> str:
+    return _(
+        "{axis} {sensor}, bandwidth: not determined, for {reason}.",
+        axis=row["axis"],
+        sensor=SENSOR[row["sensor"]],
+        reason=row["reason"],
+    )
 
 
 SECTION = Section(
@@ -61,12 +134,12 @@ SECTION = Section(
     ),
     _(
         "A linearity error within the figure for noise alone is an upper limit. Threshold and "
-        "resolution are the least input, and the least change of it, that gave at least half of "
-        "the expected output with 95 % confidence: the sensor may feel less than the plan "
-        "applied. The acceleration-insensitive drift rate is what a gyro reads whatever force it "
-        "is under."
+        "resolution are the least input, and the least change of it, that give at least half of "
+        "the expected output; the plan and the counts set limits to them, with 95 % confidence: "
+        "the sensor may feel less than the plan applied. The acceleration-insensitive drift rate "
+        "is what a gyro reads whatever force it is under."
     ),
-    ("characteristics",),
+    ("characteristics", "bandwidths"),
     parts,
 )
 
@@ -87,7 +160,7 @@ def _table_rows(rows: Sequence[Record]) -> Iterator[Row]:
 
 def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
     if row["sigma"] is None:
-        value, sigma = numbers.significant(unit.of(row["value"]), 2), "–"
+        value, sigma = _between(row, unit), "–"
     else:
         value, sigma = numbers.with_sigma(unit.of(row["value"]), unit.of(row["sigma"]), decimals)
     largest = ""
@@ -105,6 +178,17 @@ def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
         numbers.whole(row["points"]),
         anchor=row["id"],
     )
+
+
+def _between(row: Record, unit: Unit) -> str:
+    """The limits of a threshold or a resolution."""
+    lower, upper = (
+        None if row[key] is None else numbers.significant(unit.of(row[key]), 2)
+        for key in ("lower", "value")
+    )
+    if lower is None:
+        return f"≤ {upper}"
+    return f"≥ {lower}" if upper is None else f"{lower} – {upper}"
 
 
 def _missing(row: Record) -> str:

@@ -16,7 +16,6 @@ QUANTITIES = {
     "spread": _("variance of this delay: 0 where gyro and encoder are only late"),
     "low_pass": _("time constant of the gyro's low pass of first order, with that variance"),
     "dead_time": _("dead time of the gyro less latency of the encoder"),
-    "bandwidth": _("bandwidth of the gyro by that time constant"),
     "sine": _("error of the encoder, sine of {order:g} times its angle"),
     "cosine": _("error of the encoder, cosine of {order:g} times its angle"),
     "ripple": _("ripple of the drive, {order:g} periods in a turn, amplitude"),
@@ -26,7 +25,6 @@ UNITS = {
     "rad": SECONDS_OF_ARC,
     "s": Unit("ms", 1e-3),
     "s²": Unit(_("ms²"), 1e-6),
-    "Hz": Unit("Hz", 1.0),
 }
 
 
