@@ -8,7 +8,7 @@ import pytest
 from inertial import tables
 from inertial.physics.motion import Profile
 from inertial.tables.yaml_file import YamlFile
-from stages.history.stage import history
+from stages.history.stage import STAGE as HISTORY
 from stages.plan.published import published_values
 
 TRUTH = np.diag(np.array(chain.demo()["truth"]["gyro"]["matrix"])) - 1
@@ -202,7 +202,7 @@ def told(results, folder, scales, window="", **changes) -> list[str]:
         "blocks": results["segment/blocks"],
     }
     settings = {"archive": [folder / "archive"], "provenance": {}, "level": 0.01}
-    made = history(**{**needed, "published": rows, **settings, **changes})
+    made = HISTORY.result({**needed, "published": rows, **settings, **changes})
     table = made["published_differences"]
     return list(table[table["kind"] == "fencepost"]["sentence"])
 
