@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.equations import SENSORS, Campaign
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.least_squares import EffectInformation, System
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect
 
@@ -24,19 +24,13 @@ def evidence(
     The two share the tilts of the positions. That of the gyros is what they add to the
     accelerometers, so that the two are independent. The columns are named by label and parameter of
     an effect. The information is zero for an effect that is sought elsewhere, and where it is not
-    observable at its largest size: there it could only absorb rounding errors. `noise_degrees`: of
-    freedom of the noise estimate.
+    observable at its largest size: there it could only absorb rounding errors. That is judged
+    against noise alone: a scatter by hand may be all effect. `noise_degrees`: of freedom of the
+    noise estimate.
     """
-    tilts = campaign.shared_tilts
-    pairs = zip(SENSORS, campaign.systems(effects, 1.0, sharing=tilts), strict=True)
-    systems = [(sensor, system) for sensor, system in pairs if system is not None]
-    informative = [(sensor, system.effect_information()) for sensor, system in systems]
-    if tilts:
-        gyro, accel = (information for _, information in informative)
-        prior = np.full(len(tilts), campaign.position_sigma**-2)
-        informative = list(
-            zip(SENSORS, (gyro.following(accel, prior), accel.eliminated(prior)), strict=True)
-        )
+    systems, informative = _informative(campaign, effects)
+    quiet = campaign.without_scatter()
+    against = informative if quiet is campaign else _informative(quiet, effects)[1]
     largest = np.array(
         [
             effect.largest_of(parameter)
@@ -46,7 +40,7 @@ def evidence(
             for parameter in effect.parameters
         ]
     )
-    information = sum((np.diag(reduced.information) for _, reduced in informative), np.zeros(1))
+    information = sum((np.diag(reduced.information) for _, reduced in against), np.zeros(1))
     observable = (largest * np.sqrt(information) > MIN_OBSERVABLE_SIGMAS).astype(np.float64)
     return Evidence(
         tuple(_restricted(reduced, observable) for _, reduced in informative),
@@ -54,6 +48,22 @@ def evidence(
         tuple(campaign.noise_degrees(sensor, noise_degrees) for sensor, _ in informative),
         np.array([system.raw_information()[: len(largest)] for _, system in systems]),
     )
+
+
+def _informative(
+    campaign: Campaign, effects: Sequence[Effect]
+) -> tuple[list[tuple[str, System]], list[tuple[str, EffectInformation]]]:
+    """The equations by sensor, and what they say of the effects, as independent ones."""
+    tilts = campaign.shared_tilts
+    pairs = zip(SENSORS, campaign.systems(effects, 1.0, sharing=tilts), strict=True)
+    systems = [(sensor, system) for sensor, system in pairs if system is not None]
+    informative = [(sensor, system.effect_information()) for sensor, system in systems]
+    if tilts:
+        gyro, accel = (information for _, information in informative)
+        prior = np.full(len(tilts), campaign.position_sigma**-2)
+        independent = gyro.following(accel, prior), accel.eliminated(prior)
+        informative = list(zip(SENSORS, independent, strict=True))
+    return systems, informative
 
 
 def _restricted(reduced: EffectInformation, observable: Array) -> EffectInformation:

@@ -179,6 +179,19 @@ class Campaign:
         drifts = {sensor: drift.between_switch_ons for sensor, drift in self.drifts.items()}
         return replace(self, drifts=drifts)
 
+    @property
+    def scattering(self) -> tuple[str, ...]:
+        """The sensors, by hand, whose residuals have a scatter that is estimated from them."""
+        by_hand = self.by_hand
+        return () if by_hand is None else by_hand.scattering
+
+    def without_scatter(self) -> "Campaign":
+        """The same without the scatter of positions by hand."""
+        if not self.scattering:
+            return self
+        assert self.by_hand is not None  # else there is no scatter
+        return replace(self, by_hand=self.by_hand.without_scatter())
+
     def switch_ons(self, effects: Sequence[Effect]) -> dict[str, SwitchOns]:
         """By what biases differ between switch-ons, beside effects; of sensors with several."""
         found: dict[str, SwitchOns] = {}

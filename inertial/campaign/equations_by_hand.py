@@ -6,7 +6,7 @@ catalogue is no scatter.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -62,6 +62,16 @@ class ByHand:
     direction_scatter: float = 0.0
     degrees: Mapping[str, float] = field(default_factory=dict)
     left_out: frozenset[int] = frozenset()
+
+    @property
+    def scattering(self) -> tuple[str, ...]:
+        """The sensors whose scatter is estimated from the residuals."""
+        sizes = {"gyro": self.scatter != NONE, "accel": self.force_scatter > 0}
+        return tuple(sensor for sensor, there in sizes.items() if there)
+
+    def without_scatter(self) -> "ByHand":
+        """The same with noise alone."""
+        return replace(self, scatter=NONE, force_scatter=0.0)
 
     @property
     def moving(self) -> list[str]:

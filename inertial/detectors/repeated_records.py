@@ -1,6 +1,7 @@
-"""Records that are in a log twice, or that hold the readings of the one before."""
+"""Records that are in a log twice, or that hold the readings of earlier ones."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -126,6 +127,18 @@ SIDE_PAIRS = 100  # pairs on each side of a run by which its chance is judged
 CLOSE_COUNTS = (1, 3, 10)
 MIN_EXCESS_SIGMA = 3.0  # sigma, more than usual
 BISECTIONS = 40  # of the interval in which the chance lies
+MIN_COPIED = 8  # records in a row that are copied
+DEPENDENT = 0.5  # power of the chance that all channels change alike: as if half of them were free
+# Of the readings of a record, in a sum that is the same only where all of them are.
+SUM_WEIGHTS = np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0])
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """How many channels are held; the line that was copied, None where it is the one before."""
+
+    channels: int
+    copied: int | None = None
 
 
 class HeldRecord(Detector):
@@ -136,6 +149,9 @@ class HeldRecord(Detector):
     follows from the pairs that are not: how often a channel is equal in them, beside the run and in
     the whole, the larger counts. For a run of more than one it is also judged by how often the
     readings that are held come beside it. A channel that never changes does not count.
+
+    Or records whose readings are, in their order, those of a stretch before, where there are no
+    stamps that would be repeated too: see `_copied`.
     """
 
     name = "held_record"
@@ -150,21 +166,53 @@ class HeldRecord(Detector):
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for places, channels in kinds(piece):
             changing = channels[log.least[channels] < log.most[channels]]
-            if not len(changing) or not _any_equal(piece.values, places, changing):
-                continue
             values = piece.values[np.ix_(places, changing)]
+            if len(values) == len(piece):
+                yield from self._copies(piece, values, log.records)
+            if not _any_equal(values):
+                continue
             for start, end, chance in _held(values, log.records):
                 # The rows of another sensor may lie between; they are not concerned.
                 own = places[start + 1 : end + 1]
                 whole = own[-1] - own[0] + 1 == len(own)
                 for part in [own] if whole else own[:, None]:
                     first, last, size = int(part[0]), int(part[-1]) + 1, float(len(part))
-                    yield piece.event(first, last, size, p_value=chance, facts=len(changing))
+                    facts = _Facts(len(changing))
+                    yield piece.event(first, last, size, p_value=chance, facts=facts)
+
+    def _copies(self, piece: Piece, values: Array, records: int) -> Iterator[Event]:
+        for start, end, before, chance in _copied(values, records):
+            facts = _Facts(values.shape[1], int(piece.line[before]))
+            yield piece.event(start, end, float(end - start), p_value=chance, facts=facts)
 
     def describe(self, event: Event, name: str) -> Description:
         single = event.size == 1
         records = counted(int(event.size), "record")
         at = f", {fixed(event.from_s, 3)} s," if np.isfinite(event.from_s) else ""
+        if event.facts.copied is not None:
+            return Description(
+                _(
+                    "{name}: {records} from line {line}{at} have, in their order, the readings of "
+                    "those from line {copied} on in all {channels} channels, though time goes on; "
+                    "by chance that happens with {p_value} in this log.",
+                    name=name,
+                    records=records,
+                    line=event.line,
+                    at=at,
+                    copied=event.facts.copied,
+                    channels=event.facts.channels,
+                    p_value=p_is(event.p_value),
+                ),
+                _(
+                    "If they are in the log twice, all that comes after them was taken earlier "
+                    "than its place in the log says; if they were written in place of others, what "
+                    "the IMU did meanwhile is unknown."
+                ),
+                _(
+                    "They are masked; time passes with them. Look for logs that were joined, and "
+                    "at the logger's buffer."
+                ),
+            )
         return Description(
             _(
                 "{name}: {records} from line {line}{at} {value} the readings of the one before "
@@ -175,7 +223,7 @@ class HeldRecord(Detector):
                 line=event.line,
                 at=at,
                 value=_("has") if single else _("have"),
-                facts=event.facts,
+                facts=event.facts.channels,
                 p_value=p_is(event.p_value),
             ),
             _(
@@ -193,13 +241,13 @@ class HeldRecord(Detector):
         )
 
 
-def _any_equal(values: Array, places: Integers, channels: Integers) -> bool:
-    """Whether any pair of neighbours, of the (m,) places in (n, 6), is equal in these channels."""
-    before, after = places[:-1], places[1:]
-    for i in channels:
-        equal = values[after, i] == values[before, i]
+def _any_equal(values: Array) -> bool:
+    """Whether any pair of neighbours of (n, c) is equal in all channels; not without channels."""
+    before, after = np.arange(len(values) - 1), np.arange(1, len(values))
+    for channel in values.T:
+        equal = channel[after] == channel[before]
         before, after = before[equal], after[equal]
-    return len(before) > 0
+    return values.shape[1] > 0 and len(before) > 0
 
 
 def _held(values: Array, records: int) -> Iterator[tuple[int, int, float]]:
@@ -221,6 +269,49 @@ def _held(values: Array, records: int) -> Iterator[tuple[int, int, float]]:
         chance = records * float(likely[k]) ** (b - a)
         if chance < MAX_CHANCE:
             yield a, b, chance
+
+
+def _copied(values: Array, records: int) -> Iterator[tuple[int, int, int, float]]:
+    """Runs of records, of (n, c), with the readings of a stretch before: with its first record.
+
+    The chance of a run of r records is (pairs of records in the log) × Pʳ⁻¹, P that two steps from
+    record to record are alike in all channels, each by the steps of the whole or of the run itself,
+    the larger counts: what stands still copies itself. Channels may move together, so not all of
+    their steps count as independent.
+    """
+    keys = np.zeros(len(values))
+    for channel, weight in zip(values.T, SUM_WEIGHTS, strict=False):
+        keys += weight * channel
+    order = np.argsort(keys, kind="stable")
+    again = np.flatnonzero(keys[order][1:] == keys[order][:-1]) + 1
+    before = np.full(len(values), -1)
+    before[order[again]] = order[again - 1]
+    lag = np.where(before >= 0, np.arange(len(values)) - before, 0)
+    edges = np.flatnonzero(np.diff(lag, prepend=-1, append=-1) != 0)
+    long = np.flatnonzero((np.diff(edges) >= MIN_COPIED) & (lag[edges[:-1]] >= MIN_COPIED))
+    usual: Array | None = None
+    reached = 0
+    for start, end in zip(edges[long].tolist(), edges[long + 1].tolist(), strict=True):
+        back = int(lag[start])
+        if start < reached or (values[start:end] != values[start - back : end - back]).any():
+            continue
+        # A record that by chance is like a later one, too, does not part them.
+        while end < len(values) and (values[end] == values[end - back]).all():
+            end += 1
+        while start > max(reached, back) and (values[start - 1] == values[start - 1 - back]).all():
+            start -= 1
+        reached = end
+        usual = _alike(np.diff(values, axis=0)) if usual is None else usual
+        alike = np.maximum(usual, _alike(np.diff(values[start:end], axis=0)))
+        chance = records**2 / 2 * float(alike.prod()) ** (DEPENDENT * (end - start - 1))
+        if chance < MAX_CHANCE:
+            yield start, end, start - back, chance
+
+
+def _alike(steps: Array) -> Array:
+    """The chance that two of (n, c) steps are alike, by channel, (c,)."""
+    shares = (np.unique(own, return_counts=True)[1] / len(own) for own in steps.T)
+    return np.array([np.sum(share**2) for share in shares])
 
 
 def _likely(equal: Booleans, whole: Booleans, start: Integers, end: Integers) -> Array:

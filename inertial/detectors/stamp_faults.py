@@ -79,6 +79,8 @@ class TimeBackwards(Detector):
         # Nothing is left of a record that repeats an earlier one.
         replayed = np.asarray(np.isnan(piece.values).all(axis=1))
         for disorder in disorders(piece.time, piece.reached, log.interval):
+            if replayed[disorder.start : disorder.end].all():
+                continue  # `duplicate` says it
             step = disorder.end if disorder.ahead and disorder.end < len(piece) else disorder.start
             before = max(piece.reached, float(piece.time[:step].max(initial=-np.inf)))
             facts = _Facts(
@@ -111,12 +113,6 @@ class TimeBackwards(Detector):
                 before=fixed(facts.before, 3),
                 from_s=fixed(event.from_s, 3),
                 records=records,
-            )
-        if facts.replayed == 1:
-            return Description(
-                _("{sentence} They repeat earlier ones.", sentence=sentence),
-                _("None beyond that of the repetition."),
-                _("The repetition is masked. Look for logs that were joined."),
             )
         masked = (
             _("What repeats earlier ones is masked") if facts.replayed else _("Nothing is masked")

@@ -167,16 +167,16 @@ def chance(
         if max_degrees:
             np.minimum(smallest, law(largest), out=smallest)
     smallest = np.sort(smallest)
-    share = _share(smallest, level)
+    share = share_of_level(smallest, level)
     bounds = tuple(law.bound(share) if law.degrees else np.inf for law in tails)
     return Chance(tuple(tails), level, share, smallest, bounds)
 
 
-def _share(smallest: Array, level: float) -> float:
+def share_of_level(smallest: Array, level: float) -> float:
     """The p-value that the smallest of all falls below with probability `level`.
 
-    Extrapolated from a higher level, for the draws are few: the probability is that of m
-    independent effects, 1 − (1 − p)^m, where m hardly changes with p.
+    Extrapolated from a higher level, for the draws of the smallest, sorted, are few: the
+    probability is that of m independent effects, 1 − (1 − p)^m, where m hardly changes with p.
     """
     counted = min(LEVEL_RATIO * level, 0.5)
     return float(np.quantile(smallest, counted) * np.log1p(-level) / np.log1p(-counted))

@@ -17,12 +17,12 @@ from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.scatter_of_positions import scattered
 from inertial.effects import TEMPERATURE_MODELS
-from inertial.estimation.probability import f_sf
 from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible, visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.naming import causes, law_of, with_given
+from inertial.model_selection.scatter_tests import ScatterTests, named_share, scatter_tests
 from inertial.model_selection.search import finer, to_refine
 from inertial.physics.effect import Array, Effect
 from stages.criticism.bias_drift import (
@@ -147,13 +147,15 @@ def select_with_scatter(
 ) -> Selection:
     """The same with the scatter of positions by hand, which is smaller once effects are named.
 
-    A scatter may be all effect: so where none is named beside it, that which takes most of it away
-    is tested against it. `given`: effects that are named before the search.
+    A scatter may be all effect: so in each sensor where none is named beside it, that which takes
+    most of it away is tested against it. `given`: effects that are named before the search.
     """
     quiet = scattered(campaign, [], noise_degrees)
     selection = first = select_effects(quiet, effects, level, noise_degrees, given)
-    fitted = selection.fitted or (instead_of_scatter(first, level) if campaign.by_hand else [])
-    for _round in range(MAX_ROUNDS if campaign.by_hand else 0):
+    if campaign.by_hand is None:
+        return first
+    fitted = [*first.fitted, *instead_of_scatter(first, level)]
+    for _round in range(MAX_ROUNDS):
         if not fitted:
             break
         quiet = scattered(campaign, fitted, noise_degrees)
@@ -165,24 +167,36 @@ def select_with_scatter(
 
 
 def instead_of_scatter(selection: Selection, level: float) -> list[Effect]:
-    """The effect without which the residuals of a sensor are larger than by chance, if any.
+    """Of each sensor without a name the effect that takes more of its scatter away than by chance.
 
-    By the F test, for the scatter is estimated from these residuals; `level`: accepted probability
-    of a false name, of all effects and all values of what is scanned together.
+    Or than a random walk would, which is weighed against it later: so there is none in these
+    equations. `level`: accepted probability of a false name.
     """
-    trials: list[tuple[float, Effect]] = []
-    for sensor in selection.evidence.observable().sensors:
-        for searched in selection.searched:
-            for value, columns in enumerate(searched.candidates):
-                drop, used = sensor.drop(columns)
-                left = sensor.degrees - used
-                if not used or left <= 0 or searched.name not in selection.families:
-                    continue
-                rest = max(sensor.chi_squared - drop, np.finfo(float).tiny)
-                p_value = float(f_sf(drop / used / rest * left, used, left))
-                trials.append((p_value, selection.effect(searched.name, value)))
-    p_value, effect = min(trials, key=lambda trial: trial[0], default=(1.0, None))
-    return [effect] if effect is not None and p_value * len(trials) < level else []
+    named = {selection.sensor(cause) for cause in selection.named.causes}
+    scattering = [s for s in selection.campaign.scattering if s not in named]
+    if not scattering:
+        return []
+    equations, searched = selection.evidence, selection.searched
+    if any(selection.random_walks):
+        constant = selection.campaign.without_random_walks()
+        equations, searched = evidence_of(constant, selection.families, np.inf)
+    searched = [one for one in searched if one.name in selection.families]
+    tests = scatter_tests_of(equations, searched, scattering)
+    share = named_share(tests, level) if tests else 0.0
+    best = [(one, int(np.argmin(one.p_values))) for one in tests]
+    places = [one.places[place] for one, place in best if one.p_values[place] < share]
+    return [selection.effect(searched[number].name, value) for number, value in places]
+
+
+def scatter_tests_of(
+    equations: Evidence, searched: Sequence[SearchedEffect], sensors: Collection[str]
+) -> list[ScatterTests]:
+    """The tests of all candidates against the scatter of some sensors."""
+    seen = equations.observable()
+    assert seen.raw is not None  # as in all evidence of a campaign
+    informative = zip(seen.labels, seen.sensors, seen.raw, strict=True)
+    tests = (scatter_tests(one, raw, searched) for s, one, raw in informative if s in sensors)
+    return [one for one in tests if one is not None]
 
 
 def select_effects(

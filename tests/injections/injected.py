@@ -2,15 +2,17 @@
 
 The recording is drafted and run as it is; its equations say how large an effect is there, so the
 injected one has a drawn signal-to-noise ratio by this recording's own noise. What the laboratory
-makes of the effect, by the readings as the truth, is added to the numbers of the log, which keep
-their decimals; all else of the log keeps its bytes.
+makes of the effect, by the readings as the truth, is added to the numbers of the log, in the counts
+of its instrument; all else of the log keeps its bytes.
 """
 
 import os
+import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -26,17 +28,27 @@ from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
+from inertial.estimation.probability import chi2_sf, f_sf
+from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.model_selection.naming import law_of
-from inertial.model_selection.null_simulation import power
+from inertial.model_selection.null_simulation import Chance, power
+from inertial.model_selection.scatter_tests import ScatterTests, named_share, residual_columns
 from inertial.physics.effect import Effect
 from inertial.tables import ACCEL, GYRO
 from inertial.tables.code import code_of, hash_of
-from injections.rewritten_logs import lines_of, rewritten, unit_of, write
+from injections.rewritten_logs import held, lines_of, rewritten, unit_of, write
 from laboratory.effects import EFFECTS
 from laboratory.sensor import Sensors, Triad
-from stages.criticism.selection import Selection, select_with_scatter
+from stages.criticism.selection import (
+    Selection,
+    columns_of,
+    evidence_of,
+    scatter_tests_of,
+    select_with_scatter,
+)
 
 SEED = 104_729
+KEPT = chain.ROOT / "data/derived/injections/as-it-is"
 # Logs of text with whole manoeuvres, by hand; the others are means, containers, or in pieces.
 INTO = (
     *(f"mikoff-{number}" for number in range(1, 6)),
@@ -71,6 +83,7 @@ FAULTS: Mapping[str, frozenset[str]] = {
 }
 FAULT_EVERY = 5  # injections, of which one is a fault
 SPIKES, SPIKE_SIGMAS, REPEATED_LINES = 12, 60.0, 40
+DRAWS = 20_000  # of the residuals, for a limit
 AS_SHARES = (0.15, 0.5)  # of the recording, a time constant
 CHANNELS = {"accelerometer": ACCEL, "gyro": GYRO}
 UNIT = Sensors(Triad(np.eye(3), np.zeros(3)), Triad(np.eye(3), np.zeros(3)))
@@ -83,7 +96,9 @@ def code() -> str:
     """A hash of all that an outcome rests on."""
     files = {file for stage in chain.ORDER for file in code_of(stage)}
     files |= {*(chain.ROOT / "laboratory/effects").glob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {*Path(__file__).parent.glob("*ed*.py"), *(chain.ROOT / "commands/draft").glob("*.py")}
+    files |= {*Path(__file__).parent.glob("*ed.py"), *Path(__file__).parent.glob("*logs.py")}
+    files |= {chain.ROOT / "tests/hidden/hidden_ways.py"}
+    files |= {*(chain.ROOT / "commands/draft").glob("*.py")}
     return hash_of(sorted(files))[:16]
 
 
@@ -111,41 +126,119 @@ class Recording:
         return layout
 
     @property
-    def log(self) -> Path:
-        """Its only log."""
-        (log,) = (path for path in self.campaign.iterdir() if path.name != "campaign.yaml")
-        return log
-
-    @property
     def equations(self) -> Campaign:
         """Its equations, scatter and random walks included."""
         return self.selection.campaign
 
     def ratio(self, effect: Effect, values: Array) -> float:
-        """The signal-to-noise ratio of an effect, all else fitted."""
-        information = evidence(self.equations, [effect]).total.information
-        return float(np.sqrt(values @ information @ values))
+        """The signal-to-noise ratio of an effect, all else fitted.
 
-    def limit(self, name: str, ratio: float) -> float:
-        """The power at a ratio that no search of the catalogue exceeds on this recording."""
+        By hand by residuals alone: there the parameters have no priors but vague ones.
+        """
+        families, columns = self.selection.families, columns_of(effect)
+        if self.equations.by_hand is None:
+            information = evidence(self.equations, [effect]).total.information
+            return float(np.sqrt(values @ information @ values))
+        searched = {one.label for family in families.values() for one in family}
+        further = [] if effect.label in searched else [effect]
+        said, _searched = evidence_of(self.equations, families, np.inf, further)
+        own = [said.names.index(name) for name in columns]
+        roots = (
+            residual_columns(*each)[0][own] for each in zip(said.sensors, said.raw, strict=True)
+        )
+        return float(np.sqrt(sum(np.sum((values @ root) ** 2) for root in roots)))
+
+    @cached_property
+    def law(self) -> Chance | None:
+        """What noise alone brings forth."""
+        return law_of(self.selection.evidence.observable(), self.selection.searched, LEVEL)
+
+    def limit(self, name: str, ratio: float, *, scatter_known: bool = False) -> float:
+        """The power at a ratio that no search of the catalogue exceeds on this recording.
+
+        By hand the scatter of positions is not known: where the residuals with the effect are
+        larger than noise, it is what takes more of them away than by chance that is found.
+        """
         said = self.selection.evidence.observable()
         searched = self.selection.searched
-        law = law_of(said, searched, LEVEL)
         number = [one.name for one in searched].index(name)
-        if law is None or not law.tails[number].degrees:
+        if self.law is None or not self.law.tails[number].degrees:
             return 0.0
         sensor = said.sensor_of([i for one in searched[number].candidates for i in one])
-        threshold = law.threshold(number, said.noise_degrees_of(sensor))
-        return float(power(ratio, law.tails[number].degrees, threshold))
+        threshold = self.law.threshold(number, said.noise_degrees_of(sensor))
+        if scatter_known or self.equations.by_hand is None:
+            return float(power(ratio, self.law.tails[number].degrees, threshold))
+        own, scattering = said.labels[sensor], self.equations.scattering
+        share = named_share(self.tests({own, *scattering}), LEVEL)
+        beside = Beside.of(self.tests([own]), number, share)
+        return beside.power(ratio, None if own in scattering else threshold)
+
+    def tests(self, sensors: Collection[str]) -> Sequence[ScatterTests]:
+        """Those of all effects against a scatter of some sensors."""
+        said, searched = self.selection.evidence, self.selection.searched
+        return scatter_tests_of(said, searched[: len(self.selection.families)], sensors)
 
 
-def as_it_is(name: str, place: Path) -> Recording:
-    """A recording, drafted and run into a folder."""
+@dataclass(frozen=True)
+class Beside:
+    """An effect of `used` degrees of freedom of all `degrees`, in which a scatter may be, too.
+
+    `share`: the p-value by F from which it is named. Where it leaves no residuals `used` is 0.
+    """
+
+    degrees: int
+    used: int
+    share: float
+
+    @classmethod
+    def of(cls, tests: Sequence[ScatterTests], number: int, share: float) -> "Beside":
+        """Of the effect of this number among those that are searched."""
+        for one in tests:
+            own = [
+                u for (effect, _), u in zip(one.places, one.used, strict=True) if effect == number
+            ]
+            return cls(one.degrees, int(max(own, default=0)), share)
+        return cls(0, 0, share)
+
+    def power(self, ratio: float, noise_threshold: float | None = None) -> float:
+        """That it is found at a ratio.
+
+        `noise_threshold`: of its drop of chi-squared, where there is no scatter by itself; then one
+        is supposed only where the residuals are larger than noise.
+        """
+        if not self.used:
+            return 0.0
+        random, left = np.random.default_rng(0), self.degrees - self.used
+        drop = random.noncentral_chisquare(self.used, ratio**2, DRAWS)
+        rest = random.chisquare(left, DRAWS)
+        found = f_sf(drop / self.used / rest * left, self.used, left) < self.share
+        if noise_threshold is not None:
+            quiet = chi2_sf(drop + rest, self.degrees) >= MIN_CONSISTENT_P_VALUE
+            found = np.where(quiet, drop > noise_threshold, found)
+        return float(found.mean())
+
+
+@cache
+def as_it_is(name: str) -> Recording:
+    """A recording, drafted and run; kept on disk for as long as the code is the same."""
+    folder = KEPT / f"{name}-{code()}"
+    if not folder.exists():
+        KEPT.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=KEPT) as part:
+            _run(name, Path(part) / "made")
+            for old in {*KEPT.glob(f"{name}-*")} - {folder}:
+                shutil.rmtree(old, ignore_errors=True)
+            with suppress(OSError):  # another process was first
+                (Path(part) / "made").rename(folder)
+    results = chain.Results(folder / "derived")
+    (data,) = chain.mounts(results)
+    return Recording(name, folder / "data/raw" / name, results, _selected(data))
+
+
+def _run(name: str, place: Path) -> None:
     (one,) = (one for one in RECORDINGS if one.name == name)
     campaign = one.drafted(folder_of_recordings(), place / "data")
-    results = chain.run(campaign, place / "derived", "diagnosis", BESIDE)
-    (data,) = chain.mounts(results)
-    return Recording(name, campaign, results, _selected(data))
+    chain.run(campaign, place / "derived", "diagnosis", BESIDE)
 
 
 def _selected(data: CampaignData) -> Selection:
@@ -185,27 +278,31 @@ def outcome(number: int) -> Outcome:
     with tempfile.TemporaryDirectory() as place:
         if number < 0:
             name = INTO[number]
-            causes = _causes(as_it_is(name, Path(place)).results)
+            causes = _causes(as_it_is(name).results)
             false = [cause for cause, members in causes if not members & THERE[name]]
             return {"number": number, "code": code(), "recording": name, "false": false}
         what = drawn(number)
-        before = as_it_is(what.recording, Path(place))
+        kept = as_it_is(what.recording)
+        campaign = shutil.copytree(kept.campaign, Path(place) / kept.name)
+        (log,) = (path for path in campaign.iterdir() if path.name != "campaign.yaml")
         told_of = {"number": number, "code": code(), "recording": what.recording}
         told_of |= {"name": what.name, "ratio": what.ratio}
         if what.is_fault:
             wanted, limit = FAULTS[what.name], np.nan
-            _damage(before, what)
+            _damage(kept, what, log)
         else:
-            wanted, limit = frozenset({what.name}), before.limit(what.name, what.ratio)
-            if not (effect := _hide(before, what)):
+            wanted, limit = frozenset({what.name}), kept.limit(what.name, what.ratio)
+            known = kept.limit(what.name, what.ratio, scatter_known=True)
+            told_of |= {"known": known}
+            if not (effect := _hide(kept, what, log)):
                 return told_of | {"limit": 0.0, "found": False, "beside": [], "shown": False}
             told_of |= {"values": effect}
-        own = _causes(before.results)
-        after = chain.run(before.campaign, Path(place) / "again", "diagnosis", BESIDE)
+        own = _causes(kept.results)
+        after = chain.run(campaign, Path(place) / "again", "diagnosis", BESIDE)
         rows = _causes(after)
-        known = {cause for cause, _ in own}
+        before_it = {cause for cause, _ in own}
         found = [members for _, members in rows if members & wanted]
-        beside = [c for c, members in rows if not members & wanted and c not in known]
+        beside = [c for c, members in rows if not members & wanted and c not in before_it]
         return told_of | {
             "limit": limit,
             "found": bool(found),
@@ -223,7 +320,7 @@ def _causes(results: chain.Results) -> list[tuple[str, frozenset[str]]]:
     ]
 
 
-def _hide(recording: Recording, what: Drawn) -> dict[str, float]:
+def _hide(recording: Recording, what: Drawn, log: Path) -> dict[str, float]:
     """Put an effect into the log; its values, none where this recording does not show it."""
     way, samples = WAYS[what.name], recording.results["decode/samples"]
     time = samples["time"].to_numpy(float)
@@ -239,6 +336,9 @@ def _hide(recording: Recording, what: Drawn) -> dict[str, float]:
     if not unit > 0 or not np.isfinite(unit) or recording.limit(what.name, 20.0) == 0:
         return {}
     values = values * what.ratio / unit
+    largest = [effect.largest_of(one) for one in effect.parameters]
+    if (np.abs(values) > largest).any():  # no sensor has it so large
+        return {}
     hidden = EFFECTS[what.name](way.told(values) | parameters)
     readings = {sensor: samples[columns].to_numpy(float) for sensor, columns in CHANNELS.items()}
     instants = SimpleNamespace(since=lambda moment: (time >= moment).astype(float))
@@ -252,33 +352,31 @@ def _hide(recording: Recording, what: Drawn) -> dict[str, float]:
     added = {
         sensor: getattr(error, sensor) / unit_of(recording.layout, sensor) for sensor in CHANNELS
     }
-    rewritten(recording.log, recording.layout, samples["line"].tolist(), added)
+    rewritten(log, recording.layout, samples["line"].tolist(), added, what.random)
     return {name: float(value) for name, value in zip(way.names, values, strict=True)} | parameters
 
 
-def _damage(recording: Recording, what: Drawn) -> None:
+def _damage(recording: Recording, what: Drawn, log: Path) -> None:
     """Put a fault into the log."""
     samples, random = recording.results["decode/samples"], what.random
     lines = samples["line"].tolist()
     if what.name == "repeated lines":
-        text = lines_of(recording.log)
+        text = lines_of(log)
         first = int(random.integers(len(lines) // 4, len(lines) // 2))
         some = slice(lines[first] - 1, lines[first + REPEATED_LINES] - 1)
         text[some.stop : some.stop] = text[some]
-        write(recording.log, text)
+        write(log, text)
         return
     sensor = str(random.choice(list(CHANNELS)))
     axis = int(random.integers(3))
+    if what.name == "dead axis":
+        first = int(random.integers(len(lines) // 3, 2 * len(lines) // 3))
+        held(log, recording.layout, lines[first:], (sensor, axis))
+        return
     readings = samples[CHANNELS[sensor]].to_numpy(float)
     error = np.zeros_like(readings)
-    if what.name == "spikes":
-        step = np.diff(readings[:, axis])
-        size = SPIKE_SIGMAS * 1.4826 * float(np.median(np.abs(step))) / np.sqrt(2)
-        places = random.choice(np.arange(10, len(lines) - 10), SPIKES, replace=False)
-        error[places, axis] = size * random.choice([-1.0, 1.0], SPIKES)
-    else:
-        first = int(random.integers(len(lines) // 3, 2 * len(lines) // 3))
-        error[first:, axis] = readings[first, axis] - readings[first:, axis]
-    other = {name: np.zeros_like(readings) for name in CHANNELS}
-    added = other | {sensor: error / unit_of(recording.layout, sensor)}
-    rewritten(recording.log, recording.layout, lines, added)
+    size = SPIKE_SIGMAS * 1.4826 * float(np.median(np.abs(np.diff(readings[:, axis])))) / np.sqrt(2)
+    places = random.choice(np.arange(10, len(lines) - 10), SPIKES, replace=False)
+    error[places, axis] = size * random.choice([-1.0, 1.0], SPIKES)
+    added = {sensor: error / unit_of(recording.layout, sensor)}
+    rewritten(log, recording.layout, lines, added, random)

@@ -25,6 +25,7 @@ def write(outcomes: Sequence[Outcome], count: int, page: Path = PAGE) -> str:
     plain = [one for one in outcomes if one["number"] < 0]
     faults = [one for one in outcomes if one.get("name") in FAULTS]
     effects = [one for one in outcomes if one.get("name") in HIDDEN and one["shown"]]
+    hidden = [one for one in outcomes if one.get("name") in HIDDEN and not one["shown"]]
     found, limit = _power(effects)
     figures = {
         "code": code(),
@@ -33,6 +34,8 @@ def write(outcomes: Sequence[Outcome], count: int, page: Path = PAGE) -> str:
         "effects": len(effects),
         "found": f"{found:.3f}",
         "limit": f"{limit:.3f}",
+        "known": f"{np.mean([one['known'] for one in effects]):.3f}",
+        "hidden": len(hidden),
         "verdict": "met" if found >= limit - MAX_BELOW else "**not met**",
         "beside": sum(bool(one["beside"]) for one in effects),
         "by_ratio": [_row(f"{ratio:g}", _of(effects, "ratio", ratio)) for ratio in RATIOS],
