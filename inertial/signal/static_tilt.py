@@ -144,16 +144,16 @@ class Resting:
     def shaken(self, length: int) -> Booleans:
         """Which blocks of so many records jerk in both sensors: k = n // length, (k,).
 
-        By the median of the changes within each, which no spike moves.
+        By the median of the changes from reading to reading, which no spike moves.
         """
         k = len(self) // length
         both = np.ones(k, bool)
         for sensor in ("accel", "gyro"):
             own = np.flatnonzero(np.isfinite(self.noise[SENSORS[sensor]])) + SENSORS[sensor].start
-            blocks = self.values[: k * length, own].reshape(k, length, len(own))
-            change = median(np.abs(np.diff(blocks, axis=1)), axis=1)
+            change = np.abs(np.diff(self.values[: k * length, own], axis=0))
+            change = np.concatenate([change, change[-1:]]).reshape(k, length, len(own))
             usual = self.noise[own] * np.sqrt(2) / MAD_TO_SIGMA
-            both &= (change > MIN_JERK_RATIO * usual).any(axis=1)
+            both &= (median(change, axis=1) > MIN_JERK_RATIO * usual).any(axis=1)
         return both
 
 
