@@ -27,7 +27,7 @@ from inertial.model_selection.law_evidence import (
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics import laws
 from inertial.physics.effect import Array, Effect
-from stages.criticism.bias_drift import half_waves, likely_random_walk, walk_evidence
+from stages.criticism.bias_drift import half_waves, walk_evidence
 from stages.criticism.residual_structure import MIN_INFORMATION, PRIOR_SIGMA, Functions
 from stages.criticism.selection import (
     MAX_LOG_ODDS,
@@ -104,7 +104,7 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
     score, found, beside = max(tried, key=lambda one: one[0])
     alone = _catalogue(columns, named, prior)
     walk = max(_walk(campaign, columns, sensor, others), alone + _walk_beside(columns, named))
-    if score - alone < MAX_LOG_ODDS or score - walk < -MAX_LOG_ODDS:
+    if score - alone < MAX_LOG_ODDS or score < walk:  # a walk that is likelier is named itself
         return None
     p_value = chance_of(found.equations, found.odds, found.paths)
     if p_value > level:
@@ -281,9 +281,7 @@ def _catalogue(columns: Columns, kept: Sequence[Effect], prior: Mapping[str, flo
 def _walk(campaign: Campaign, columns: Columns, sensor: str, others: Sequence[Effect]) -> float:
     """The log evidence of a random walk alone, by half waves or by the readings themselves."""
     odds = walk_odds.walk(columns.equations, columns.waves).log_evidence
-    if size := likely_random_walk(campaign, sensor, others):
-        odds = max(odds, walk_evidence(campaign, sensor, size, others))
-    return odds
+    return max(odds, walk_evidence(campaign, sensor, others))
 
 
 def _walk_beside(columns: Columns, named: Sequence[Effect]) -> float:
