@@ -47,6 +47,9 @@
 #   make laws                     hides laws of no effect of the catalogue, and nothing, in 1000 campaigns
 #                                 each, in docs/laws.md; eight hours on two cores, can be resumed; with
 #                                 DRAWS=100 so many of each
+#   make walks                    random walks of gyro biases against ramps, jumps and warm-ups, in
+#                                 docs/walks.md; five hours on two cores, can be resumed; with DRAWS=10 so
+#                                 many of each kind
 #   make noise                    estimates the noise of 3000 simulated recordings, in docs/noise.md; 15
 #                                 minutes on two cores, can be resumed; with DRAWS=100 of each part
 #   make histories                predicts the next calibration and seeks jumps in 3500 simulated histories, in
@@ -76,7 +79,7 @@ SHELL := bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
 .SILENT:
-.PHONY: report crate check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws injections noise histories temperature designs mutants docs recordings screenshots cluster-test scale clean setup pango
+.PHONY: report crate check draft new design trace index compare fleet fleets test test-slow style bench challenge silence laws walks injections noise histories temperature designs mutants docs recordings screenshots cluster-test scale clean setup pango
 
 # Taken literally and passed to the shell through the environment, so that neither make nor the
 # shell executes their content.
@@ -230,6 +233,9 @@ injections: .venv/complete
 
 laws: .venv/complete
 	PYTHONPATH=tests:tests/hidden:tests/laws OPENBLAS_NUM_THREADS=1 $(BIN)/python -m laws $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",1000) data/derived/laws
+
+walks: .venv/complete
+	PYTHONPATH=tests:tests/hidden:tests/walks OPENBLAS_NUM_THREADS=1 $(BIN)/python -m walks $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",200) data/derived/walks
 
 noise: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m noise data/derived/noise $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS")

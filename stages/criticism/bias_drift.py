@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.stats import chi2
 
+from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.campaign.scatter_of_positions import likely_walk
 from inertial.estimation.variance_components import sigma_of
-from inertial.model_selection.walk_odds import LOG_RANGE
+from inertial.model_selection.walk_odds import Equations, walk
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
@@ -59,20 +60,24 @@ def _walk(campaign: Campaign, sensor: str, size: float, effects: Sequence[Effect
     return Walk(size, sigma_of(deviance, size), len(SENSORS) * float(chi2.sf(drop, 1)) / 2)
 
 
-def walk_evidence(campaign: Campaign, sensor: str, size: float, effects: Sequence[Effect]) -> float:
-    """Log evidence of a random walk alike on all axes, of about this size, against none.
+def walk_evidence(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
+    """Log evidence of a random walk of all axes alike or of each, of any size, against none.
 
-    By the likelihood of the readings themselves: half waves leave out how fast it may change.
+    `effects`: that are fitted as well. By more half waves than a drift without a law has, for the
+    eight of that leave out how fast a walk may change.
     """
-    deviance = campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE)
-    width = float(np.nan_to_num(sigma_of(deviance, size) / size, nan=1.0))
-    return (deviance(0.0) - deviance(size)) / 2 + float(
-        np.log(np.sqrt(2 * np.pi) * width / LOG_RANGE)
-    )
+    waves = list(half_waves(sensor, WALK_WAVES))
+    total = evidence(campaign, [*effects, *waves]).total
+    place = {name: i for i, name in enumerate(total.names)}
+    known = [place[f"{e.label}.{parameter.name}"] for e in effects for parameter in e.parameters]
+    equations = Equations(total.information, total.right).given(known)
+    axes = [[place[f"{wave.label}.c_{axis}"] for wave in waves] for axis in "xyz"]
+    return walk(equations, axes).log_evidence
 
 
 # ---- Drift without a law: half waves over the campaign, of one sensor.
 
+WALK_WAVES = 32  # of a random walk: what is faster is less than the noise of a stretch
 MAX_HALF_WAVES = 8  # in the campaign: the fastest that is distinguishable from a jump
 TYPICAL_SIZE = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}  # a degree per hour, 10 µg
 
@@ -153,6 +158,6 @@ def drift_name(sensor: str) -> str:
     return f"{sensor}_drift"
 
 
-def half_waves(sensor: str) -> Iterator[HalfWave]:
+def half_waves(sensor: str, count: int = MAX_HALF_WAVES) -> Iterator[HalfWave]:
     """The half waves of a sensor."""
-    return (HalfWave(sensor, k) for k in range(1, MAX_HALF_WAVES + 1))
+    return (HalfWave(sensor, k) for k in range(1, count + 1))

@@ -27,7 +27,7 @@ from inertial.model_selection.law_evidence import (
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics import laws
 from inertial.physics.effect import Array, Effect
-from stages.criticism.bias_drift import half_waves, likely_random_walk, walk_evidence
+from stages.criticism.bias_drift import WALK_WAVES, half_waves
 from stages.criticism.residual_structure import MIN_INFORMATION, PRIOR_SIGMA, Functions
 from stages.criticism.selection import (
     MAX_LOG_ODDS,
@@ -103,8 +103,8 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
         tried.append((_catalogue(columns, beside, prior) + found.odds.total, found, beside))
     score, found, beside = max(tried, key=lambda one: one[0])
     alone = _catalogue(columns, named, prior)
-    walk = max(_walk(campaign, columns, sensor, others), alone + _walk_beside(columns, named))
-    if score - alone < MAX_LOG_ODDS or score - walk < -MAX_LOG_ODDS:
+    walk = max(_walk_beside(columns, []), alone + _walk_beside(columns, named))
+    if score - alone < MAX_LOG_ODDS or score < walk:  # a walk that is likelier is named itself
         return None
     p_value = chance_of(found.equations, found.odds, found.paths)
     if p_value > level:
@@ -136,7 +136,7 @@ def columns_with(
 ) -> Columns:
     """The equations given the `others`; on named effects, half waves, and laws."""
     motion, part = campaign.motion, campaign.stretches(sensor)
-    times, waves = laws.steps(motion, laws.STEPS), list(half_waves(sensor))
+    times, waves = laws.steps(motion, laws.STEPS), list(half_waves(sensor, WALK_WAVES))
     before = [*others, *named, *waves]
     first = sum(len(effect.parameters) for effect in before)
     found: list[Functions] = []
@@ -278,16 +278,8 @@ def _catalogue(columns: Columns, kept: Sequence[Effect], prior: Mapping[str, flo
     return total
 
 
-def _walk(campaign: Campaign, columns: Columns, sensor: str, others: Sequence[Effect]) -> float:
-    """The log evidence of a random walk alone, by half waves or by the readings themselves."""
-    odds = walk_odds.walk(columns.equations, columns.waves).log_evidence
-    if size := likely_random_walk(campaign, sensor, others):
-        odds = max(odds, walk_evidence(campaign, sensor, size, others))
-    return odds
-
-
 def _walk_beside(columns: Columns, named: Sequence[Effect]) -> float:
-    """That of a random walk beside the named effects."""
+    """The log evidence of a random walk, alone or beside the named effects."""
     return walk_odds.walk(columns.given(named), columns.waves).log_evidence
 
 

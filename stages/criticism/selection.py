@@ -275,11 +275,12 @@ def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
     start = law.equations_without(only)
     walking = walk_odds.walk(start, law.half_waves(sensor))
     known = [effect for effect in law.effects if effect.name in kept]
-    size = walk.random_walks[SENSORS.index(sensor)]
-    alike = walk_evidence(law.campaign, sensor, size, known)
-    walking = replace(walking, log_evidence=max(alike, walking.log_evidence))
+    whole = walk_evidence(law.campaign, sensor, known)
+    walking = replace(walking, log_evidence=max(whole, walking.log_evidence))
     nothing = walk_odds.Explained(0.0, start)
-    return law.explained(only, nothing) - law.explained(beside, walking)
+    # A walk is as likely beforehand as any one effect: each further cause pays for its choice.
+    further = (len(only) - len(beside) - 1) * float(np.log(len(law.families)))
+    return law.explained(only, nothing) - law.explained(beside, walking) - max(further, 0.0)
 
 
 def _with_rivals(selection: Selection) -> Selection:
