@@ -23,7 +23,7 @@ from hidden_scores import (
     warned,
 )
 from hidden_sizes import LEVEL
-from hidden_statistics import TRIALS
+from hidden_statistics import TRIALS, every_job
 
 PAGE = chain.ROOT / "docs/challenge.md"
 TEMPLATE = Path(__file__).parent / "challenge.md.jinja"
@@ -41,6 +41,8 @@ def write(outcomes: Sequence[Outcome], statistics: Statistics, page: Path = PAGE
     figures = {
         "campaigns": len(outcomes),
         "statistical": sum(row["trials"] for row in statistics),
+        "tried": len(statistics),
+        "every": len(every_job()),
         "bars": [(bar.words, bar.wanted, bar.measured, bar.verdict) for bar in told],
         "picture": f"{page.stem}.png",
         "clean": list(_clean(outcomes)),
