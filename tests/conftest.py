@@ -12,6 +12,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import chain
 import pytest
+from hypothesis import settings
 from recordings.known import RECORDINGS
 
 from inertial.tables.campaign_files import logs_of
@@ -19,6 +20,9 @@ from inertial.tables.campaign_files import logs_of
 CAMPAIGNS = Path(__file__).parent / "campaigns"
 # They take longest, so they stand first: both processes are then busy to the end.
 FIRST = ("test_workflow", "test_recordings_by_hand", "test_drafts_of_recordings", "test_report")
+
+settings.register_profile("untimed", deadline=None)  # a busy machine is no fault
+settings.load_profile("untimed")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

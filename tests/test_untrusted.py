@@ -194,7 +194,7 @@ def loaded() -> Any:
 
 
 @given(st.lists(st.tuples(st.sampled_from(places(loaded())), VALUES), min_size=1, max_size=3))
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_any_value_anywhere_is_understood_or_refused_by_name(tmp_path_factory, changes):
     content = loaded()
     for key, value in changes:

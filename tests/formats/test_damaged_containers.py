@@ -45,7 +45,7 @@ def rows_or_refusal(log: Path, content: bytes, layout: dict[str, object]) -> int
 
 @pytest.mark.parametrize("name", written.CONTAINERS)
 @given(share=st.floats(0.01, 0.999))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_a_log_that_is_cut_off_is_refused_or_gives_what_there_is(tmp_path_factory, name, share):
     content, layout = whole(name)
     log = tmp_path_factory.getbasetemp() / "log"
@@ -58,7 +58,7 @@ def test_a_log_that_is_cut_off_is_refused_or_gives_what_there_is(tmp_path_factor
     flips=st.lists(st.tuples(st.floats(0, 0.9999), st.integers(1, 255)), min_size=1, max_size=4),
     ends=st.sampled_from(["anywhere", "head", "tail"]),
 )
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_flipped_bytes_never_end_in_anything_but_rows_or_a_refusal(
     tmp_path_factory, name, flips, ends
 ):

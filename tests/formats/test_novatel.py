@@ -164,7 +164,7 @@ WILD = st.one_of(
 )
 
 
-@settings(deadline=None, max_examples=500)
+@settings(max_examples=500)
 @given(place=st.integers(0, 9), wild=WILD)
 def test_what_the_loop_reads_of_a_line_is_what_a_second_look_reads(place, wild):
     """The second look is Python's own, field by field; the loop may leave a line to it."""

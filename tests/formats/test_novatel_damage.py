@@ -115,7 +115,7 @@ def everything(path: Path, content: bytes, size: int):
     size=st.sampled_from([50, 333, 1 << 22]),
     mixed=st.booleans(),
 )
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_every_byte_is_accounted_for_and_every_whole_message_is_read(
     tmp_path_factory, message, damages, size, mixed
 ):

@@ -142,7 +142,7 @@ def test_a_binary_message_of_nonsense_says_why(body, reason, tmp_path):
     assert (refused[0].line, refused[0].offset) == (2, 56)
 
 
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(
     seconds=st.one_of(st.floats(), st.floats(0, 604_800)),
     week=st.integers(0, 12_000),
