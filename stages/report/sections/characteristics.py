@@ -29,7 +29,7 @@ def parts(tables: Tables) -> Iterator[Part]:
     known = [row for row in rows if row["value"] is not None or row["lower"] is not None]
     if known:
         yield _figures(known)
-    if missing := list(dict.fromkeys(map(_missing, (row for row in rows if row["reason"])))):
+    if missing := [_missing(axes, row) for axes, row in _by_reason(rows)]:
         yield Sentences(tuple(missing))
     yield from _bandwidths(tables.rows("bandwidths"))
 
@@ -86,7 +86,7 @@ def _bandwidths(rows: Sequence[Record]) -> Iterator[Part]:
                 "not what is before its source."
             ),
         )
-    if missing := list(dict.fromkeys(_no_bandwidth(row) for row in rows if row["reason"])):
+    if missing := [_no_bandwidth(axes, row) for axes, row in _by_reason(rows)]:
         yield Sentences(tuple(missing))
 
 
@@ -114,10 +114,21 @@ def _bandwidth_rows(rows: Sequence[Record]) -> Iterator[Row]:
                 )
 
 
-def _no_bandwidth(row: Record) -> str:
+def _by_reason(rows: Sequence[Record]) -> Iterator[tuple[str, Record]]:
+    """The axes for which a quantity of a sensor is missing for the same reason, and one of them."""
+    alike: dict[tuple[str, str, str], list[Record]] = {}
+    for row in rows:
+        if row["reason"]:
+            what = row["quantity"] if "quantity" in row else row["by"]
+            alike.setdefault((row["sensor"], what, row["reason"]), []).append(row)
+    for own in alike.values():
+        yield ", ".join(dict.fromkeys(row["axis"] for row in own)), own[0]
+
+
+def _no_bandwidth(axes: str, row: Record) -> str:
     return _(
         "{axis} {sensor}, bandwidth: not determined, for {reason}.",
-        axis=row["axis"],
+        axis=axes,
         sensor=SENSOR[row["sensor"]],
         reason=row["reason"],
     )
@@ -191,10 +202,10 @@ def _between(row: Record, unit: Unit) -> str:
     return f"≥ {lower}" if upper is None else f"{lower} – {upper}"
 
 
-def _missing(row: Record) -> str:
+def _missing(axes: str, row: Record) -> str:
     return _(
         "{axis} {sensor}, {quantity}: not determined, for {reason}.",
-        axis=row["axis"],
+        axis=axes,
         sensor=SENSOR[row["sensor"]],
         quantity=NAMES[row["quantity"]].partition(",")[0].lower(),
         reason=row["reason"],
