@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from hidden_bars import Bar
+from temperature_draws import REPORTED
 
 MIN_RATIO = 8.0  # signal-to-noise ratio of the highest coefficient, from which shapes are judged
 RMS, COVERAGE, RIGHT = (0.95, 1.05), (0.93, 0.97), 0.95
@@ -28,6 +29,11 @@ def curves_of(outcomes: Sequence[Outcome], plan: str = "") -> list[Curve]:
 def clear(curves: Sequence[Curve]) -> list[Curve]:
     """Those that are curves at a ratio from which shapes are judged."""
     return [curve for curve in curves if curve["ratio"] >= MIN_RATIO]
+
+
+def demanded(outcomes: Sequence[Outcome]) -> list[Curve]:
+    """These in the plans that determine every curve."""
+    return clear(curves_of([one for one in outcomes if one["plan"] != REPORTED]))
 
 
 def constant(curves: Sequence[Curve]) -> list[Curve]:
@@ -80,7 +86,7 @@ def bars(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
         f"{len(errors)} of {len(outcomes)}",
         not errors if outcomes else None,
     )
-    judged = clear(curves_of(outcomes))
+    judged = demanded(outcomes)
     value = rms(judged)
     yield Bar(
         "rms over the range of error by bound",

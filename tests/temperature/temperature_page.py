@@ -16,6 +16,7 @@ from temperature_bars import (
     constant,
     coverage,
     curves_of,
+    demanded,
     given,
     right,
     rms,
@@ -40,7 +41,7 @@ def write(outcomes: Sequence[Outcome], page: Path = PAGE) -> str:
         "hours": f"{sum(one['seconds'] for one in outcomes) / 3600:.1f}",
         "number": CURVES,
         "bars": [(bar.words, bar.wanted, bar.measured, bar.verdict) for bar in told],
-        "attainable": f"{attainable(clear(curves_of(outcomes))):.3f}",
+        "attainable": f"{attainable(demanded(outcomes)):.3f}",
         "plans": list(_plans(outcomes)),
         "shapes": list(_shapes(outcomes)),
         "constants": list(_constants(outcomes)),
@@ -64,7 +65,7 @@ def _plans(outcomes: Sequence[Outcome]) -> Iterator[Row]:
 
 
 def _shapes(outcomes: Sequence[Outcome]) -> Iterator[Row]:
-    every = clear(curves_of(outcomes))
+    every = demanded(outcomes)
     for shape in SHAPES:
         own = [curve for curve in every if curve["true"] == shape]
         counts = Counter(curve["found"] for curve in own)
@@ -94,7 +95,7 @@ def picture(outcomes: Sequence[Outcome], file: Path) -> None:
     """Left: rms of error by bound along the range, by plan; right: errors of one plan's curves."""
     figure = Figure(figsize=(9, 3.6), layout="constrained")
     left, last = figure.subplots(1, 2)
-    for plan, colour in zip(PLANS, ("#0072B2", "#D55E00", "#009E73"), strict=True):
+    for plan, colour in zip(PLANS, ("#0072B2", "#D55E00", "#009E73", "#999999"), strict=True):
         own = clear(curves_of(outcomes, plan))
         if own:
             ratio = np.array([np.divide(c["error"], c["bound"]) for c in own])
@@ -103,7 +104,7 @@ def picture(outcomes: Sequence[Outcome], file: Path) -> None:
     left.axhspan(0.95, 1.05, color="0.85")
     left.set(xlabel="Temperature, °C", ylabel="rms of error by bound", ylim=(0, None))
     left.legend(frameon=False)
-    every = clear(curves_of(outcomes))
+    every = demanded(outcomes)
     ratios = [curve["ratio"] for curve in every]
     hit = [curve["found"] == curve["true"] for curve in every]
     shapes = [SHAPES.index(curve["true"]) for curve in every]
