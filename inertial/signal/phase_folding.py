@@ -20,6 +20,7 @@ BLOCK = 256  # readings of which the scatter is taken
 MIN_BLOCK = 16
 MAX_OFF_SIGMA = 3.0  # what is farther off counts no more, so that no single reading decides
 MAX_SLOPE_SIGMA = 4.0  # from the readings before to those after: more is a ramp or a motion
+BEND_READINGS, MAX_BEND_SIGMA = 24, 4.0  # of those so far before and after, against those between
 MIN_LEVEL_SIGMA = 10.0  # of a reading of which a share can be off: less is in part its own noise
 MAX_INTERVALS = 1.5  # intervals between neighbours
 MIN_OCCURRENCES = 4.0  # records at the phase
@@ -133,7 +134,8 @@ class Folded:
 def _compared(values: Array) -> tuple[Array, Array, Array]:
     """By how much each reading but the outer ones is off, what those beside it read, and σ, (6, n).
 
-    σ is the scatter of the first around, 0 where it is not known, or the readings go up or down.
+    σ is the scatter of the first around, 0 where it is not known, or the readings go up or down, or
+    bend: at the peak of a motion each is off by less than the noise, but at each repetition alike.
     """
     n = values.shape[1] - 2 * SIDE
     a, b, c, d = (values[:, k : k + n] for k in (0, 1, 3, 4))
@@ -146,8 +148,15 @@ def _compared(values: Array) -> tuple[Array, Array, Array]:
     scatter = MAD_TO_SIGMA * median(blocks)
     sigma = scatter[:, np.minimum(np.arange(n) // length, number - 1)]
     steep = np.abs(c + d - a - b) / 2 > MAX_SLOPE_SIGMA * sigma
-    sigma[steep] = 0.0
+    bent = np.abs(_second_difference(level, BEND_READINGS)) > MAX_BEND_SIGMA * sigma
+    sigma[steep | bent] = 0.0
     return off, level, sigma
+
+
+def _second_difference(values: Array, step: int) -> Array:
+    """By so many readings, (k, n); the outermost have themselves in place of those beyond."""
+    padded = np.pad(values, ((0, 0), (step, step)), mode="edge")
+    return np.asarray(padded[:, : -2 * step] + padded[:, 2 * step :] - 2 * values)
 
 
 @dataclass(frozen=True, eq=False)

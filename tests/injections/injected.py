@@ -36,6 +36,7 @@ from inertial.model_selection.scatter_tests import ScatterTests, named_share, re
 from inertial.physics.effect import Effect
 from inertial.tables import ACCEL, GYRO
 from inertial.tables.code import code_of, hash_of
+from injections import known_effect
 from injections.rewritten_logs import held, lines_of, rewritten, unit_of, write
 from laboratory.effects import EFFECTS
 from laboratory.sensor import Sensors, Triad
@@ -133,11 +134,13 @@ class Recording:
     def ratio(self, effect: Effect, values: Array) -> float:
         """The signal-to-noise ratio of an effect, all else fitted.
 
-        By hand by residuals alone: there the parameters have no priors but vague ones.
+        By hand by residuals alone: there the parameters have no priors but vague ones. Residuals
+        that nothing explains, as the recording is, are noise here.
         """
         families, columns = self.selection.families, columns_of(effect)
         if self.equations.by_hand is None:
-            information = evidence(self.equations, [effect]).total.information
+            said = evidence(self.equations, [effect])
+            information = said.scaled(said.excesses([])).total.information
             return float(np.sqrt(values @ information @ values))
         searched = {one.label for family in families.values() for one in family}
         further = [] if effect.label in searched else [effect]
@@ -172,6 +175,20 @@ class Recording:
         share = named_share(self.tests({own, *scattering}), LEVEL)
         beside = Beside.of(self.tests([own]), number, share)
         return beside.power(ratio, None if own in scattering else threshold)
+
+    def shows(self, data: CampaignData, effect: Effect) -> bool:
+        """Whether a test that knows an effect would find it in the recording with it."""
+        said, searched = self.selection.evidence.observable(), self.selection.searched
+        number = [one.name for one in searched].index(effect.name)
+        sensor = said.sensor_of([i for one in searched[number].candidates for i in one])
+        own = said.labels[sensor]
+        p_value, beside_scatter = known_effect.p_value(data, effect, own)
+        if beside_scatter:
+            tests = self.tests({own, *self.equations.scattering})
+            return p_value < named_share(tests, LEVEL)
+        assert self.law is not None  # else nothing is put in
+        threshold = self.law.threshold(number, said.noise_degrees_of(sensor))
+        return p_value < float(chi2_sf(threshold, self.law.tails[number].degrees))
 
     def tests(self, sensors: Collection[str]) -> Sequence[ScatterTests]:
         """Those of all effects against a scatter of some sensors."""
@@ -300,6 +317,9 @@ def outcome(number: int) -> Outcome:
         own = _causes(kept.results)
         after = chain.run(campaign, Path(place) / "again", "diagnosis", BESIDE)
         rows = _causes(after)
+        if not what.is_fault:
+            (data,) = chain.mounts(after)
+            told_of |= {"shows": kept.shows(data, _modelled(what.name, effect))}
         before_it = {cause for cause, _ in own}
         found = [members for _, members in rows if members & wanted]
         beside = [c for c, members in rows if not members & wanted and c not in before_it]
@@ -318,6 +338,12 @@ def _causes(results: chain.Results) -> list[tuple[str, frozenset[str]]]:
     return [
         (str(row["cause"]), frozenset({row["cause"], *members.get(row["id"], ())})) for row in rows
     ]
+
+
+def _modelled(name: str, values: Mapping[str, float]) -> Effect:
+    """The effect of the catalogue at the value of its scan that was put in."""
+    scan = WAYS[name].scan
+    return CATALOGUE[name] if scan is None else CATALOGUE[name].fixed(values[scan[0]])
 
 
 def _hide(recording: Recording, what: Drawn, log: Path) -> dict[str, float]:

@@ -34,6 +34,8 @@ def write(outcomes: Sequence[Outcome], count: int, page: Path = PAGE) -> str:
         "effects": len(effects),
         "found": f"{found:.3f}",
         "limit": f"{limit:.3f}",
+        "shown": f"{np.mean([one['shows'] for one in effects]):.3f}",
+        "unseen": f"{sum(one['shows'] and not one['found'] for one in effects)}",
         "known": f"{np.mean([one['known'] for one in effects]):.3f}",
         "hidden": len(hidden),
         "verdict": "met" if found >= limit - MAX_BELOW else "**not met**",
@@ -47,7 +49,10 @@ def write(outcomes: Sequence[Outcome], count: int, page: Path = PAGE) -> str:
             for one in plain
         ],
         "missed": [
-            (one["recording"], one["name"], f"{one['ratio']:g}", f"{one['limit']:.2f}")
+            (
+                *(one["recording"], one["name"], f"{one['ratio']:g}", f"{one['limit']:.2f}"),
+                "yes" if one["shows"] else "no",
+            )
             for one in effects
             if not one["found"] and one["limit"] > MISSED_LIMIT
         ],
@@ -74,7 +79,8 @@ def _power(effects: Sequence[Outcome]) -> tuple[float, float]:
 def _row(name: str, effects: Sequence[Outcome]) -> Row:
     found, limit = _power(effects)
     right = sum(one["found"] for one in effects)
-    numbers = (f"{found:.2f}", f"{limit:.2f}") if effects else ("–", "–")
+    shown = np.mean([one["shows"] for one in effects]) if effects else np.nan
+    numbers = (f"{found:.2f}", f"{limit:.2f}", f"{shown:.2f}") if effects else ("–",) * 3
     beside = ", ".join(sorted({name for one in effects for name in one["beside"]}))
     return name, f"{right} of {len(effects)}", *numbers, beside
 
