@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign import findings as findings
 from inertial.campaign.attitudes_by_hand import with_attitudes
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.findings import Finding
 from inertial.campaign.masked_samples import Masks, Repairs
 from inertial.campaign.measurement import Measurement, measurements_of
@@ -148,5 +148,5 @@ def fits_of(
 STAGE = Stage(
     compensation,
     DECLARED,
-    gathers={"mounts": campaigns_of, "fits": fits_of, "by_counts": least_changes},
+    gathers={**MOUNTS, "fits": fits_of, "by_counts": least_changes},
 )

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import pandas as pd
 
 from inertial.campaign.explanations import compete
-from inertial.campaign.hypotheses import Findings, findings_of, hypotheses
+from inertial.campaign.hypotheses import Findings, hypotheses
 from inertial.campaign.noise_levels import only_noise
 from inertial.campaign.records import Row, performed_of, rows_of
 from inertial.effects import KNOWN, TEMPERATURE_MODELS
@@ -14,7 +14,7 @@ from inertial.text.parameters import AXES
 from stages.diagnosis.causes import Cause, Evidence, Size
 from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
-from stages.diagnosis.sensor_results import Estimated, SensorResult, estimated_of
+from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.temperature_curves import curve_rows
 from stages.diagnosis.verdict import NOT_USABLE, Verdict, verdict
 
@@ -118,7 +118,7 @@ def _sigmas(row: Row) -> float:
 
 def _members(cause: Cause, findings: Findings) -> Iterator[Row]:
     """The members of its class: effects, or repairs of which each would undo it."""
-    own = [row for row in findings.members if row["finding"] == cause.main.id]
+    own = [row for row in rows_of(findings.members) if row["finding"] == cause.main.id]
     members = [(row["effect"], row["probability"]) for row in sorted(own, key=_rank)]
     members += [(row["repair"], None) for row in cause.main.rivals]
     for rank, (member, probability) in enumerate(members, 1):
@@ -173,4 +173,4 @@ def _written(
     }
 
 
-STAGE = Stage(diagnosis, DECLARED, gathers={"findings": findings_of, "estimated": estimated_of})
+STAGE = Stage(diagnosis, DECLARED, gathers={"findings": Findings, "estimated": Estimated})

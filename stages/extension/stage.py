@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import switch_on_columns
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import rows_of
@@ -353,5 +353,5 @@ class Extension:
 STAGE = Stage(
     extension,
     DECLARED,
-    gathers={"mounts": campaigns_of, "causes": causes_of, "joint": joint_of},
+    gathers={**MOUNTS, "causes": causes_of, "joint": joint_of},
 )

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pandas as pd
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.measurement import Measurement
 from inertial.campaign.records import Part, Row, rows_of
@@ -99,4 +99,4 @@ def published_triads(rows: Sequence[Row]) -> dict[str, Triad]:
     return triads
 
 
-STAGE = Stage(navigation, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(navigation, DECLARED, gathers=MOUNTS)
