@@ -5,7 +5,9 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from inertial.campaign.attitudes_by_hand import Handled, with_attitudes
 from inertial.campaign.noise_levels import NoiseLevels
@@ -28,6 +30,8 @@ from inertial.campaign.solution import Estimated, Solution, solution_of
 from inertial.campaign.static_positions import StaticPosition, static_positions
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.random_walk import MeasuredDrift
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +93,12 @@ class CampaignData:
         """The drift of the biases of a sensor, `gyro` or `accel`, that is known before a fit."""
         switched = None if self.solution is None else self.solution.switch_ons.get(sensor)
         return replace(self.noise.drift(sensor), switch_on=switched)
+
+    @property
+    def course(self) -> tuple[Array, Array]:
+        """Time, s, and temperature, K, of the blocks, (k,) each."""
+        time, warm = (self.blocks[name].to_numpy(np.float64) for name in ("time", "temperature"))
+        return time, warm
 
     @property
     def result(self) -> Solution:
