@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.estimation.random_walk import MeasuredDrift
@@ -28,7 +29,6 @@ from stages.criticism.bias_drift import Walk, drift_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import (
     SENSORS,
-    Estimated,
     Row,
     TableRow,
     finding_id,
