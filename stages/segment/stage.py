@@ -77,7 +77,6 @@ def segment(
     samples: Stream,
     stated: Stated,
     manoeuvres: pd.DataFrame,
-    clocks: pd.DataFrame,
     examined: Examined,
     confirmed: Confirmed,
     *,
@@ -97,7 +96,7 @@ def segment(
     ----------
     repairs : apply or refuse, whether what is wrong for certain is set right
     """
-    clock, ends = clocks_of(clocks), records_of(clocks)
+    clock, ends = clocks_of(stated.clocks), records_of(stated.clocks)
     logs = stated.logs(examined.channel_statistics)
     plan = manoeuvres_of(manoeuvres)
     bins = Bins(_windows(samples, plan, ends), clock, Masks(examined.masks))
