@@ -1,4 +1,4 @@
-"""What the stages between segment and diagnosis read alike: a campaign, and its joint result."""
+"""What stages that work on the mounts of a campaign read alike: it, and its joint result."""
 
 from inertial import tables
 from inertial.tables.declared import From

@@ -1,7 +1,6 @@
 """What the report reads: which table of which stage."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
@@ -9,13 +8,15 @@ DECLARED = Declared(
         "campaign": From("plan", tables.CAMPAIGN),
         "certificate": From("plan", tables.CERTIFICATE),
         "standards": From("plan", tables.STANDARDS),
-        **RECORDED,
+        "known": From("plan", tables.KNOWN),
         "ideal_readings": From("plan", tables.IDEAL_READINGS),
         "sensors": From("plan", tables.SENSORS),
         "inputs": From("plan", tables.INPUTS),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "logs": From("plan", tables.LOGS),
         "accounts": From("decode", tables.ACCOUNTS),
         "refused": From("decode", tables.REFUSED),
+        "clocks": From("decode", tables.CLOCKS),
         "samples": From("decode", tables.SAMPLES),
         "plan_repairs": From("plan", tables.REPAIRS),
         "quality_findings": From("quality", tables.FINDINGS),
@@ -25,8 +26,11 @@ DECLARED = Declared(
         "segment_findings": From("segment", tables.FINDINGS),
         "segment_close_ups": From("segment", tables.CLOSE_UPS),
         "segments": From("segment", tables.SEGMENTS),
+        "performed": From("segment", tables.PERFORMED),
+        "blocks": From("segment", tables.BLOCKS),
         "traces": From("segment", tables.TRACES),
         "noise": From("noise", tables.NOISE),
+        "levels": From("noise", tables.LEVELS),
         "allan": From("noise", tables.ALLAN),
         "spectra": From("noise", tables.SPECTRA),
         "noise_terms": From("noise", tables.NOISE_TERMS, "terms"),
