@@ -20,7 +20,7 @@ from pathlib import Path
 from commands.no_result import NoResult, no_results
 from inertial import tables
 from inertial.campaign.explanations import Explained, compete
-from inertial.campaign.hypotheses import findings_of, hypotheses
+from inertial.campaign.hypotheses import Findings, hypotheses
 from inertial.campaign.records import Performed, performed_of, rows_of
 from inertial.tables.errors import Refusal
 from inertial.text.cause_names import in_words
@@ -80,20 +80,20 @@ def recording_of(derived: Path) -> Recording:
     Refusal
         where one of them is missing, damaged, or of another version
     """
-    findings = findings_of(
-        tables.FINDINGS.read(derived / "quality/findings.parquet"),
-        tables.FINDINGS.read(derived / "segment/findings.parquet"),
-        tables.FINDINGS.read(derived / "accelerometer/findings.parquet"),
-        tables.FINDINGS.read(derived / "gyroscope/findings.parquet"),
-        tables.EFFECT_FINDINGS.empty(),
-        tables.MEMBERS.empty(),
-        tables.CAUSE_POSITIONS.empty(),
-        tables.REPAIRS.read(derived / "plan/repairs.parquet"),
-        tables.REPAIRS.read(derived / "segment/repairs.parquet"),
-        tables.CHANNEL_REPAIRS.read(derived / "segment/channel_repairs.parquet"),
-        tables.MASKS.read(derived / "quality/masks.parquet"),
-        tables.GAPS.read(derived / "quality/gaps.parquet"),
-        tables.SEGMENTS.read(derived / "segment/segments.parquet"),
+    findings = Findings(
+        quality_findings=tables.FINDINGS.read(derived / "quality/findings.parquet"),
+        segment_findings=tables.FINDINGS.read(derived / "segment/findings.parquet"),
+        accelerometer_findings=tables.FINDINGS.read(derived / "accelerometer/findings.parquet"),
+        gyroscope_findings=tables.FINDINGS.read(derived / "gyroscope/findings.parquet"),
+        criticism_findings=tables.EFFECT_FINDINGS.empty(),
+        members=tables.MEMBERS.empty(),
+        cause_positions=tables.CAUSE_POSITIONS.empty(),
+        plan_repairs=tables.REPAIRS.read(derived / "plan/repairs.parquet"),
+        segment_repairs=tables.REPAIRS.read(derived / "segment/repairs.parquet"),
+        channel_repairs=tables.CHANNEL_REPAIRS.read(derived / "segment/channel_repairs.parquet"),
+        masks=tables.MASKS.read(derived / "quality/masks.parquet"),
+        gaps=tables.GAPS.read(derived / "quality/gaps.parquet"),
+        segments=tables.SEGMENTS.read(derived / "segment/segments.parquet"),
     )
     performed = performed_of(tables.PERFORMED.read(derived / "segment/performed.parquet"))
     refused = {

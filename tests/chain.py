@@ -15,7 +15,7 @@ from ruamel.yaml import YAML
 
 import laboratory
 import stages
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import CampaignData, CampaignTables, campaigns_of
 from inertial.tables.stage import Stage
 
 ROOT = Path(__file__).parent.parent
@@ -180,7 +180,8 @@ def mounts(results: Results, **changes: Any) -> list[CampaignData]:
                 f"{stage}_{of}": f"{stage}/{of}"
                 for of in ("parameters", "positions", "switch_ons", "fit")
             }
-    return campaigns_of(**{name: results[table] for name, table in tables.items()} | changes)
+    read = {name: results[table] for name, table in tables.items()}
+    return campaigns_of(CampaignTables(**read | changes))
 
 
 def again(results: Results, name: str, **changes: Any) -> dict[str, pd.DataFrame]:

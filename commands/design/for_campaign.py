@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from commands.design.turntable import Turntable
 from commands.design.visits import Item, Visit, items_of, plan_of, visit_seconds
 from inertial import tables
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import CampaignData, CampaignTables, campaigns_of
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import SENSORS, Campaign
 from inertial.campaign.foreseen import by_position, extended
@@ -81,18 +81,24 @@ def campaign_tables(derived: Path) -> list[CampaignData]:
         where a table is missing, damaged, or of another version
     """
     return campaigns_of(
-        tables.MANOEUVRES.read(derived / "segment/manoeuvres.parquet"),
-        tables.PERFORMED.read(derived / "segment/performed.parquet"),
-        tables.BLOCKS.read(derived / "segment/blocks.parquet"),
-        tables.LEVELS.read(derived / "noise/levels.parquet"),
-        tables.KNOWN.read(derived / "plan/known.parquet"),
-        tables.CLOCKS.read(derived / "decode/clocks.parquet"),
-        tables.PARAMETERS.read(derived / "accelerometer/parameters.parquet"),
-        tables.PARAMETERS.read(derived / "gyroscope/parameters.parquet"),
-        tables.POSITIONS.read(derived / "accelerometer/positions.parquet"),
-        tables.POSITIONS.read(derived / "gyroscope/positions.parquet"),
-        tables.FIT.read(derived / "accelerometer/fit.parquet"),
-        tables.FIT.read(derived / "gyroscope/fit.parquet"),
+        CampaignTables(
+            manoeuvres=tables.MANOEUVRES.read(derived / "segment/manoeuvres.parquet"),
+            performed=tables.PERFORMED.read(derived / "segment/performed.parquet"),
+            blocks=tables.BLOCKS.read(derived / "segment/blocks.parquet"),
+            levels=tables.LEVELS.read(derived / "noise/levels.parquet"),
+            known=tables.KNOWN.read(derived / "plan/known.parquet"),
+            clocks=tables.CLOCKS.read(derived / "decode/clocks.parquet"),
+            accelerometer_parameters=tables.PARAMETERS.read(
+                derived / "accelerometer/parameters.parquet"
+            ),
+            accelerometer_positions=tables.POSITIONS.read(
+                derived / "accelerometer/positions.parquet"
+            ),
+            accelerometer_fit=tables.FIT.read(derived / "accelerometer/fit.parquet"),
+            gyroscope_parameters=tables.PARAMETERS.read(derived / "gyroscope/parameters.parquet"),
+            gyroscope_positions=tables.POSITIONS.read(derived / "gyroscope/positions.parquet"),
+            gyroscope_fit=tables.FIT.read(derived / "gyroscope/fit.parquet"),
+        )
     )
 
 

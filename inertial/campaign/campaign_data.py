@@ -1,10 +1,13 @@
 """One mount of a campaign, as the stages between segment and diagnosis work on it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from inertial.campaign.attitudes_by_hand import Handled, with_attitudes
 from inertial.campaign.noise_levels import NoiseLevels
@@ -27,6 +30,8 @@ from inertial.campaign.solution import Estimated, Solution, solution_of
 from inertial.campaign.static_positions import StaticPosition, static_positions
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.random_walk import MeasuredDrift
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +95,12 @@ class CampaignData:
         return replace(self.noise.drift(sensor), switch_on=switched)
 
     @property
+    def course(self) -> tuple[Array, Array]:
+        """Time, s, and temperature, K, of the blocks, (k,) each."""
+        time, warm = (self.blocks[name].to_numpy(np.float64) for name in ("time", "temperature"))
+        return time, warm
+
+    @property
     def result(self) -> Solution:
         """The joint result of stages that run after the estimation."""
         assert self.solution is not None
@@ -111,48 +122,72 @@ class CampaignData:
         return gyro_inputs(self)
 
 
-def campaigns_of(
-    manoeuvres: pd.DataFrame,
-    performed: pd.DataFrame,
-    blocks: pd.DataFrame,
-    levels: pd.DataFrame,
-    known: pd.DataFrame,
-    clocks: pd.DataFrame | None = None,
-    accelerometer_parameters: pd.DataFrame | None = None,
-    gyroscope_parameters: pd.DataFrame | None = None,
-    accelerometer_positions: pd.DataFrame | None = None,
-    gyroscope_positions: pd.DataFrame | None = None,
-    accelerometer_switch_ons: pd.DataFrame | None = None,
-    gyroscope_switch_ons: pd.DataFrame | None = None,
-    accelerometer_fit: pd.DataFrame | None = None,
-    gyroscope_fit: pd.DataFrame | None = None,
-) -> list[CampaignData]:
+@dataclass(frozen=True, eq=False)
+class CampaignTables:
+    """The tables of a campaign, as stages name them; None where they are not read."""
+
+    manoeuvres: pd.DataFrame
+    performed: pd.DataFrame
+    blocks: pd.DataFrame
+    levels: pd.DataFrame
+    known: pd.DataFrame
+    clocks: pd.DataFrame | None = None
+    accelerometer_parameters: pd.DataFrame | None = None
+    accelerometer_positions: pd.DataFrame | None = None
+    accelerometer_fit: pd.DataFrame | None = None
+    accelerometer_switch_ons: pd.DataFrame | None = None
+    gyroscope_parameters: pd.DataFrame | None = None
+    gyroscope_positions: pd.DataFrame | None = None
+    gyroscope_fit: pd.DataFrame | None = None
+    gyroscope_switch_ons: pd.DataFrame | None = None
+
+    @cached_property
+    def given(self) -> dict[str, Known]:
+        """What is known, by quantity."""
+        return known_of(self.known)
+
+    def solution(self, mount: str) -> Solution | None:
+        """The joint result of a mount; None where there are no parameters."""
+        if self.accelerometer_parameters is None or self.gyroscope_parameters is None:
+            return None
+        accelerometer = Estimated(
+            self.accelerometer_parameters,
+            self.accelerometer_positions,
+            self.accelerometer_fit,
+            self.accelerometer_switch_ons,
+        )
+        gyro = Estimated(
+            self.gyroscope_parameters,
+            self.gyroscope_positions,
+            self.gyroscope_fit,
+            self.gyroscope_switch_ons,
+        )
+        return solution_of(mount, self.given, accelerometer, gyro)
+
+
+def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
     """The mounts of a campaign from its tables, with a solution where there are parameters.
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """
-    given, done, noise = known_of(known), performed_of(performed), NoiseLevels(levels)
-    times = {} if clocks is None else clocks_of(clocks)
+    tables = campaign_tables
+    done, noise = performed_of(tables.performed), NoiseLevels(tables.levels)
+    clocks = {} if tables.clocks is None else clocks_of(tables.clocks)
+    shared = tables.clocks is not None and share_a_clock(tables.clocks)
     result = []
-    shared = clocks is not None and share_a_clock(clocks)
-    for mount, plan in by_mount(manoeuvres_of(manoeuvres)):
-        solution = None
-        if accelerometer_parameters is not None and gyroscope_parameters is not None:
-            solution = solution_of(
-                mount,
-                given,
-                Estimated(
-                    accelerometer_parameters,
-                    accelerometer_positions,
-                    accelerometer_fit,
-                    accelerometer_switch_ons,
-                ),
-                Estimated(
-                    gyroscope_parameters, gyroscope_positions, gyroscope_fit, gyroscope_switch_ons
-                ),
-            )
-        data = CampaignData(plan, done, blocks, noise, given, mount, times, shared, solution)
+    for mount, plan in by_mount(manoeuvres_of(tables.manoeuvres)):
+        solution = tables.solution(mount)
+        data = CampaignData(
+            plan, done, tables.blocks, noise, tables.given, mount, clocks, shared, solution
+        )
         if solution is not None and solution.free and solution.accelerometer is not None:
             data = with_attitudes(data, solution.accelerometer)
         result.append(data)
     return result
+
+
+# How a stage takes the mounts: `gathers` of its Stage.
+MOUNTS: Mapping[str, Callable[..., Any]] = {
+    "campaign_tables": CampaignTables,
+    "mounts": campaigns_of,
+}

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -70,27 +71,49 @@ class Hypothesis:
         return frozenset((self.cause, *self.members))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Findings:
-    """The findings of the stages that hand over hypotheses, and what belongs to them."""
+    """The tables of the stages that hand over hypotheses, as stages name them."""
 
-    by_stage: Mapping[str, Sequence[Row]]
-    members: Sequence[Row]
-    positions: Sequence[Row]
-    repairs: Sequence[Row]
-    channels: Sequence[Row]
+    quality_findings: pd.DataFrame
+    segment_findings: pd.DataFrame
+    accelerometer_findings: pd.DataFrame
+    gyroscope_findings: pd.DataFrame
+    criticism_findings: pd.DataFrame
+    members: pd.DataFrame
+    cause_positions: pd.DataFrame
+    plan_repairs: pd.DataFrame
+    segment_repairs: pd.DataFrame
+    channel_repairs: pd.DataFrame
     masks: pd.DataFrame
     gaps: pd.DataFrame
     segments: pd.DataFrame
+
+    @cached_property
+    def by_stage(self) -> dict[str, list[Row]]:
+        """The findings of each stage."""
+        return {
+            RECORDING: rows_of(self.quality_findings),
+            PLAN: rows_of(self.segment_findings),
+            POSITIONS: rows_of(self.accelerometer_findings),
+            COUNTS: rows_of(self.gyroscope_findings),
+            MODEL: rows_of(self.criticism_findings),
+        }
+
+    @cached_property
+    def repairs(self) -> list[Row]:
+        """What plan and segment set right."""
+        return [*rows_of(self.plan_repairs), *rows_of(self.segment_repairs)]
 
 
 def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
     """All findings as hypotheses; a repair without a finding, such as of gravity, is one itself."""
     members: dict[str, list[str]] = {}
-    for row in sorted(findings.members, key=lambda row: row["rank"]):
+    for row in sorted(rows_of(findings.members), key=lambda row: row["rank"]):
         members.setdefault(row["finding"], []).append(row["effect"])
     repair_of, without = _repairs(findings)
-    place = {row["finding"]: row["position"] for row in findings.positions if row["rank"] == 1}
+    positions = rows_of(findings.cause_positions)
+    place = {row["finding"]: row["position"] for row in positions if row["rank"] == 1}
     touched = _touched(findings)
     for stage, rows in findings.by_stage.items():
         for row in rows:
@@ -119,7 +142,7 @@ def _repairs(findings: Findings) -> tuple[dict[str, list[Row]], list[Row]]:
     A repair of the plan cannot know that id: it has the finding of its cause and sensor.
     """
     axes: dict[str, set[str]] = {}
-    for row in findings.channels:
+    for row in rows_of(findings.channel_repairs):
         if row["axis"] == row["from_axis"] and row["factor"] == 1:
             continue
         axes.setdefault(row["repair"], set()).add(row["axis"])
@@ -196,38 +219,3 @@ def _in(segments: pd.DataFrame, log: str, first: int, after: int) -> set[str]:
         segments["to_record"].to_numpy(np.int64) > first
     )
     return set(segments["manoeuvre"].to_numpy(object)[same & inside])
-
-
-def findings_of(
-    quality_findings: pd.DataFrame,
-    segment_findings: pd.DataFrame,
-    accelerometer_findings: pd.DataFrame,
-    gyroscope_findings: pd.DataFrame,
-    criticism_findings: pd.DataFrame,
-    members: pd.DataFrame,
-    cause_positions: pd.DataFrame,
-    plan_repairs: pd.DataFrame,
-    segment_repairs: pd.DataFrame,
-    channel_repairs: pd.DataFrame,
-    masks: pd.DataFrame,
-    gaps: pd.DataFrame,
-    segments: pd.DataFrame,
-) -> Findings:
-    """The tables of the stages that hand over hypotheses."""
-    tables: Iterable[tuple[str, pd.DataFrame]] = (
-        (RECORDING, quality_findings),
-        (PLAN, segment_findings),
-        (POSITIONS, accelerometer_findings),
-        (COUNTS, gyroscope_findings),
-        (MODEL, criticism_findings),
-    )
-    return Findings(
-        {stage: rows_of(table) for stage, table in tables},
-        rows_of(members),
-        rows_of(cause_positions),
-        [*rows_of(plan_repairs), *rows_of(segment_repairs)],
-        rows_of(channel_repairs),
-        masks,
-        gaps,
-        segments,
-    )

@@ -234,6 +234,25 @@ class Masks:
         return Masked(lost & ~repeated, repeated, channels, censored)
 
 
+@dataclass(frozen=True, eq=False)
+class MaskedSamples:
+    """The samples, and the tables of what sets them right and of what is masked of them."""
+
+    samples: Stream
+    channel_repairs: pd.DataFrame
+    masks: pd.DataFrame
+
+    @cached_property
+    def repairs(self) -> Repairs:
+        """What sets the readings right."""
+        return Repairs(self.channel_repairs)
+
+    @cached_property
+    def masked(self) -> Masks:
+        """What is masked of the readings as set right."""
+        return Masks(self.masks, self.repairs)
+
+
 def inside(records: Integers, first: Integers, after: Integers) -> Booleans:
     """Which records lie in one of the stretches [first, after)."""
     if not len(first):

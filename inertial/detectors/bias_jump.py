@@ -86,41 +86,44 @@ class BiasJump(Detector):
         )
         if i >= 3 and not jumped.jump.agreement.conclusive:
             sentence += _(" A slow turn about the vertical cannot be distinguished from it.")
-        off = event.size * jumped.share
-        consequence = _(
-            "The mean of this rest is off by {off} {unit} (the jump, over {share:.0%} of it)",
-            off=_signed(scale * off),
-            unit=unit,
-            share=jumped.share,
-        )
-        if i >= 3:
-            consequence += _(
-                ", and with it the bias of the {axis} gyro as this rest has it.", axis=axis
-            )
-        elif abs(jumped.upright) > MIN_UPRIGHT_SHARE:
-            ppm = off * np.sign(jumped.upright) / (2 * jumped.gravity) * 1e6
-            consequence += _(
-                ". In a pair of {axis} up and {axis} down that is {signed} {unit} of bias and "
-                "{ppm} ppm of scale factor.",
-                axis=axis,
-                signed=_signed(off / 2),
-                unit=unit,
-                ppm=_signed(ppm),
-            )
-        else:
-            consequence += _(
-                ", and with it bias and cross-axis terms of the {axis} accelerometer as this "
-                "rest has them.",
-                axis=axis,
-            )
         return Description(
             sentence,
-            consequence,
+            _consequence(event, i),
             _(
                 "The rest is used as it is. Record it again; see whether contact, supply or "
                 "temperature changed then."
             ),
         )
+
+
+def _consequence(event: Event, channel: int) -> str:
+    """By how much the mean of the rest is off, and what rests on it."""
+    jumped: Jumped = event.facts
+    (scale, unit), axis = read_in(channel), CHANNELS[channel][-1]
+    off = event.size * jumped.share
+    text = _(
+        "The mean of this rest is off by {off} {unit} (the jump, over {share:.0%} of it)",
+        off=_signed(scale * off),
+        unit=unit,
+        share=jumped.share,
+    )
+    if channel >= 3:
+        return text + _(", and with it the bias of the {axis} gyro as this rest has it.", axis=axis)
+    if abs(jumped.upright) > MIN_UPRIGHT_SHARE:
+        ppm = off * np.sign(jumped.upright) / (2 * jumped.gravity) * 1e6
+        return text + _(
+            ". In a pair of {axis} up and {axis} down that is {signed} {unit} of bias and "
+            "{ppm} ppm of scale factor.",
+            axis=axis,
+            signed=_signed(off / 2),
+            unit=unit,
+            ppm=_signed(ppm),
+        )
+    return text + _(
+        ", and with it bias and cross-axis terms of the {axis} accelerometer as this "
+        "rest has them.",
+        axis=axis,
+    )
 
 
 def _events(piece: Piece, log: Log, resting: Resting, own: list[Jump]) -> Iterator[Event]:

@@ -1,15 +1,12 @@
 """A bias of the accelerometers that goes with the temperature."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.drift import temperature_constants, warmer, without_temperature
+from inertial.physics.drift import OfTemperature, warmer
 from inertial.physics.effect import (
     Array,
-    Constant,
-    Effect,
     Parameter,
     Reading,
     Truth,
@@ -21,7 +18,7 @@ from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
-class AccelBiasTemperature(Effect):
+class AccelBiasTemperature(OfTemperature):
     """Reading += k (T − mean of T).
 
     Told from a drift by temperature that does not run with time.
@@ -41,12 +38,6 @@ class AccelBiasTemperature(Effect):
     )
     terms = on_each_axis("accel", "k_{i}", "(T - T0)")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 100, 1000)
-
-    def constants(self, motion: Motion) -> Sequence[Constant]:
-        return temperature_constants(motion, self.reference, self.valid)
-
-    def blind(self, motion: Motion) -> str:
-        return without_temperature(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = np.outer(warmer(motion, self.reference, self.valid), values)

@@ -1,13 +1,10 @@
 """A scale factor of the accelerometers that goes with the temperature."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from inertial.physics.drift import temperature_constants, warmer, without_temperature
+from inertial.physics.drift import OfTemperature, warmer
 from inertial.physics.effect import (
     Array,
-    Constant,
-    Effect,
     Parameter,
     Reading,
     Truth,
@@ -18,7 +15,7 @@ from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
 
-class AccelScaleTemperature(Effect):
+class AccelScaleTemperature(OfTemperature):
     """f̃_i += k_i (T − mean of T) f_i.
 
     Told from a bias that goes with temperature by the axis up and down at several temperatures.
@@ -35,12 +32,6 @@ class AccelScaleTemperature(Effect):
     )
     terms = on_each_axis("accel", "k_{i}", "(T - T0) * f_{i}")
     sizes = by_grade(1e-6, 5, 20, 50, 200)
-
-    def constants(self, motion: Motion) -> Sequence[Constant]:
-        return temperature_constants(motion, self.reference, self.valid)
-
-    def blind(self, motion: Motion) -> str:
-        return without_temperature(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = values * truth.force * warmer(motion, self.reference, self.valid)[:, None]

@@ -1,13 +1,10 @@
 """A scale factor of the gyros that goes with the temperature."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 
-from inertial.physics.drift import temperature_constants, warmer, without_temperature
+from inertial.physics.drift import OfTemperature, warmer
 from inertial.physics.effect import (
     Array,
-    Constant,
-    Effect,
     Parameter,
     Reading,
     Truth,
@@ -18,7 +15,7 @@ from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
 
-class GyroScaleTemperature(Effect):
+class GyroScaleTemperature(OfTemperature):
     """ω̃_i += k_i (T − mean of T) ω_i.
 
     Told from a bias that goes with temperature by turns both ways at several temperatures.
@@ -33,12 +30,6 @@ class GyroScaleTemperature(Effect):
     )
     terms = on_each_axis("gyro", "k_{i}", "(T - T0) * w_{i}")
     sizes = by_grade(1e-6, 5, 10, 50, 200)
-
-    def constants(self, motion: Motion) -> Sequence[Constant]:
-        return temperature_constants(motion, self.reference, self.valid)
-
-    def blind(self, motion: Motion) -> str:
-        return without_temperature(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = values * truth.rate * warmer(motion, self.reference, self.valid)[:, None]

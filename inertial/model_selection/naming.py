@@ -25,13 +25,6 @@ MIN_FREE_ADVANTAGE = 12.0  # of chi-squared, of a drift without a law over the c
 MAX_ROUNDS = 3  # of the excess of the residuals and the selection in turn
 
 
-def name_causes(
-    evidence: Evidence, effects: Sequence[SearchedEffect], level: float, seed: int = 0
-) -> Named:
-    """Name the causes at the level of this campaign, see `causes` and `law_of`."""
-    return causes(evidence, effects, law_of(evidence, effects, level, seed))
-
-
 def law_of(
     evidence: Evidence, effects: Sequence[SearchedEffect], level: float, seed: int = 0
 ) -> Chance | None:

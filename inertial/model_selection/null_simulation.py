@@ -195,22 +195,6 @@ def noise(information: Array, draws: int, rng: np.random.Generator) -> Array:
     return right
 
 
-# ---- The power that no search of a catalogue can exceed.
-
-
-def power_limit(
-    snr: Array | float, degrees: int, effects: int, level: float, values: float = 1.0
-) -> Array:
-    """Probability that an effect of this size is detected at the family-wise level.
-
-    The drop of chi-squared is noncentral chi-squared; it must exceed what noise does with
-    the share of the level of one effect among `effects` and of one value among the `values` of
-    its own scan (the number of independent ones; their count is a lower bound of the power).
-    """
-    bound = chi2_isf(level / effects / values, degrees)
-    return np.asarray(ncx2_sf(bound, degrees, np.asarray(snr) ** 2))
-
-
 def power(snr: Array | float, degrees: int, threshold: float) -> Array:
-    """The same where the threshold of the effect is known, see `Chance.threshold`."""
+    """Probability that an effect of this size is detected, see `Chance.threshold`."""
     return np.asarray(ncx2_sf(threshold, degrees, np.asarray(snr) ** 2))

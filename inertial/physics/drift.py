@@ -6,6 +6,7 @@ a warm-up began earlier, and its amplitude differs by a factor.
 """
 
 from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import ClassVar
 
@@ -104,6 +105,16 @@ def temperature_constants(
         Constant(COLDEST, "K", _("lowest temperature of the campaign"), low),
         Constant(WARMEST, "K", _("highest temperature of the campaign"), high),
     ]
+
+
+class OfTemperature(Effect):
+    """An effect that goes with the temperature of the instrument."""
+
+    def constants(self, motion: Motion) -> Sequence[Constant]:
+        return temperature_constants(motion, self.reference, self.valid)
+
+    def blind(self, motion: Motion) -> str:
+        return without_temperature(motion)
 
 
 def warmer(

@@ -41,18 +41,39 @@ def deviation(misread: Misread, recorded: Recorded) -> Deviation:
 
 def describe_misread(misread: Misread, recorded: Recorded) -> Description:
     """A misread sensor in words."""
+    if misread.log:
+        consequence = _(
+            "Used, its readings would be off by up to {significant} {value}, for the other "
+            "logs are not so.",
+            significant=significant(_off(misread, recorded), 3),
+            value="m/s²" if misread.sensor == "accel" else "°",
+        )
+        action = _("It is left out. See how this log was written, and correct it.")
+    else:
+        consequence = _consequence_in_all_logs(misread)
+        action = _(
+            "The manoeuvres are found by the right axes; the data are not changed. Correct "
+            "the axes of the instrument, or the columns, and run it again."
+        )
+    if misread.undone:
+        action = _(
+            "The readings are set right before the estimation, on this condition. Correct the axes "
+            "of the instrument, or the columns; or confirm it by accept: [{repair}].",
+            repair=misread.repair,
+        )
+    return Description(
+        _sentence(misread, recorded) + rivals_in_words(misread.rivals),
+        consequence,
+        action + confirming(misread.repair, misread.rivals),
+    )
+
+
+def _sentence(misread: Misread, recorded: Recorded) -> str:
+    """Which axes are others, and what shows it."""
     sensor = SENSOR_NAMES[misread.sensor]
     where = _("in {log}", log=misread.log) if misread.log else "in all logs"
-    names = ", ".join(misread.explains[:MAX_NAMES])
-    names += (
-        _(" and {explains} more", explains=len(misread.explains) - MAX_NAMES)
-        if len(misread.explains) > MAX_NAMES
-        else ""
-    )
-    number = len(misread.explains)
-    agree = counted(number, "manoeuvre") + (_(" agrees") if number == 1 else _(" agree"))
     if misread.spans:
-        sentence = _(
+        return _(
             "Of the {sensor}, {where}, {axes}: only so do the gyros turn gravity as the "
             "accelerometers see it turn, in {spans} of half a second.{handed}",
             sensor=sensor,
@@ -63,56 +84,40 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
             if _determinant_of_all(misread, recorded) > 0
             else _(" So their triad is left-handed, which no mounting does."),
         )
-    else:
-        sentence = _(
-            "Of the {sensor}, {where}, {axes}: only so {agree} with the plan ({names}). {misread}",
-            sensor=sensor,
-            where=where,
-            axes=reads_in_words(misread.axes),
-            agree=agree,
-            names=names,
-            misread=_handed(misread, recorded),
-        )
-    sentence += rivals_in_words(misread.rivals)
-    if not misread.log:
-        consequence = _(
-            "The parameters of the {sensor} come out under wrong names: {axes}; the biases "
-            "likewise.",
-            sensor=sensor,
-            axes=_in_the_matrix(misread.axes),
-        )
-        if misread.sensor == "gyro":
-            consequence = _(
-                "The turns give no parameters of the gyros. Used, they would give {axes}; the "
-                "biases are under wrong names.",
-                axes=_in_the_matrix(misread.axes),
-            )
-        if misread.undone:
-            consequence = _(
-                "Taken as they are named, the {sensor} would give {axes}; the biases would be "
-                "under wrong names.",
-                sensor=sensor,
-                axes=_in_the_matrix(misread.axes),
-            )
-        action = _(
-            "The manoeuvres are found by the right axes; the data are not changed. Correct "
-            "the axes of the instrument, or the columns, and run it again."
-        )
-    else:
-        consequence = _(
-            "Used, its readings would be off by up to {significant} {value}, for the other "
-            "logs are not so.",
-            significant=significant(_off(misread, recorded), 3),
-            value="m/s²" if misread.sensor == "accel" else "°",
-        )
-        action = _("It is left out. See how this log was written, and correct it.")
+    number = len(misread.explains)
+    names = ", ".join(misread.explains[:MAX_NAMES])
+    names += _(" and {explains} more", explains=number - MAX_NAMES) if number > MAX_NAMES else ""
+    return _(
+        "Of the {sensor}, {where}, {axes}: only so {agree} with the plan ({names}). {misread}",
+        sensor=sensor,
+        where=where,
+        axes=reads_in_words(misread.axes),
+        agree=counted(number, "manoeuvre") + (_(" agrees") if number == 1 else _(" agree")),
+        names=names,
+        misread=_handed(misread, recorded),
+    )
+
+
+def _consequence_in_all_logs(misread: Misread) -> str:
+    sensor, axes = SENSOR_NAMES[misread.sensor], _in_the_matrix(misread.axes)
     if misread.undone:
-        action = _(
-            "The readings are set right before the estimation, on this condition. Correct the axes "
-            "of the instrument, or the columns; or confirm it by accept: [{repair}].",
-            repair=misread.repair,
+        return _(
+            "Taken as they are named, the {sensor} would give {axes}; the biases would be "
+            "under wrong names.",
+            sensor=sensor,
+            axes=axes,
         )
-    return Description(sentence, consequence, action + confirming(misread.repair, misread.rivals))
+    if misread.sensor == "gyro":
+        return _(
+            "The turns give no parameters of the gyros. Used, they would give {axes}; the "
+            "biases are under wrong names.",
+            axes=axes,
+        )
+    return _(
+        "The parameters of the {sensor} come out under wrong names: {axes}; the biases likewise.",
+        sensor=sensor,
+        axes=axes,
+    )
 
 
 def determinant(axes: Permutation) -> int:

@@ -39,9 +39,10 @@ Pieces = Iterator[tuple[str, Rows]]
 class Stage:
     """A stage: its function, and what it declares to read and write.
 
-    `gathers`: arguments of the function that are made from other inputs; the function that makes
-    one names them as its own arguments. A function that takes `provenance` gets what made each
-    of the tables, by argument; that of documents also what makes them, by the name of the stage.
+    `gathers`: arguments of the function that are made from other inputs; the function or class that
+    makes one names them as its own arguments, those made before it included. A function that takes
+    `provenance` gets what made each of the tables, by argument; that of documents also what makes
+    them, by the name of the stage.
     """
 
     function: Callable[..., Any]
@@ -94,13 +95,10 @@ class Stage:
 
     def result(self, inputs: Mapping[str, Any]) -> Any:
         """What its function makes of tables, files and settings."""
-        own = inspect.signature(self.function).parameters
-        every = any(one.kind is one.VAR_KEYWORD for one in own.values())
-        gathered = {
-            name: make(**{k: inputs[k] for k in inspect.signature(make).parameters if k in inputs})
-            for name, make in self.gathers.items()
-        }
-        return self.function(**{k: v for k, v in inputs.items() if every or k in own}, **gathered)
+        known = dict(inputs)
+        for name, make in self.gathers.items():
+            known[name] = _called(make, known)
+        return _called(self.function, known)
 
     def _made_by(self, settings: Mapping[str, Any]) -> dict[str, Any]:
         code = hash_of(code_of(self.name))
@@ -164,6 +162,13 @@ class Stage:
             self.run(given["derived"], files, given["settings"], given.get("documents"))
         except Refusal as refusal:
             sys.exit(visible(f"{self.name}: {refusal}"))
+
+
+def _called(function: Callable[..., Any], known: Mapping[str, Any]) -> Any:
+    """A function of those of its arguments that are known; of all that is known if it takes it."""
+    own = inspect.signature(function).parameters
+    every = any(one.kind is one.VAR_KEYWORD for one in own.values())
+    return function(**{name: value for name, value in known.items() if every or name in own})
 
 
 def _hashes(files: Sequence[Path]) -> dict[str, str]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.records import omissions
@@ -114,4 +114,4 @@ def _static_force(position: StaticPosition, seconds: float = np.inf) -> StaticFo
     )
 
 
-STAGE = Stage(accelerometer, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(accelerometer, DECLARED, gathers=MOUNTS)

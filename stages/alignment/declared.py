@@ -1,6 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
+from inertial.tables.campaign_inputs import RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
@@ -10,12 +11,7 @@ DECLARED = Declared(
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "masks": From("quality", tables.MASKS),
         "segments": From("segment", tables.SEGMENTS),
-        "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("segment", tables.MANOEUVRES),
-        "performed": From("segment", tables.PERFORMED),
-        "levels": From("noise", tables.LEVELS),
-        "known": From("plan", tables.KNOWN),
-        "clocks": From("decode", tables.CLOCKS),
+        **RECORDED,
         "result": From("diagnosis", tables.PARAMETERS, "result"),
     },
     writes={

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.measurement import Measurement, measurements_of
 from inertial.campaign.records import Row, rows_of
@@ -271,4 +271,4 @@ class Case:
             )
 
 
-STAGE = Stage(alignment, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(alignment, DECLARED, gathers=MOUNTS)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import pandas as pd
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.differences import Difference, table_of
 from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.stage import Stage, Tables
@@ -52,4 +52,4 @@ def comparison(
     return {"differences": table_of(differences, level)}
 
 
-STAGE = Stage(comparison, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(comparison, DECLARED, gathers=MOUNTS)

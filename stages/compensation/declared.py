@@ -1,6 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
+from inertial.tables.campaign_inputs import ESTIMATED, RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
@@ -12,21 +13,11 @@ DECLARED = Declared(
         "ranges": From("plan", tables.RANGES),
         "masks": From("quality", tables.MASKS),
         "segments": From("segment", tables.SEGMENTS),
-        "blocks": From("segment", tables.BLOCKS),
+        **RECORDED,
         "campaign": From("plan", tables.CAMPAIGN),
-        "manoeuvres": From("segment", tables.MANOEUVRES),
-        "performed": From("segment", tables.PERFORMED),
-        "levels": From("noise", tables.LEVELS),
-        "known": From("plan", tables.KNOWN),
-        "clocks": From("decode", tables.CLOCKS),
         "accelerometer_fit": From("accelerometer", tables.FIT),
         "gyroscope_fit": From("gyroscope", tables.FIT),
-        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
-        "accelerometer_positions": From("accelerometer", tables.POSITIONS),
-        "accelerometer_switch_ons": From("accelerometer", tables.SWITCH_ONS),
-        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
-        "gyroscope_positions": From("gyroscope", tables.POSITIONS),
-        "gyroscope_switch_ons": From("gyroscope", tables.SWITCH_ONS),
+        **ESTIMATED,
         "extended_fit": From("extension", tables.FIT),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "simulated": From("simulation", tables.SIMULATED),

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign import findings as findings
 from inertial.campaign.attitudes_by_hand import with_attitudes
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.findings import Finding
-from inertial.campaign.masked_samples import Masks, Repairs
+from inertial.campaign.masked_samples import MaskedSamples
 from inertial.campaign.measurement import Measurement, measurements_of
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.errors import Refusal
@@ -48,22 +48,68 @@ ALREADY = Finding(
 
 def compensation(
     mounts: Sequence[CampaignData],
-    samples: Stream,
+    masked_samples: MaskedSamples,
     simulated: Stream,
     traces: pd.DataFrame,
-    masks: pd.DataFrame,
-    channel_repairs: pd.DataFrame,
     segments: pd.DataFrame,
-    campaign: pd.DataFrame,
-    result: pd.DataFrame,
+    measurements: Mapping[str, Measurement],
     fits: Sequence[Row],
     by_counts: ByCounts,
-    provenance: Mapping[str, Mapping[str, Any]],
+    *,
+    compensated_before: bool,
 ) -> Pieces:
     """The table compensated, and what is known of the result, in pieces.
 
     By the result that counts: M and bias, and those effects that a reading, its time and its
     temperature tell. A sensor that is not usable has no compensated reading.
+
+    measurements : of the result, by mount
+    compensated_before : whether the logs are compensated already
+    """
+    if compensated_before:
+        yield "findings", findings.table_of([ALREADY])
+        return
+    rows: list[Row] = []
+    figures: list[Row] = []
+    shares: list[Row] = []
+    attitudes = [_by_hand(data, measurements.get(data.mount, NOTHING)) for data in mounts]
+    for data, by_hand in zip(mounts, attitudes, strict=True):
+        measurement = measurements.get(data.mount, NOTHING)
+        scatter = _scatters(fits, data.mount) if by_hand.by_hand else _between_switch_ons(data)
+        rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
+        figures += characteristics(data, measurement, by_counts)
+        shares += budget_rows(data, measurement, fits)
+        for sensor in (measurement.accelerometer, measurement.gyro):
+            rows += not_compensated(sensor, data.mount)
+    yield "checks", table_of(rows)
+    yield "characteristics", tables.CHARACTERISTICS.frame(figures)
+    yield "uncertainty_budget", tables.UNCERTAINTY_BUDGET.frame(shares)
+    for left in residuals(attitudes, measurements, simulated):
+        yield "residuals", left
+    parts = mounted(mounts, measurements, segments)
+    compensated = CompensatedStream(
+        masked_samples.samples.path, parts, masked_samples.masked, masked_samples.repairs
+    )
+    for batch in compensated.columns([column.name for column in tables.COMPENSATED.columns]):
+        yield "compensated", batch
+    yield "compensated_traces", envelope(compensated, traces)
+
+
+def measurements_along(
+    mounts: Sequence[CampaignData], result: pd.DataFrame
+) -> dict[str, Measurement]:
+    """By mount the measurement equation of the result, in the course of the campaign."""
+    measurements = measurements_of(result)
+    for data in mounts:
+        if data.mount in measurements:
+            measurements[data.mount] = measurements[data.mount].along(*data.course)
+    return measurements
+
+
+def compensated_before(
+    samples: Stream, campaign: pd.DataFrame, provenance: Mapping[str, Mapping[str, Any]]
+) -> bool:
+    """Whether the campaign says so of its logs.
 
     Raises
     ------
@@ -80,37 +126,7 @@ def compensation(
             _("give the samples of decode: a second compensation would take out the errors twice"),
         )
     (facts,) = rows_of(campaign)
-    if facts["compensated"]:
-        yield "findings", findings.table_of([ALREADY])
-        return
-    rows: list[Row] = []
-    figures: list[Row] = []
-    shares: list[Row] = []
-    measurements = measurements_of(result)
-    for data in mounts:
-        if data.mount in measurements:
-            course = (data.blocks[name].to_numpy(np.float64) for name in ("time", "temperature"))
-            measurements[data.mount] = measurements[data.mount].along(*course)
-    attitudes = [_by_hand(data, measurements.get(data.mount, NOTHING)) for data in mounts]
-    for data, by_hand in zip(mounts, attitudes, strict=True):
-        measurement = measurements.get(data.mount, NOTHING)
-        scatter = _scatters(fits, data.mount) if by_hand.by_hand else _between_switch_ons(data)
-        rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
-        figures += characteristics(data, measurement, by_counts)
-        shares += budget_rows(data, measurement, fits)
-        for sensor in (measurement.accelerometer, measurement.gyro):
-            rows += not_compensated(sensor, data.mount)
-    yield "checks", table_of(rows)
-    yield "characteristics", tables.CHARACTERISTICS.frame(figures)
-    yield "uncertainty_budget", tables.UNCERTAINTY_BUDGET.frame(shares)
-    for left in residuals(attitudes, measurements, simulated):
-        yield "residuals", left
-    repairs = Repairs(channel_repairs)
-    parts = mounted(mounts, measurements, segments)
-    compensated = CompensatedStream(samples.path, parts, Masks(masks, repairs), repairs)
-    for batch in compensated.columns([column.name for column in tables.COMPENSATED.columns]):
-        yield "compensated", batch
-    yield "compensated_traces", envelope(compensated, traces)
+    return bool(facts["compensated"])
 
 
 def _by_hand(data: CampaignData, measurement: Measurement) -> CampaignData:
@@ -148,5 +164,12 @@ def fits_of(
 STAGE = Stage(
     compensation,
     DECLARED,
-    gathers={"mounts": campaigns_of, "fits": fits_of, "by_counts": least_changes},
+    gathers={
+        **MOUNTS,
+        "masked_samples": MaskedSamples,
+        "measurements": measurements_along,
+        "fits": fits_of,
+        "by_counts": least_changes,
+        "compensated_before": compensated_before,
+    },
 )

@@ -1,9 +1,11 @@
 """Rows of the effects that are selected from block means, and of those sought elsewhere."""
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
+from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.estimation.random_walk import MeasuredDrift
@@ -28,7 +30,6 @@ from stages.criticism.bias_drift import Walk, drift_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import (
     SENSORS,
-    Estimated,
     Row,
     TableRow,
     finding_id,
@@ -356,24 +357,10 @@ def random_walk_rows(
         others=_(" or ").join(in_words(name) for name in others),
     )
     unit = WALK_UNITS[sensor]
-    yield (
-        "findings",
-        {
-            "id": identifier,
-            "mount": mount,
-            "cause": cause,
-            "sensor": sensor,
-            "count": 1,
-            "size": walk.size,
-            "unit": unit,
-            "p_value": walk.p_value,
-            "severity": 1,
-            "sentence": sentence,
-            "consequence": WALK_CONSEQUENCE,
-            "action": REPEAT if others else SHORTEN,
-            "verdict": ONE_OF_CLASS if certain else UNKNOWN_STRUCTURE,
-        },
-    )
+    finding = _walk_finding(sensor, mount, walk.size, walk.p_value, sentence)
+    finding["action"] = REPEAT if others else SHORTEN
+    finding["verdict"] = ONE_OF_CLASS if certain else UNKNOWN_STRUCTURE
+    yield "findings", finding
     yield from member_rows(identifier, mount, [cause, *others])
     sigma = walk.sigma if np.isfinite(walk.sigma) else None
     size = Estimated("K", unit, _("random walk of the biases"), walk.size, sigma)
@@ -393,24 +380,8 @@ def walk_at_rest_rows(
     cause, unit = f"{sensor}_random_walk", WALK_UNITS[sensor]
     identifier = finding_id(cause, mount)
     size = float(np.max(sizes))  # of the worst axis
-    yield (
-        "findings",
-        {
-            "id": identifier,
-            "mount": mount,
-            "cause": cause,
-            "sensor": sensor,
-            "count": 1,
-            "size": size,
-            "unit": unit,
-            "p_value": lawless.structured.get(sensor),
-            "severity": 1,
-            "sentence": WALK_AT_REST.format(sensors=SENSORS[sensor], sizes=_sizes(sizes, unit)),
-            "consequence": WALK_CONSEQUENCE,
-            "action": SHORTEN,
-            "verdict": UNKNOWN_STRUCTURE,
-        },
-    )
+    sentence = WALK_AT_REST.format(sensors=SENSORS[sensor], sizes=_sizes(sizes, unit))
+    yield "findings", _walk_finding(sensor, mount, size, lawless.structured.get(sensor), sentence)
     others = lawless.members[sensor] if lawless.owner[sensor] == cause else ()
     yield from member_rows(identifier, mount, list(dict.fromkeys([cause, *others])))
     for axis, value in zip(AXES, sizes.tolist(), strict=True):
@@ -420,6 +391,28 @@ def walk_at_rest_rows(
         )
     row: Row = {"mount": mount, "sensor": sensor, "value": 0.0, "sigma": None, "unit": unit}
     yield "random_walks", {**row, "finding": identifier}
+
+
+def _walk_finding(
+    sensor: str, mount: str, size: float, p_value: float | None, sentence: str
+) -> dict[str, Any]:
+    """The finding of a random walk, of which no more is certain; `size`: K."""
+    cause = f"{sensor}_random_walk"
+    return {
+        "id": finding_id(cause, mount),
+        "mount": mount,
+        "cause": cause,
+        "sensor": sensor,
+        "count": 1,
+        "size": size,
+        "unit": WALK_UNITS[sensor],
+        "p_value": p_value,
+        "severity": 1,
+        "sentence": sentence,
+        "consequence": WALK_CONSEQUENCE,
+        "action": SHORTEN,
+        "verdict": UNKNOWN_STRUCTURE,
+    }
 
 
 def _sizes(sizes: Array, si: str) -> str:

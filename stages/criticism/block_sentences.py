@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
+from inertial.campaign.effect_sentences import Estimated, effect_sentence
 from inertial.effects.law import Law
-from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, EffectTest
+from inertial.model_selection.cause import Cause, EffectTest
 from inertial.model_selection.detection_limits import (
     ABSORBED,
     NOT_EXCITED,
@@ -14,13 +15,11 @@ from inertial.model_selection.detection_limits import (
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, p_is, significant, with_sigma
+from inertial.text.numbers import p_is, significant
 from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
-from stages.criticism.finding_rows import Estimated
 from stages.criticism.law_sentences import law_sentence
 
-MIN_SIGMAS = 3.0  # from which a parameter is given in a sentence, if any reaches it
 REASONS = {
     NOT_EXCITED: _("no manoeuvre of this plan changes a reading by it"),
     ABSORBED: _("it cannot be separated here from the parameters that are always estimated"),
@@ -41,21 +40,11 @@ CONSEQUENCE_WITHOUT_LAW = _(
     "The joint estimate allows for it as a random walk or as a scatter of the manoeuvres."
 )
 
-DETECTED = _("Detected: {effect}{place}: {cause}. {numbers}.")
-DETECTED_CLASS = _(
-    "Detected: {effect}{place} ({cause}), or {others}: this campaign cannot "
-    "distinguish them. As {effect}: {numbers}."
-)
-CONSISTENT = _(
-    "The data are consistent with {effects}; no more can be said, for the remaining "
-    "residuals, or a random walk, follow no law. As {effect}: {numbers}."
-)
 PER_LOG = {
     "gyro_bias_per_log": _("The biases of the gyros are others in each run.{others}"),
     "accel_bias_per_log": _("The biases of the accelerometers are others in each run.{others}"),
 }
 DRIFT = _("The biases drift in a way that no effect of the catalogue explains{nearest}.")
-NO_NUMBER = _("no parameter by itself")
 
 NOT_SIGNIFICANT = _("{effect}: not significant ({p_value}).")
 NO_OWN_SIGNAL = _("{effect}: no signal of its own beside the named effects.")
@@ -83,7 +72,6 @@ def cause_sentence(
 
     `positions`: those that it may be at, if it is an effect of a single position.
     """
-    title = in_words(cause.effect)
     others = [in_words(member) for member in cause.members if member != cause.effect]
     if effect is None and cause.effect in PER_LOG:
         return PER_LOG[cause.effect].format(
@@ -95,19 +83,9 @@ def cause_sentence(
         )
     if isinstance(effect, Law):
         return law_sentence(cause, effect, parameters)
-    values = {
-        "effect": title,
-        "place": _(" at {positions}", positions=_(" or ").join(positions)) if positions else "",
-        "cause": effect.cause,
-        "others": _(" or ").join(others),
-        "numbers": "; ".join(map(_number, _significant(parameters))) or NO_NUMBER,
-    }
-    if cause.verdict == FOUND:
-        return DETECTED.format_map(values)
-    if cause.verdict == ONE_OF_CLASS:
-        return DETECTED_CLASS.format_map(values)
-    values["effects"] = _(" or ").join([title + values["place"], *others])
-    return CONSISTENT.format_map(values)
+    return effect_sentence(
+        cause.effect, effect.cause, parameters, cause.verdict, cause.members, positions
+    )
 
 
 def not_named_sentence(effect: Effect, test: EffectTest, reason: str, blind: str) -> str:
@@ -159,19 +137,6 @@ def _reason(effect: Effect, reason: str, blind: str) -> str:
         return ABSORBED_BY.format(parameters=effect.absorbed_by)
     why = blind.rstrip(".") or REASONS[reason]
     return why[:1].lower() + why[1:]
-
-
-def _significant(parameters: Sequence[Estimated]) -> list[Estimated]:
-    known = [p for p in parameters if p.value is not None and p.sigma]
-    clear = [p for p in known if abs(p.value or 0.0) > MIN_SIGMAS * (p.sigma or 0.0)]
-    return clear or known
-
-
-def _number(parameter: Estimated) -> str:
-    unit = quantity(parameter.name, parameter.unit).laboratory
-    sigma = unit.of(parameter.sigma or 0.0)
-    value = " ± ".join(with_sigma(unit.of(parameter.value or 0.0), sigma, decimals_of(sigma)))
-    return f"{parameter.name} = {value} {unit.name}"
 
 
 def _capital(text: str) -> str:

@@ -1,11 +1,11 @@
 """Common rows of all findings: identifiers, the members of a class, and parameters."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.records import with_mount
 
 Row = Mapping[str, Any]
@@ -31,22 +31,6 @@ def member_rows(
         row = {"finding": finding, "mount": mount, "rank": i + 1, "effect": effect}
         row |= {"probability": probability[i] if probability else None}
         yield "members", row | {"captured": captured[i] if captured else None}
-
-
-@dataclass(frozen=True)
-class Estimated:
-    """A parameter of an effect: value and sigma in the SI `unit`, where they are known.
-
-    `least_squares`: the value before the correction for having been selected.
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    value: float | None = None
-    sigma: float | None = None
-    detection_limit: float | None = None
-    least_squares: float | None = None
 
 
 def parameter_row(

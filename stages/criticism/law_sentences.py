@@ -4,13 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from inertial.campaign.effect_sentences import Estimated
 from inertial.effects.law import ALL, Law
 from inertial.model_selection.cause import ONE_OF_CLASS, Cause
 from inertial.text.cause_names import STATES, in_words
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, significant, with_sigma
 from inertial.text.units import DEGREE, HOUR, quantity
-from stages.criticism.finding_rows import SENSORS, Estimated
+from stages.criticism.finding_rows import SENSORS
 
 LAW = _("{subject}: {form}, {numbers}; no effect of the catalogue does this.")
 LAW_OR_WALK = _(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import expit
 
+from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.effects import CATALOGUE
 from inertial.effects.table_ripple import HIGHEST, LOWEST, STEP
@@ -17,7 +18,6 @@ from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.tables import AXES
 from stages.criticism import oscillation_sentences as sentences
 from stages.criticism.finding_rows import (
-    Estimated,
     TableRow,
     finding_id,
     member_rows,

@@ -6,7 +6,7 @@ from functools import partial
 
 import pandas as pd
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.steady_residuals import steady_turns
@@ -122,4 +122,4 @@ def _with(plan: Callable[[], ExtendedPlan], data: CampaignData) -> Campaign:
     )
 
 
-STAGE = Stage(criticism, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(criticism, DECLARED, gathers=MOUNTS)

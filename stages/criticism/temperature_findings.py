@@ -13,6 +13,7 @@ from math import acos, degrees, sin, sqrt
 import numpy as np
 import pandas as pd
 
+from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.records import Manoeuvre
 from inertial.effects import CATALOGUE
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE
@@ -21,7 +22,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import counted, decimals_of, fixed, p_is, significant, with_sigma
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 from stages.criticism.finding_rows import (
-    Estimated,
     TableRow,
     finding_id,
     member_rows,

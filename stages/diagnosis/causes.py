@@ -131,12 +131,12 @@ class Cause:
     def _one_axis(self) -> bool:
         return len({member.cause.axis for member in self.members}) == 1
 
-    def row(self, sizes: Mapping[str, Size]) -> Row:
-        """Its row; `sizes`: of effects, by the finding that names them."""
+    def row(self, sizes: Mapping[str, Size], sentences: Mapping[str, str]) -> Row:
+        """Its row; `sizes`, `sentences`: of effects, by the finding that names them."""
         main, repair = self.main, self.main.repair
         size = sizes.get(main.id, Size(main.row["size"], None, main.row["unit"]))
         count = sum(int(member.cause.row["count"]) for member in self.members)
-        sentence = main.row["sentence"]
+        sentence = sentences.get(main.id, main.row["sentence"])
         if len(self.members) > 1:
             sentence += " " + plural(
                 "There is {count} of them; the largest is described.",

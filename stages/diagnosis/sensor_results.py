@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -119,27 +120,70 @@ def shift(result: Result, effect: str) -> dict[str, float]:
 
 @dataclass(frozen=True, eq=False)
 class Estimated:
-    """The rows of the estimation and the extension from which the results are chosen.
+    """The tables of the estimation and the extension from which the results are chosen."""
 
-    `free`: mounts and sensors of which no attitude is known; static positions of unknown attitude
-    take the place of the joint fit.
-    """
+    accelerometer_parameters: pd.DataFrame
+    gyroscope_parameters: pd.DataFrame
+    accelerometer_covariance: pd.DataFrame
+    gyroscope_covariance: pd.DataFrame
+    accelerometer_fit: pd.DataFrame
+    gyroscope_fit: pd.DataFrame
+    extension_parameters: pd.DataFrame
+    extension_covariance: pd.DataFrame
+    extension_fit: pd.DataFrame
+    candidates: pd.DataFrame
+    candidate_effects: pd.DataFrame
 
-    parameters: Sequence[Row]
-    covariance: Mapping[tuple[str, str], float]
-    fits: Sequence[Row]
-    candidates: Sequence[Row]
-    candidate_effects: Sequence[Row]
-    free: frozenset[tuple[str, str]] = frozenset()
+    @cached_property
+    def _joint(self) -> list[Row]:
+        """The twelve parameters of both sensors by the joint fit and free static positions."""
+        return [
+            row
+            for table in (self.accelerometer_parameters, self.gyroscope_parameters)
+            for row in rows_of(table)
+            if row["method"] in (JOINT, FREE) and row["parameter"] in TWELVE
+        ]
+
+    @cached_property
+    def free(self) -> frozenset[tuple[str, str]]:
+        """Mounts and sensors of which no attitude is known.
+
+        Static positions of unknown attitude take the place of the joint fit.
+        """
+        determined = Counter(
+            (row["method"], _place(row)) for row in self._joint if row["value"] is not None
+        )
+        places = {place for _method, place in determined}
+        return frozenset(p for p in places if determined[FREE, p] > determined[JOINT, p])
+
+    @cached_property
+    def _parameters(self) -> list[Row]:
+        """By candidate, what counts as the joint fit among them."""
+        kept = [
+            r for r in self._joint if r["method"] == (FREE if _place(r) in self.free else JOINT)
+        ]
+        return [*(row | {"method": JOINT} for row in kept), *rows_of(self.extension_parameters)]
+
+    @cached_property
+    def _fits(self) -> list[Row]:
+        tables = (self.accelerometer_fit, self.gyroscope_fit, self.extension_fit)
+        return [row for table in tables for row in rows_of(table)]
+
+    @cached_property
+    def _covariance(self) -> dict[tuple[str, str], float]:
+        return covariance_by_ids(
+            self.accelerometer_covariance, self.gyroscope_covariance, self.extension_covariance
+        )
 
     def results(self, explained: Sequence[Explained]) -> Iterator[SensorResult]:
         """Of every sensor and mount; `explained`: the causes, of which some are alarms."""
         roots = [each.cause.row for each in explained if each.cause.stage == MODEL]
-        keys = dict.fromkeys((row["mount"], row["sensor"]) for row in self.candidates)
+        of_all = rows_of(self.candidates), rows_of(self.candidate_effects)
+        keys = dict.fromkeys(_place(row) for row in of_all[0])
         for mount, sensor in keys:
             candidates, effects, parameters, fits = (
-                [row for row in rows if (row["mount"], row["sensor"]) == (mount, sensor)]
-                for rows in (self.candidates, self.candidate_effects, self.parameters, self.fits)
+                [row for row in rows if _place(row) == (mount, sensor)]
+                for rows in (*of_all, self._parameters, self._fits)
             )
             by_method = {
                 one["method"]: [row for row in parameters if row["method"] == one["method"]]
@@ -149,7 +193,7 @@ class Estimated:
             determined = any(row["value"] is not None for row in by_method.get(JOINT, ()))
             decision = decided(candidates, effects, alarms, determined=determined)
             chosen = result_of(
-                decision.method, by_method, self.covariance, _competing(candidates, decision)
+                decision.method, by_method, self._covariance, _competing(candidates, decision)
             )
             if (mount, sensor) in self.free and decision.method == JOINT:
                 chosen = replace(
@@ -165,7 +209,7 @@ class Estimated:
                 chosen,
                 {
                     method: Result(
-                        method, rows := ordered(own), covariance_of(rows, self.covariance)
+                        method, rows := ordered(own), covariance_of(rows, self._covariance)
                     )
                     for method, own in by_method.items()
                 },
@@ -186,43 +230,6 @@ def _competing(candidates: Sequence[Row], decision: Decision) -> dict[str, float
     if decision.method == JOINT:
         return {}
     return {row["method"]: row["probability"] for row in candidates if row["probability"] > 0}
-
-
-def estimated_of(
-    accelerometer_parameters: pd.DataFrame,
-    gyroscope_parameters: pd.DataFrame,
-    accelerometer_covariance: pd.DataFrame,
-    gyroscope_covariance: pd.DataFrame,
-    accelerometer_fit: pd.DataFrame,
-    gyroscope_fit: pd.DataFrame,
-    extension_parameters: pd.DataFrame,
-    extension_covariance: pd.DataFrame,
-    extension_fit: pd.DataFrame,
-    candidates: pd.DataFrame,
-    candidate_effects: pd.DataFrame,
-) -> Estimated:
-    """The tables of the estimation and the extension as rows."""
-    joint = [
-        row
-        for table in (accelerometer_parameters, gyroscope_parameters)
-        for row in rows_of(table)
-        if row["method"] in (JOINT, FREE) and row["parameter"] in TWELVE
-    ]
-    determined = Counter((r["method"], _place(r)) for r in joint if r["value"] is not None)
-    free = {place for _m, place in determined if determined[FREE, place] > determined[JOINT, place]}
-    kept = [r for r in joint if r["method"] == (FREE if _place(r) in free else JOINT)]
-    return Estimated(
-        [*({**row, "method": JOINT} for row in kept), *rows_of(extension_parameters)],
-        covariance_by_ids(accelerometer_covariance, gyroscope_covariance, extension_covariance),
-        [
-            row
-            for table in (accelerometer_fit, gyroscope_fit, extension_fit)
-            for row in rows_of(table)
-        ],
-        rows_of(candidates),
-        rows_of(candidate_effects),
-        frozenset(free),
-    )
 
 
 def _place(row: Row) -> tuple[str, str]:

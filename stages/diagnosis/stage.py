@@ -5,22 +5,17 @@ from collections.abc import Iterator, Sequence
 import pandas as pd
 
 from inertial.campaign.explanations import compete
-from inertial.campaign.hypotheses import Findings, findings_of, hypotheses
+from inertial.campaign.hypotheses import Findings, hypotheses
 from inertial.campaign.noise_levels import only_noise
 from inertial.campaign.records import Row, performed_of, rows_of
-from inertial.effects import KNOWN, TEMPERATURE_MODELS
 from inertial.tables.stage import Stage, Tables
-from inertial.text.parameters import AXES
-from stages.diagnosis.causes import Cause, Evidence, Size
+from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
-from stages.diagnosis.sensor_results import Estimated, SensorResult, estimated_of
+from stages.diagnosis.effect_sizes import by_result, sentences, sizes
+from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.temperature_curves import curve_rows
 from stages.diagnosis.verdict import NOT_USABLE, Verdict, verdict
-
-PLACES = ("frequency", "n", "phase")  # parameters of lines: where they are, not how large
-
-MIN_CLEAR_SIGMA = 4.0  # of a parameter: the effect is in its axis
 
 
 def diagnosis(
@@ -60,7 +55,10 @@ def diagnosis(
         verdict(result, causes, _range(swept, result.sensor, result.mount), only_noise=noisy)
         for result in results
     ]
-    sizes = _sizes(rows_of(effects))
+    by_criticism = rows_of(effects)
+    modelled = by_result(by_criticism, results)
+    own_sizes = sizes(modelled)
+    own_sentences = dict(sentences(explained, findings, by_criticism, modelled))
     written = _result_rows(results, verdicts)
     unusable = {
         (result.sensor, result.mount)
@@ -68,7 +66,7 @@ def diagnosis(
         if given.verdict == NOT_USABLE
     }
     return {
-        "causes": [cause.row(sizes) for cause in causes],
+        "causes": [cause.row(own_sizes, own_sentences) for cause in causes],
         "members": [row for cause in causes for row in _members(cause, findings)],
         "consequences": [row for cause in causes for row in _consequences(cause)],
         "result": written,
@@ -89,36 +87,9 @@ def diagnosis(
     }
 
 
-def _sizes(effects: Sequence[Row]) -> dict[str, Size]:
-    """By finding the parameter that is clearest in its sigma.
-
-    What is scanned, a time, a frequency or an order, is where an effect is, not how large.
-    """
-    by_finding: dict[str, list[Row]] = {}
-    for row in effects:
-        effect = KNOWN.get(row["effect"])
-        scanned = effect is not None and effect.scan is not None and effect.scan.name
-        if row["finding"] and row["sigma"] and row["parameter"] not in (scanned, *PLACES):
-            by_finding.setdefault(row["finding"], []).append(row)
-    return {finding: _size(rows) for finding, rows in by_finding.items()}
-
-
-def _size(rows: Sequence[Row]) -> Size:
-    """Of an effect with a parameter for each axis the axis, where only one is clear."""
-    best = max(rows, key=_sigmas)
-    clear = [i for i, row in enumerate(rows) if _sigmas(row) > MIN_CLEAR_SIGMA]
-    each_axis = len(rows) == len(AXES) and rows[0]["effect"] not in TEMPERATURE_MODELS
-    axis = AXES[clear[0]] if each_axis and len(clear) == 1 else None
-    return Size(best["value"], best["sigma"], best["unit"], axis)
-
-
-def _sigmas(row: Row) -> float:
-    return abs(float(row["value"]) / float(row["sigma"]))
-
-
 def _members(cause: Cause, findings: Findings) -> Iterator[Row]:
     """The members of its class: effects, or repairs of which each would undo it."""
-    own = [row for row in findings.members if row["finding"] == cause.main.id]
+    own = [row for row in rows_of(findings.members) if row["finding"] == cause.main.id]
     members = [(row["effect"], row["probability"]) for row in sorted(own, key=_rank)]
     members += [(row["repair"], None) for row in cause.main.rivals]
     for rank, (member, probability) in enumerate(members, 1):
@@ -173,4 +144,4 @@ def _written(
     }
 
 
-STAGE = Stage(diagnosis, DECLARED, gathers={"findings": findings_of, "estimated": estimated_of})
+STAGE = Stage(diagnosis, DECLARED, gathers={"findings": Findings, "estimated": Estimated})

@@ -7,7 +7,8 @@ from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
+from inertial.campaign.equations import Campaign
 from inertial.campaign.estimates import switch_on_columns
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import rows_of
@@ -171,18 +172,7 @@ class Extension:
             yield from self._of_spectrum(simulated)
 
     def _of_blocks(self) -> Iterator[tuple[str, Any]]:
-        data, mount = self.data, self.data.mount
-        # The random walks of criticism were estimated beside the effects, without the drift that is
-        # measured at rest: a jump or a warm-up within a stretch would be counted again in it.
-        campaign = campaign_of(data).without_drift_at_rest()
-        named = [c.members[0].effect for c in self.named.classes]
-        known = [effect for effect in named if effect.scan is None or effect.at is not None]
-        self.switch_ons = campaign.switch_ons(known)
-        campaign = campaign.with_switch_ons(self.switch_ons)
-        if campaign.by_hand:
-            campaign = scattered(campaign, known, data.noise.degrees)
-        if by_hand := campaign.by_hand:
-            self.scatters = {"gyro": by_hand.scatter.rate, "accel": by_hand.force_scatter}
+        campaign = self._campaign()
         classes = compared(campaign.with_random_walks(self.random_walks), self.named.classes)
         combinations = combinations_of(classes)
         every = {e.label: e for c in combinations for e in c.effects if e.sought_in == "blocks"}
@@ -231,8 +221,23 @@ class Extension:
                 ):
                     yield "warm_up", row
         of_likeliest = replace(models, effects=combinations[0].effects)
-        yield from gain(of_likeliest, validated, mount)
+        yield from gain(of_likeliest, validated, self.data.mount)
         yield from self._worth(of_likeliest, likeliest)
+
+    def _campaign(self) -> Campaign:
+        """The equations, with what biases differ by between switch-ons, and positions by hand."""
+        # The random walks of criticism were estimated beside the effects, without the drift that is
+        # measured at rest: a jump or a warm-up within a stretch would be counted again in it.
+        campaign = campaign_of(self.data).without_drift_at_rest()
+        named = [c.members[0].effect for c in self.named.classes]
+        known = [effect for effect in named if effect.scan is None or effect.at is not None]
+        self.switch_ons = campaign.switch_ons(known)
+        campaign = campaign.with_switch_ons(self.switch_ons)
+        if campaign.by_hand:
+            campaign = scattered(campaign, known, self.data.noise.degrees)
+        if by_hand := campaign.by_hand:
+            self.scatters = {"gyro": by_hand.scatter.rate, "accel": by_hand.force_scatter}
+        return campaign
 
     def _solved(
         self,
@@ -353,5 +358,5 @@ class Extension:
 STAGE = Stage(
     extension,
     DECLARED,
-    gathers={"mounts": campaigns_of, "causes": causes_of, "joint": joint_of},
+    gathers={**MOUNTS, "causes": causes_of, "joint": joint_of},
 )

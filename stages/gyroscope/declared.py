@@ -1,15 +1,12 @@
 """What the stage reads and writes."""
 
 from inertial import tables
+from inertial.tables.campaign_inputs import RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
     reads={
-        "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("segment", tables.MANOEUVRES),
-        "performed": From("segment", tables.PERFORMED),
-        "levels": From("noise", tables.LEVELS),
-        "known": From("plan", tables.KNOWN),
+        **RECORDED,
         "clocks": From("decode", tables.CLOCKS),
     },
     writes={

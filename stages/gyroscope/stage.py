@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.gyroscope_methods import add_formulas, add_turn_and_stop
@@ -70,4 +70,4 @@ def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:
     return np.asarray(np.isfinite(np.array(readings)).any(axis=0))
 
 
-STAGE = Stage(gyroscope, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(gyroscope, DECLARED, gathers=MOUNTS)

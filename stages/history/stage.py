@@ -39,27 +39,41 @@ KEPT = (
 )
 
 
-def calibration_of(
+def every_parameter(
+    accelerometer_parameters: pd.DataFrame, gyroscope_parameters: pd.DataFrame, result: pd.DataFrame
+) -> list[Row]:
+    """The parameters by all methods, and those of the result."""
+    tables = (accelerometer_parameters, gyroscope_parameters, result)
+    return [row for table in tables for row in rows_of(table)]
+
+
+def reference_shares(
     campaign: pd.DataFrame,
-    inputs: pd.DataFrame,
-    accelerometer_parameters: pd.DataFrame,
-    gyroscope_parameters: pd.DataFrame,
-    result: pd.DataFrame,
-    covariance: pd.DataFrame,
-    verdict: pd.DataFrame,
     known: pd.DataFrame,
     manoeuvres: pd.DataFrame,
     uncertainty_budget: pd.DataFrame,
+) -> list[Row]:
+    """The references of a campaign, and what they add to each sigma."""
+    (facts,) = rows_of(campaign)
+    references = references_of(facts, rows_of(known), rows_of(manoeuvres))
+    return reference_rows(references, rows_of(uncertainty_budget))
+
+
+def calibration_of(
+    campaign: pd.DataFrame,
+    inputs: pd.DataFrame,
+    parameters: list[Row],
+    covariance: pd.DataFrame,
+    references: list[Row],
+    verdict: pd.DataFrame,
     provenance: Mapping[str, Mapping[str, Any]],
 ) -> Row:
     """What is archived of a campaign; the parameters by all methods are kept beside the result."""
     (facts,) = rows_of(campaign)
-    references = references_of(facts, rows_of(known), rows_of(manoeuvres))
-    tables = (accelerometer_parameters, gyroscope_parameters, result)
     return facts | {
-        "parameters": [row for table in tables for row in rows_of(table)],
+        "parameters": parameters,
         "covariance": rows_of(covariance),
-        "references": reference_rows(references, rows_of(uncertainty_budget)),
+        "references": references,
         "verdicts": rows_of(verdict),
         "inputs": rows_of(inputs),
         "made_by": _made_by(made for name, made in provenance.items() if name in KEPT),
@@ -146,5 +160,10 @@ def _made_by(provenance: Iterable[Mapping[str, Any]]) -> list[Row]:
 STAGE = Stage(
     history,
     DECLARED,
-    gathers={"calibration": calibration_of, "published_differences": published_differences_of},
+    gathers={
+        "parameters": every_parameter,
+        "references": reference_shares,
+        "calibration": calibration_of,
+        "published_differences": published_differences_of,
+    },
 )

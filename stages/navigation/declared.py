@@ -1,6 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
+from inertial.tables.campaign_inputs import RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
@@ -10,13 +11,8 @@ DECLARED = Declared(
         "campaign": From("plan", tables.CAMPAIGN),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "segments": From("segment", tables.SEGMENTS),
-        "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("segment", tables.MANOEUVRES),
-        "performed": From("segment", tables.PERFORMED),
-        "levels": From("noise", tables.LEVELS),
-        "known": From("plan", tables.KNOWN),
+        **RECORDED,
         "published": From("plan", tables.PUBLISHED),
-        "clocks": From("decode", tables.CLOCKS),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "covariance": From("diagnosis", tables.COVARIANCE),
         "accelerometer_fit": From("accelerometer", tables.FIT),

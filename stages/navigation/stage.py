@@ -8,14 +8,14 @@ that both triads share and the level part of an accelerometer's bias, counts nei
 before nor as a gain.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
-from inertial.campaign.measurement import Measurement
 from inertial.campaign.records import Part, Row, rows_of
 from inertial.campaign.solution import switch_ons_of
 from inertial.estimation.triad import linear_names
@@ -23,47 +23,75 @@ from inertial.physics.forward import Triad
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
-from stages.navigation.corridor import uncertain
+from stages.navigation.corridor import Uncertain, uncertain
 from stages.navigation.declared import DECLARED
 from stages.navigation.navigator import Navigator, reason_rows
 from stages.navigation.not_determined import why_not
-from stages.navigation.windows import readings, windows
+from stages.navigation.windows import Readings, Window, readings, windows
 
 ALREADY = _("the logs are compensated already, so there is nothing before calibration")
 
 
+@dataclass(frozen=True, eq=False)
+class CorrectedSamples:
+    """The samples as they were recorded, with their repairs, and as compensated."""
+
+    samples: Stream
+    compensated: Stream
+    channel_repairs: pd.DataFrame
+
+    def readings(self, wanted: Sequence[Window]) -> Iterator[Readings]:
+        """Of some windows, before and after."""
+        return readings(self.samples, self.compensated, wanted, Repairs(self.channel_repairs))
+
+
+@dataclass(frozen=True, eq=False)
+class ResultTables:
+    """The tables of the result and its uncertainty."""
+
+    result: pd.DataFrame
+    covariance: pd.DataFrame
+    accelerometer_fit: pd.DataFrame
+    gyroscope_fit: pd.DataFrame
+
+    def of_mount(self, mount: str) -> list[Row]:
+        """The parameters of a mount."""
+        return [row for row in rows_of(self.result) if row["mount"] == mount]
+
+    def uncertain(self, data: CampaignData) -> Uncertain | None:
+        """What is known of a mount, in the course of time and temperature of its campaign."""
+        between = {
+            "accel": switch_ons_of(self.accelerometer_fit, data.mount),
+            "gyro": switch_ons_of(self.gyroscope_fit, data.mount),
+        }
+        course = data.course
+        return uncertain(
+            self.of_mount(data.mount), self.covariance, lambda m: m.along(*course), between
+        )
+
+
 def navigation(
     mounts: Sequence[CampaignData],
-    samples: Stream,
-    compensated: Stream,
-    channel_repairs: pd.DataFrame,
+    corrected: CorrectedSamples,
     segments: pd.DataFrame,
     campaign: pd.DataFrame,
     published: pd.DataFrame,
-    result: pd.DataFrame,
-    covariance: pd.DataFrame,
-    accelerometer_fit: pd.DataFrame,
-    gyroscope_fit: pd.DataFrame,
+    result_tables: ResultTables,
 ) -> Tables:
     """Errors after 60 s, 10 min and whole turns; the longest course; the shares of the sources."""
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     (facts,) = rows_of(campaign)
     before = published_triads(rows_of(published))
-    repairs = Repairs(channel_repairs)
     for data in mounts:
-        own = [row for row in rows_of(result) if row["mount"] == data.mount]
-        between = {
-            "accel": switch_ons_of(accelerometer_fit, data.mount),
-            "gyro": switch_ons_of(gyroscope_fit, data.mount),
-        }
-        known = uncertain(own, covariance, _along(data), between)
+        known = result_tables.uncertain(data)
         if known is None or facts["compensated"]:
-            reason = ALREADY if facts["compensated"] else why_not(own, data.gravity.number)
+            reason = why_not(result_tables.of_mount(data.mount), data.gravity.number)
+            reason = ALREADY if facts["compensated"] else reason
             rows["navigation_errors"] += reason_rows([Part("", None, reason)], data.mount)
             continue
         wanted, short = windows(data, segments)
         navigator = Navigator(data, known, before)
-        for each in readings(samples, compensated, wanted, repairs):
+        for each in corrected.readings(wanted):
             navigator.add(each)
         navigator.predict(short)
         rows["navigation_errors"] += navigator.error_rows
@@ -73,12 +101,6 @@ def navigation(
         name: pd.DataFrame(rows[name]) if rows[name] else table.empty()
         for name, table in DECLARED.writes.items()
     }
-
-
-def _along(data: CampaignData) -> Callable[[Measurement], Measurement]:
-    """Puts a measurement into the course of time and temperature of the campaign."""
-    time, temperature = (data.blocks[name].to_numpy(np.float64) for name in ("time", "temperature"))
-    return lambda measurement: measurement.along(time, temperature)
 
 
 def published_triads(rows: Sequence[Row]) -> dict[str, Triad]:
@@ -99,4 +121,8 @@ def published_triads(rows: Sequence[Row]) -> dict[str, Triad]:
     return triads
 
 
-STAGE = Stage(navigation, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(
+    navigation,
+    DECLARED,
+    gathers={**MOUNTS, "corrected": CorrectedSamples, "result_tables": ResultTables},
+)

@@ -1,6 +1,6 @@
 """White noise of every channel in every manoeuvre, and all terms of the noise at rest."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain, pairwise, product
 from typing import Any
 
@@ -9,11 +9,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.masked_samples import Masks, Repairs, pieces
+from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
 from inertial.estimation.spectrum import band_levels, white_level
-from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.noise.declared import DECLARED
 from stages.noise.static_stretches import SENSORS, StaticStretches
@@ -28,29 +27,28 @@ LEAST_SIGMA = {"accel": 1e-6, "gyro": 1e-8}  # m/s² and rad/s: no mean is known
 
 
 def noise(
-    samples: Stream,
-    mean_sigmas: pd.DataFrame,
-    blocks: pd.DataFrame,
+    masked_samples: MaskedSamples,
     segments: pd.DataFrame,
     clocks: pd.DataFrame,
     gaps: pd.DataFrame,
-    masks: pd.DataFrame,
-    channel_repairs: pd.DataFrame,
     sensors: pd.DataFrame,
-    ranges: pd.DataFrame,
+    of_means: Sequence[Row],
     *,
     from_hz: float,
     to_hz: float,
 ) -> Tables:
-    """White noise by manoeuvre, phase (rest or steady) and channel; the terms of each channel."""
+    """White noise by manoeuvre, phase (rest or steady) and channel; the terms of each channel.
+
+    of_means : the levels of means without time
+    """
     clock = clocks_of(clocks)
     sheet = {f"{row['sensor']}_{row['axis']}": row for row in rows_of(sensors)}
-    quiet = [row for row in rows_of(segments) if row["phase"] in PHASES]
+    quiet = _quiet(segments)
     spectra: dict[tuple[str, str], _Spectra] = {}
     lengths = [row["to_record"] - row["from_record"] for row in quiet if row["phase"] != "steady"]
     static = StaticStretches(max(lengths, default=0))
     number = 0
-    for log, record, values, continues in _unbroken(samples, gaps, masks, Repairs(channel_repairs)):
+    for log, record, values, continues in _unbroken(masked_samples, gaps):
         step = clock[log].duration
         number += not continues
         for row in quiet:
@@ -69,7 +67,6 @@ def noise(
         for row in collected.rows(manoeuvre, phase)
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
-    of_means = list(_levels_of_means(quiet, ranges, _stated_levels(blocks, mean_sigmas)))
     noises = list(static.noises())
     levels = effective_levels(measured, dict(chain.from_iterable(n.drifts() for n in noises)))
     if of_means:
@@ -84,9 +81,14 @@ def noise(
     }
 
 
-def _levels_of_means(
-    quiet: Sequence[Row], ranges: pd.DataFrame, in_log: Mapping[_Level, float]
-) -> Iterator[Row]:
+def _quiet(segments: pd.DataFrame) -> list[Row]:
+    """The segments of which the noise is seen: at rest, or at a steady rate."""
+    return [row for row in rows_of(segments) if row["phase"] in PHASES]
+
+
+def levels_of_means(
+    segments: pd.DataFrame, ranges: pd.DataFrame, blocks: pd.DataFrame, mean_sigmas: pd.DataFrame
+) -> list[Row]:
     """The levels of means without time, of which a sample counts as 1 s.
 
     That of the standard deviation of each mean by its log, or of the stated one of a sample. Where
@@ -94,20 +96,25 @@ def _levels_of_means(
     a scatter between manoeuvres.
     """
     stated = rows_of(ranges[ranges["sigma"].notna()])
-    for row, of_log in product(quiet, stated):
+    in_log = _stated_levels(blocks, mean_sigmas) if stated else {}
+    levels = []
+    for row, of_log in product(_quiet(segments), stated):
         if row["log"] == of_log["log"]:
             place = (row["manoeuvre"], PHASES[row["phase"]])
             channel = f"{of_log['sensor']}_{of_log['axis']}"
             known = in_log.get((*place, channel), of_log["sigma"])
             level = known or LEAST_SIGMA[of_log["sensor"]]
-            yield {
-                **dict(zip(("manoeuvre", "phase"), place, strict=True)),
-                "channel": channel,
-                **dict.fromkeys(("white_noise", "measured", "per_sample"), level),
-                "sigma": 0.0,
-                "source": STATED if known else RESIDUALS,
-                "degrees": np.inf,
-            }
+            levels.append(
+                {
+                    **dict(zip(("manoeuvre", "phase"), place, strict=True)),
+                    "channel": channel,
+                    **dict.fromkeys(("white_noise", "measured", "per_sample"), level),
+                    "sigma": 0.0,
+                    "source": STATED if known else RESIDUALS,
+                    "degrees": np.inf,
+                }
+            )
+    return levels
 
 
 def _stated_levels(blocks: pd.DataFrame, mean_sigmas: pd.DataFrame) -> dict[_Level, float]:
@@ -174,19 +181,19 @@ class _Spectra:
 
 
 def _unbroken(
-    samples: Stream, gaps: pd.DataFrame, masks: pd.DataFrame, repairs: Repairs
+    recorded: MaskedSamples, gaps: pd.DataFrame
 ) -> Iterator[tuple[str, NDArray[np.int64], Array, bool]]:
     """Records of one log without a gap or a masked record between them.
 
     Log, numbers, values, and whether they continue those before.
     """
-    known = Masks(masks, repairs)
+    columns = ["record", *tables.CHANNELS]
     before: tuple[str, int, bool, bytes] | None = None  # log, next record, masks
-    for log, piece in pieces(samples, ["record", *tables.CHANNELS], repairs):
+    for log, piece in pieces(recorded.samples, columns, recorded.repairs):
         record = piece["record"]
         values = np.column_stack([piece[channel] for channel in tables.CHANNELS])
         starts = gaps.loc[gaps["log"] == log, "record"].to_numpy(np.int64)
-        masked = known.of(log, record)
+        masked = recorded.masked.of(log, record)
         values[masked.channels] = np.nan
         bad, here = masked.whole, masked.channels
         breaks = (np.diff(record) != 1) | np.isin(record[1:], starts) | np.diff(bad)
@@ -200,4 +207,8 @@ def _unbroken(
                 yield log, record[first:after], values[first:after], continues
 
 
-STAGE = Stage(noise, DECLARED)
+STAGE = Stage(
+    noise,
+    DECLARED,
+    gathers={"masked_samples": MaskedSamples, "of_means": levels_of_means},
+)

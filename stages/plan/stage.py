@@ -74,29 +74,12 @@ def plan(
     set_right = list(gravity_repairs(file, repairs))
     taken_as_known = list(known(file, set_right))
     manoeuvres, table = _manoeuvres(file, entry, listed), encoder(file)
-    present = {path.name: path for path in raw}
     named = [(row["key"], row["file"]) for row in manoeuvres]
     named += [(row["gyro_key"], row["gyro_file"]) for row in manoeuvres if row["gyro_file"]]
     named += [] if table is None else [(["encoder", "log"], table["file"])]
-    for key, log in named:
-        if (campaign[0].parent / log).is_dir():
-            raise file.refuse_text(
-                key,
-                _("'{log}', a folder", log=log),
-                _("a log, which is one file"),
-                _("name a file; of a bag that is a folder, the .db3 or .mcap in it"),
-            )
-        if log not in present:
-            raise file.refuse(
-                key,
-                log,
-                _("a log in {parent}", parent=campaign[0].parent),
-                _("put the log there, or correct its name"),
-            )
-        _stays_inside(file, key, present[log])
+    used = sorted(_logs_of(file, named, raw))
     stated = Statements(file, laboratory, certificate)
     others = [row for path in published for row in published_values(YamlFile(path))]
-    used = sorted({present[log] for _unused, log in named})
     return {
         "campaign": pd.DataFrame([_campaign(file, entry, manoeuvres)]),
         "known": pd.DataFrame(taken_as_known),
@@ -126,6 +109,28 @@ def plan(
             for number, repair in enumerate(file.content.get("accept", []))
         ],
     }
+
+
+def _logs_of(file: YamlFile, named: Sequence[tuple[Key, str]], raw: Sequence[Path]) -> set[Path]:
+    """The logs that a campaign names, by the key that does, among the files beside it."""
+    folder, present = file.path.parent, {path.name: path for path in raw}
+    for key, log in named:
+        if (folder / log).is_dir():
+            raise file.refuse_text(
+                key,
+                _("'{log}', a folder", log=log),
+                _("a log, which is one file"),
+                _("name a file; of a bag that is a folder, the .db3 or .mcap in it"),
+            )
+        if log not in present:
+            raise file.refuse(
+                key,
+                log,
+                _("a log in {parent}", parent=folder),
+                _("put the log there, or correct its name"),
+            )
+        _stays_inside(file, key, present[log])
+    return {present[log] for _unused, log in named}
 
 
 def _stays_inside(file: YamlFile, key: Key, log: Path) -> None:

@@ -1,6 +1,6 @@
 """What a campaign takes as known: every quantity with its sigma and where it is from."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import cos, radians
 from typing import Any
 
@@ -38,34 +38,8 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
     `repairs`: those of gravity, of which at most one is applied.
     """
     site, table = file.content["site"], file.content.get("table", {})
-
-    def row(
-        quantity: str,
-        value: float | None,
-        sigma: float | None,
-        unit: str,
-        origin: str,
-        *,
-        assumed: bool = False,
-    ) -> Row:
-        return {
-            "quantity": quantity,
-            "value": value,
-            "sigma": sigma,
-            "unit": unit,
-            "origin": origin,
-            "assumed": assumed,
-        }
-
-    def table_row(quantity: str, key: str, unit_size: float, assumed: float, unit: str) -> Row:
-        if key in table:
-            return row(
-                quantity, 0.0, table[key] * unit_size, unit, _("stated: table.{key}", key=key)
-            )
-        origin = _("assumed, for table.{key} is not stated", key=key)
-        return row(quantity, 0.0, assumed, unit, origin, assumed=True)
-
-    if by_hand(file.content) and _sets_positions(file) and "position_sigma_arcsec" not in table:
+    sets_positions = _sets_positions(file)
+    if by_hand(file.content) and sets_positions and "position_sigma_arcsec" not in table:
         raise file.refuse_text(
             ["table"],
             _("no position_sigma_arcsec"),
@@ -79,34 +53,67 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
     for repair in repairs:
         if repair["state"] != "refused":
             gravity, origin = (repair["value"], repair["sigma"]), repair["sentence"]
-    yield row("gravity", *gravity, "m/s²", origin)
-    if site["latitude_deg"] is None:
+    yield _row("gravity", *gravity, "m/s²", origin)
+    yield from _earth_rate(site["latitude_deg"])
+    heading = table.get("heading_deg")
+    if heading is None:
+        yield _row("heading", None, None, "rad", _("not known"))
+    else:
+        yield _row("heading", radians(heading), None, "rad", _("stated: table.heading_deg"))
+    if sets_positions or "position_sigma_arcsec" in table:
+        sigma = ASSUMED_POSITION
+        yield _of_table(table, "position", "position_sigma_arcsec", ARC_SECOND, sigma, "rad")
+    else:
+        yield _row("position", 0.0, ASSUMED_POSITION, "rad", _("not used, for no position is set"))
+    yield _of_table(table, "turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
+    yield _of_table(table, "turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
+
+
+def _row(
+    quantity: str,
+    value: float | None,
+    sigma: float | None,
+    unit: str,
+    origin: str,
+    *,
+    assumed: bool = False,
+) -> Row:
+    return {
+        "quantity": quantity,
+        "value": value,
+        "sigma": sigma,
+        "unit": unit,
+        "origin": origin,
+        "assumed": assumed,
+    }
+
+
+def _of_table(
+    table: Mapping[str, Any], quantity: str, key: str, unit_size: float, assumed: float, unit: str
+) -> Row:
+    """The sigma of what the table sets, stated or `assumed`; `unit_size`: of the key, in `unit`."""
+    if key in table:
+        origin = _("stated: table.{key}", key=key)
+        return _row(quantity, 0.0, table[key] * unit_size, unit, origin)
+    origin = _("assumed, for table.{key} is not stated", key=key)
+    return _row(quantity, 0.0, assumed, unit, origin, assumed=True)
+
+
+def _earth_rate(latitude_deg: float | None) -> Iterator[Row]:
+    """Its parts upwards and level, rad/s."""
+    if latitude_deg is None:
         # A direction of which nothing is known: each part has a third of the squared rate.
         unknown = _("assumed, for the latitude is not known")
-        yield row("earth_rate_up", 0.0, EARTH_RATE / 3**0.5, "rad/s", unknown, assumed=True)
+        yield _row("earth_rate_up", 0.0, EARTH_RATE / 3**0.5, "rad/s", unknown, assumed=True)
         level = EARTH_RATE * (2 / 3) ** 0.5
-        yield row("earth_rate_level", level, None, "rad/s", unknown, assumed=True)
-    else:
-        latitude = radians(site["latitude_deg"])
-        up, level = earth_rate(latitude)
-        computed = _("computed from the latitude, whose sigma is assumed as 0.01°")
-        sigma = EARTH_RATE * abs(cos(latitude)) * ASSUMED_LATITUDE
-        yield row("earth_rate_up", up, sigma, "rad/s", computed)
-        yield row("earth_rate_level", level, None, "rad/s", computed)
-    heading = table.get("heading_deg")
-    yield row(
-        "heading",
-        None if heading is None else radians(heading),
-        None,
-        "rad",
-        _("not known") if heading is None else _("stated: table.heading_deg"),
-    )
-    if _sets_positions(file) or "position_sigma_arcsec" in table:
-        yield table_row("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
-    else:
-        yield row("position", 0.0, ASSUMED_POSITION, "rad", _("not used, for no position is set"))
-    yield table_row("turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
-    yield table_row("turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
+        yield _row("earth_rate_level", level, None, "rad/s", unknown, assumed=True)
+        return
+    latitude = radians(latitude_deg)
+    up, level = earth_rate(latitude)
+    computed = _("computed from the latitude, whose sigma is assumed as 0.01°")
+    sigma = EARTH_RATE * abs(cos(latitude)) * ASSUMED_LATITUDE
+    yield _row("earth_rate_up", up, sigma, "rad/s", computed)
+    yield _row("earth_rate_level", level, None, "rad/s", computed)
 
 
 def _gravity(file: YamlFile) -> tuple[float, float]:

@@ -220,8 +220,7 @@ class _Turned:
 
 
 def turn(
-    binned: Binned,
-    stretches: Sequence[Stretch],
+    located: Located,
     place: int,
     m: Manoeuvre,
     moving: pd.DataFrame,
@@ -237,7 +236,8 @@ def turn(
     """
     if moving.empty:
         return Performed(m.name, _("it turns, but its gyros are masked."), True, False)
-    first, after = motion(binned, stretches, place)
+    binned = located.binned
+    first, after = motion(binned, located.stretches, place)
     about = _about(moving, m.axis, level)
     length = moving["seconds"].to_numpy(np.float64)
     timed = bool(np.isfinite(length).all())

@@ -41,7 +41,7 @@ MOUNTING = _("the IMU may be mounted turned against the plan, which reads the sa
 
 
 @dataclass(frozen=True)
-class Stated:
+class Basis:
     """What the repairs rest on beside the recording.
 
     earth_rate : rad/s, its part upwards; given : of the campaign; counts : by sensor and log, m/s
@@ -83,9 +83,9 @@ class SetRight:
     undone: Undone
 
 
-def set_right(binned: Sequence[Binned], plan: Sequence[Manoeuvre], stated: Stated) -> SetRight:
+def set_right(binned: Sequence[Binned], plan: Sequence[Manoeuvre], basis: Basis) -> SetRight:
     """Decide the repairs of a campaign, one kind after another, and apply them."""
-    campaign = _Campaign(list(binned), list(plan), stated)
+    campaign = _Campaign(list(binned), list(plan), basis)
     campaign.set_counts()
     campaign.set_axes_and_names()
     campaign.set_axes_by_gravity()
@@ -96,8 +96,8 @@ def set_right(binned: Sequence[Binned], plan: Sequence[Manoeuvre], stated: State
 class _Campaign:
     """A campaign while it is set right."""
 
-    def __init__(self, binned: list[Binned], plan: list[Manoeuvre], stated: Stated) -> None:
-        self._binned, self._plan, self._stated = binned, plan, stated
+    def __init__(self, binned: list[Binned], plan: list[Manoeuvre], basis: Basis) -> None:
+        self._binned, self._plan, self._basis = binned, plan, basis
         self._rows: list[Row] = []
         self._channels: list[Row] = []
         self._misread: list[Misread] = []
@@ -110,7 +110,7 @@ class _Campaign:
 
     def _explain(self) -> None:
         self._level, self._explained = explained_of(
-            self._binned, self._plan, self._stated.earth_rate
+            self._binned, self._plan, self._basis.earth_rate
         )
 
     def result(self) -> SetRight:
@@ -138,7 +138,7 @@ class _Campaign:
         return {row["id"] for row in self._rows if row["state"] in APPLIED}
 
     def _logs(self, log: str) -> Sequence[str]:
-        return [log] if log else self._stated.logs
+        return [log] if log else self._basis.logs
 
     def _read_again(self, channels: Sequence[Row]) -> None:
         """Apply repairs of channels to the windows."""
@@ -163,11 +163,11 @@ class _Campaign:
 
     def set_counts(self) -> None:
         """Readings that are a known multiple of what they should be."""
-        stated = self._stated
+        basis = self._basis
         channels: list[Row] = []
-        for scale in scales_of(self._explained, self._level, stated.given, stated.counts):
+        for scale in scales_of(self._explained, self._level, basis.given, basis.counts):
             step = _scale_step(scale)
-            state = stated.state(step, rival=bool(scale.others))
+            state = basis.state(step, rival=bool(scale.others))
             before, after, seen = scale.fitting
             condition = _(
                 "the {sensor} read {ratio} times what they should, {where}: {why}",
@@ -202,8 +202,8 @@ class _Campaign:
         explained = explained_of(
             self._binned,
             self._plan,
-            self._stated.earth_rate,
-            self._stated.accepted,
+            self._basis.earth_rate,
+            self._basis.accepted,
             with_sense=True,
         )[1]
         first = len(self._rows)
@@ -213,7 +213,7 @@ class _Campaign:
         plan = self._plan_as_found(explained, fitting)
         for taken, steps in explained.rivals.items():
             for step in steps:
-                row = _row(step, self._stated.state(step, rival=True), self._in_words(step))
+                row = _row(step, self._basis.state(step, rival=True), self._in_words(step))
                 self._rows.append(row | {"finding": taken})
             self._rivals[taken] = [(step.id, self._in_words(step)) for step in steps]
         moved = any(a is not b for a, b in zip(plan, self._plan, strict=True))
@@ -248,7 +248,7 @@ class _Campaign:
         for each in misread_in(self._plan, replace(explained, misread={})):
             step = axes_step(each.sensor, each.axes)
             both = axes.accel == axes.gyro and bool(rivals)
-            state = self._stated.state(step, rival=turned or both or each.sensor in rivals)
+            state = self._basis.state(step, rival=turned or both or each.sensor in rivals)
             condition = _axes_in_words(each)
             if turned:
                 condition += f"; {MOUNTING}"
@@ -267,7 +267,7 @@ class _Campaign:
             turned = own.accel == own.gyro and determinant(own.accel) > 0
             common = getattr(explained.everywhere, each.sensor)
             unsure = common != AS_NAMED and axes_step(each.sensor, common).id not in self._applied
-            state = self._stated.state(step, rival=turned or unsure)
+            state = self._basis.state(step, rival=turned or unsure)
             condition = _axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
             self._rows.append(_row(step, state, condition, fitting, each.log))
             if state in APPLIED:
@@ -288,14 +288,14 @@ class _Campaign:
         pairs = zip(explained.exchanged, swapped_in(self._plan, explained), strict=True)
         for exchanged, swapped in pairs:
             step = exchange_step(exchanged)
-            state = self._stated.state(step, rival=step.id in explained.rivals)
+            state = self._basis.state(step, rival=step.id in explained.rivals)
             row = _row(step, state, _exchange_in_words(swapped), fitting)
             self._rows.append(row | {"manoeuvre": swapped.names[0]})
             if state in APPLIED:
                 self._swapped.append(replace(swapped, undone=True))
                 plan = _exchanged_back(plan, exchanged)
         if explained.other_sense:
-            state = self._stated.state(SENSE)
+            state = self._basis.state(SENSE)
             self._rows.append(_row(SENSE, state, self._in_words(SENSE), fitting))
             if state in APPLIED:
                 self._other_sense = SENSE.id
@@ -308,11 +308,11 @@ class _Campaign:
             return
         found = misread_by_gravity(self._binned, self._level)
         words = {each.repair: _axes_in_words(each) for each in found}
-        chosen = [each for each in found if each.repair in self._stated.accepted] or found
+        chosen = [each for each in found if each.repair in self._basis.accepted] or found
         channels: list[Row] = []
         for each in chosen:
             step = step_of(each)
-            state = self._stated.state(step, rival=len(chosen) > 1)
+            state = self._basis.state(step, rival=len(chosen) > 1)
             row = _row(step, state, words[step.id], log="")
             self._rows.append(row | {"finding": chosen[0].repair})
             if state in APPLIED:
@@ -328,11 +328,11 @@ class _Campaign:
 
     def set_rates(self) -> None:
         """Rates that the plan misstates, while the angles are as planned."""
-        restated = rates_of(self._explained, self._level, self._stated.tolerance)
+        restated = rates_of(self._explained, self._level, self._basis.tolerance)
         if restated is None:
             return
         step = Step("stated_rate", "stated_rate", "gyro")
-        state = self._stated.state(step)
+        state = self._basis.state(step)
         number = len(restated.names)
         turns = [m for m in self._plan if m.do == "turn" and m.rate]
         condition = _(

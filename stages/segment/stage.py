@@ -1,7 +1,7 @@
 """Where the manoeuvres of the plan are in the logs, and each reduced to short means."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -23,7 +23,6 @@ from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, compare, recorded_of
 from stages.segment.encoder import ByEncoder, plan_by_encoder, without_unused
-from stages.segment.explanations import Explained
 from stages.segment.matching import (
     AS_NAMED,
     Located,
@@ -33,24 +32,53 @@ from stages.segment.matching import (
     rest_part,
     turn_parts,
 )
-from stages.segment.repair import set_right
+from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken
 from stages.segment.windows import Bins, Selection, Window, windows
 
 Array = NDArray[np.float64]
 
 
+@dataclass(frozen=True, eq=False)
+class Examined:
+    """What the stage quality says of the samples: its tables."""
+
+    gaps: pd.DataFrame
+    masks: pd.DataFrame
+    channel_statistics: pd.DataFrame
+    quality_findings: pd.DataFrame
+
+
+@dataclass(frozen=True, eq=False)
+class Confirmed:
+    """The repairs of the stage plan, and those that the campaign file confirms: tables."""
+
+    gravity_repairs: pd.DataFrame
+    accepted: pd.DataFrame
+
+    def refuse_unknown(self, found: Sequence[Row]) -> None:
+        """A repair that the campaign file confirms is one that is `found`, here or by plan."""
+        known = [*self.gravity_repairs["id"], *(row["id"] for row in found)]
+        for row in rows_of(self.accepted):
+            if row["repair"] not in known:
+                raise Refusal(
+                    "campaign.yaml",
+                    row["place"],
+                    repr(row["repair"]),
+                    _(
+                        "one of the repairs of this campaign: {known}",
+                        known=", ".join(dict.fromkeys(known)) or _("there are none"),
+                    ),
+                    _("correct the name, or remove it from accept"),
+                )
+
+
 def segment(
     samples: Stream,
     stated: Stated,
     manoeuvres: pd.DataFrame,
-    clocks: pd.DataFrame,
-    gaps: pd.DataFrame,
-    masks: pd.DataFrame,
-    channel_statistics: pd.DataFrame,
-    quality_findings: pd.DataFrame,
-    gravity_repairs: pd.DataFrame,
-    accepted: pd.DataFrame,
+    examined: Examined,
+    confirmed: Confirmed,
     *,
     repairs: str = "apply",
     rest_block: float,
@@ -68,59 +96,44 @@ def segment(
     ----------
     repairs : apply or refuse, whether what is wrong for certain is set right
     """
-    plan, clock = manoeuvres_of(manoeuvres), clocks_of(clocks)
-    logs = stated.logs(channel_statistics)
-    ends = records_of(clocks)
-
-    bins = Bins(_windows(samples, plan, ends), clock, Masks(masks))
+    clock, ends = clocks_of(stated.clocks), records_of(stated.clocks)
+    logs = stated.logs(examined.channel_statistics)
+    plan = manoeuvres_of(manoeuvres)
+    bins = Bins(_windows(samples, plan, ends), clock, Masks(examined.masks))
     read_once(samples, [bins])
-    made = set_right(
-        list(bins.binned()),
-        plan,
-        repair.Stated(
-            stated.earth_rate_up,
-            stated.given,
-            _counts(logs),
-            list(ends),
-            angle_tolerance,
-            repairs == "refuse",
-            set(accepted["repair"]),
-        ),
+    basis = repair.Basis(
+        stated.earth_rate_up,
+        stated.given,
+        _counts(logs),
+        list(ends),
+        angle_tolerance,
+        repairs == "refuse",
+        set(confirmed.accepted["repair"]),
     )
-    _refuse_unknown(accepted, [*gravity_repairs["id"], *(row["id"] for row in made.rows)])
-    plan, level, explained = list(made.plan), made.level, made.explained
+    made = set_right(list(bins.binned()), plan, basis)
+    confirmed.refuse_unknown(made.rows)
     read_as = Repairs(CHANNEL_REPAIRS.frame(made.channels))
-    masked = Masks(masks, read_as)
+    masked = Masks(examined.masks, read_as)
     by_name = {name: log_as_read(log, read_as) for name, log in logs.items()}
-    parts, performed, turns = _parts(explained, plan, level, margin)
+    places = _places(made, margin)
 
     in_samples = stated.means_of_known_noise
     block_sums = reduction.Blocks(
-        parts,
-        gaps,
-        masked,
-        clock,
-        in_samples,
-        rest_block,
-        turn_block,
+        places.parts, examined.gaps, masked, clock, in_samples, rest_block, turn_block
     )
-    segment_times, traces = reduction.Segments(parts), reduction.Traces(ends)
-    rests, index = ExaminationOfRests(OF_RESTS, parts, by_name, masked), RecordIndex()
+    segment_times, traces = reduction.Segments(places.parts), reduction.Traces(ends)
+    rests, index = ExaminationOfRests(OF_RESTS, places.parts, by_name, masked), RecordIndex()
     read_once(samples, [block_sums, segment_times, traces, rests, index], read_as)
     blocks, segments = block_sums.table(), segment_times.table()
-    turned = plan_by_encoder(plan, blocks, stated.angle_sigma, angle_tolerance)
-    plan = [turned[m.name].manoeuvre if m.name in turned else m for m in plan]
-    done, turned = _turned(turns, turned, blocks, block_sums, gaps, level, angle_tolerance)
-    performed |= done
-    for m in plan:
-        performed[m.name] = completeness.with_clipped(performed[m.name], block_sums.clipped(m.name))
-    for located in explained.located:
-        performed |= {
-            done.manoeuvre: done for done in completeness.with_ways(performed, located, level)
-        }
+    by_encoder = plan_by_encoder(made.plan, blocks, stated.angle_sigma, angle_tolerance)
+    plan = [by_encoder[m.name].manoeuvre if m.name in by_encoder else m for m in made.plan]
+    turned, by_encoder = _turned(
+        places.turns, by_encoder, blocks, block_sums, examined.gaps, made.level, angle_tolerance
+    )
+    performed = _performed(plan, places.performed | turned, block_sums, made)
     recorded = recorded_of(
         plan,
-        explained,
+        made.explained,
         made.undone,
         performed,
         segments,
@@ -133,11 +146,11 @@ def segment(
     detections = [*(each for each, _by in of_plan), *rests.detections("segment")]
     return {
         "manoeuvres": plan_as_taken(manoeuvres, plan),
-        "repairs": list(_with_findings(made.rows, of_plan, quality_findings)),
+        "repairs": list(_with_findings(made.rows, of_plan, examined.quality_findings)),
         "channel_repairs": list(made.channels),
         "segments": segments,
         "performed": pd.DataFrame([asdict(performed[m.name]) for m in plan]),
-        "blocks": reduction.with_temperatures(without_unused(blocks, turned), plan),
+        "blocks": reduction.with_temperatures(without_unused(blocks, by_encoder), plan),
         "traces": traces.table(),
         "findings": table_of([each.finding for each in detections]),
         "close_ups": close_ups(samples, index, detections),
@@ -152,14 +165,20 @@ def _windows(samples: Stream, plan: Sequence[Manoeuvre], ends: Mapping[str, int]
     return windows(plan, ends, selection)
 
 
-def _parts(
-    explained: Explained, plan: Sequence[Manoeuvre], level: Array, margin: float
-) -> tuple[list[Part], dict[str, Performed], list[tuple[Located, int, Manoeuvre]]]:
+@dataclass(frozen=True)
+class _Places:
     """The phases of all manoeuvres; what was performed of those that do not turn; the turns."""
+
+    parts: list[Part]
+    performed: dict[str, Performed]
+    turns: list[tuple[Located, int, Manoeuvre]]
+
+
+def _places(made: SetRight, margin: float) -> _Places:
     parts: list[Part] = []
     turns: list[tuple[Located, int, Manoeuvre]] = []
-    performed: dict[str, Performed] = dict(completeness.left_out(explained, plan))
-    for located in explained.located:
+    performed: dict[str, Performed] = dict(completeness.left_out(made.explained, made.plan))
+    for located in made.explained.located:
         binned, stretches, matched = located.binned, located.stretches, located.matched
         first = len(parts)
         for m in located.plan:
@@ -176,11 +195,11 @@ def _parts(
                 parts.append(rest_part(binned, stretches[place], m.name, margin))
                 performed[m.name] = completeness.rest(binned, m, stretches[place])
             else:
-                parts += turn_parts(binned, stretches, m, matched, level, margin)
+                parts += turn_parts(binned, stretches, m, matched, made.level, margin)
                 turns.append((located, place, m))
         if any(m.do == "positions" for m in located.plan):
             parts += between_parts([p for p in parts[first:] if p.phase in STATIC_PHASES])
-    return parts, performed, turns
+    return _Places(parts, performed, turns)
 
 
 def _turned(
@@ -200,8 +219,7 @@ def _turned(
         m = told.manoeuvre
         clipped = sums.clipped(m.name).get("", np.zeros(6, bool))[3:]
         done = completeness.turn(
-            located.binned,
-            located.stretches,
+            located,
             place,
             m,
             in_motion.get(m.name, blocks.iloc[:0]),
@@ -217,20 +235,20 @@ def _turned(
     return performed, told_of
 
 
-def _refuse_unknown(accepted: pd.DataFrame, known: Sequence[str]) -> None:
-    """A repair that the campaign file confirms is one that is found."""
-    for row in rows_of(accepted):
-        if row["repair"] not in known:
-            raise Refusal(
-                "campaign.yaml",
-                row["place"],
-                repr(row["repair"]),
-                _(
-                    "one of the repairs of this campaign: {known}",
-                    known=", ".join(dict.fromkeys(known)) or _("there are none"),
-                ),
-                _("correct the name, or remove it from accept"),
-            )
+def _performed(
+    plan: Sequence[Manoeuvre],
+    performed: Mapping[str, Performed],
+    sums: reduction.Blocks,
+    made: SetRight,
+) -> dict[str, Performed]:
+    """The same with what is cut off in each manoeuvre, and how the IMU moved between them."""
+    done = {
+        m.name: completeness.with_clipped(performed[m.name], sums.clipped(m.name)) for m in plan
+    }
+    for located in made.explained.located:
+        for each in completeness.with_ways(done, located, made.level):
+            done[each.manoeuvre] = each
+    return done
 
 
 def _with_findings(
@@ -259,4 +277,6 @@ def _counts(logs: Mapping[str, Log]) -> dict[str, dict[str, float]]:
     }
 
 
-STAGE = Stage(segment, DECLARED, gathers={"stated": stated_by})
+STAGE = Stage(
+    segment, DECLARED, gathers={"stated": stated_by, "examined": Examined, "confirmed": Confirmed}
+)

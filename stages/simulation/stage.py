@@ -10,7 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs, inside, pieces
 from inertial.campaign.motions import at_rest, in_samples
 from inertial.campaign.records import Manoeuvre, Performed, Row, rows_of
@@ -201,4 +201,4 @@ def _table(rows: Iterable[Row]) -> pd.DataFrame:
     return pd.DataFrame(found) if found else tables.FIDELITY.empty()
 
 
-STAGE = Stage(simulation, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(simulation, DECLARED, gathers=MOUNTS)

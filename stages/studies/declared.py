@@ -1,6 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
+from inertial.tables.campaign_inputs import RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
@@ -8,13 +9,8 @@ DECLARED = Declared(
         "samples": From("decode", tables.SAMPLES),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "masks": From("quality", tables.MASKS),
-        "clocks": From("decode", tables.CLOCKS),
+        **RECORDED,
         "segments": From("segment", tables.SEGMENTS),
-        "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("segment", tables.MANOEUVRES),
-        "performed": From("segment", tables.PERFORMED),
-        "levels": From("noise", tables.LEVELS),
-        "known": From("plan", tables.KNOWN),
         "spectra": From("noise", tables.SPECTRA),
         "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
         "gyroscope_fit": From("gyroscope", tables.FIT),

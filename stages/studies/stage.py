@@ -5,7 +5,7 @@ from typing import Any
 
 import pandas as pd
 
-from inertial.campaign.campaign_data import CampaignData, campaigns_of
+from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.sample_stretches import samples_in
 from inertial.campaign.solution import scatter_by_mount
@@ -135,4 +135,4 @@ def _of_turns(
     return rows
 
 
-STAGE = Stage(studies, DECLARED, gathers={"mounts": campaigns_of})
+STAGE = Stage(studies, DECLARED, gathers=MOUNTS)

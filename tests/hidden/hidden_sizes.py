@@ -12,6 +12,7 @@ import numpy as np
 from hidden_courses import courses, scanned
 from hidden_plans import PLANS
 from hidden_ways import WAYS, Array
+from textbook_power import power_limit
 
 import laboratory
 from inertial.campaign.effect_evidence import evidence
@@ -20,7 +21,7 @@ from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.naming import law_of
-from inertial.model_selection.null_simulation import Chance, power, power_limit
+from inertial.model_selection.null_simulation import Chance, power
 from inertial.physics.effect import Effect
 from inertial.tables.code import code_of, hash_of
 from stages.criticism.selection import evidence_of

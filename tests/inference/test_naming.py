@@ -5,12 +5,14 @@ from functools import cache
 import numpy as np
 import pytest
 from scipy.stats import chi2
+from textbook_power import power_limit
 
 from inertial.estimation.least_squares import EffectInformation
+from inertial.model_selection import naming
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Named
 from inertial.model_selection.evidence import Evidence, searched_effect
-from inertial.model_selection.naming import causes, name_causes
-from inertial.model_selection.null_simulation import Chance, chance, power_limit
+from inertial.model_selection.naming import causes
+from inertial.model_selection.null_simulation import Chance, chance
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.search import finer, to_refine
 from tests.inference.naming_evidence import Plan, plan_of, whitened
@@ -276,9 +278,11 @@ def test_noise_known_from_few_readings_asks_for_more():
 
 
 def test_no_equations_name_nothing():
-    found = name_causes(Evidence((), ()), [searched_effect("one", [0])], LEVEL)
+    evidence, effects = Evidence((), ()), [searched_effect("one", [0])]
+    found = causes(evidence, effects, naming.law_of(evidence, effects, LEVEL))
     assert not found.causes
     assert found.tests[0].degrees == 0
     blind = EffectInformation(("a",), np.zeros((1, 1)), np.zeros(1), 10.0, 10)
-    found = name_causes(Evidence((blind,), ("gyro",)), [searched_effect("one", [0])], LEVEL)
+    evidence, effects = Evidence((blind,), ("gyro",)), [searched_effect("one", [0])]
+    found = causes(evidence, effects, naming.law_of(evidence, effects, LEVEL))
     assert (found.causes, found.tests[0].degrees) == ((), 0)

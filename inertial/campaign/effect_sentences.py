@@ -1,0 +1,85 @@
+"""A detected effect in a sentence: its physical cause, and how large its parameters are."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS
+from inertial.text.cause_names import in_words
+from inertial.text.messages import _
+from inertial.text.numbers import decimals_of, with_sigma
+from inertial.text.units import quantity
+
+MIN_SIGMAS = 3.0  # from which a parameter is given in a sentence, if any reaches it
+
+DETECTED = _("Detected: {effect}{place}: {cause}. {numbers}.")
+DETECTED_CLASS = _(
+    "Detected: {effect}{place} ({cause}), or {others}: this campaign cannot "
+    "distinguish them. As {effect}: {numbers}."
+)
+CONSISTENT = _(
+    "The data are consistent with {effects}; no more can be said, for the remaining "
+    "residuals, or a random walk, follow no law. As {effect}: {numbers}."
+)
+NO_NUMBER = _("no parameter by itself")
+
+
+@dataclass(frozen=True)
+class Estimated:
+    """A parameter of an effect: value and sigma in the SI `unit`, where they are known.
+
+    `least_squares`: the value before the correction for having been selected.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    value: float | None = None
+    sigma: float | None = None
+    detection_limit: float | None = None
+    least_squares: float | None = None
+
+
+def effect_sentence(
+    effect: str,
+    cause: str,
+    parameters: Sequence[Estimated],
+    verdict: str,
+    members: Sequence[str],
+    positions: Sequence[str],
+) -> str:
+    """An effect or its class, with numbers.
+
+    Parameters
+    ----------
+    effect, members : names of the catalogue; cause : why it is, in words
+    verdict : how sure its name is
+    positions : those that it may be at, if it is an effect of a single position
+    """
+    title = in_words(effect)
+    others = [in_words(member) for member in members if member != effect]
+    values = {
+        "effect": title,
+        "place": _(" at {positions}", positions=_(" or ").join(positions)) if positions else "",
+        "cause": cause,
+        "others": _(" or ").join(others),
+        "numbers": "; ".join(map(_number, _significant(parameters))) or NO_NUMBER,
+    }
+    if verdict == FOUND:
+        return DETECTED.format_map(values)
+    if verdict == ONE_OF_CLASS:
+        return DETECTED_CLASS.format_map(values)
+    values["effects"] = _(" or ").join([title + values["place"], *others])
+    return CONSISTENT.format_map(values)
+
+
+def _significant(parameters: Sequence[Estimated]) -> list[Estimated]:
+    known = [p for p in parameters if p.value is not None and p.sigma]
+    clear = [p for p in known if abs(p.value or 0.0) > MIN_SIGMAS * (p.sigma or 0.0)]
+    return clear or known
+
+
+def _number(parameter: Estimated) -> str:
+    unit = quantity(parameter.name, parameter.unit).laboratory
+    sigma = unit.of(parameter.sigma or 0.0)
+    value = " ± ".join(with_sigma(unit.of(parameter.value or 0.0), sigma, decimals_of(sigma)))
+    return f"{parameter.name} = {value} {unit.name}"
