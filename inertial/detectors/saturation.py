@@ -43,6 +43,7 @@ MIN_DISTANCE_SCATTER = 8.0
 MIN_LEAP_RATIO = 10.0  # times the changes beside a visit, by which readings leap to it and back
 MAX_BEYOND = 1.25  # times the stated range, which is nominal: what readings of it may reach
 MIN_EXCESS_SIGMA = 5.0  # of readings in a count, for the scatter of their number
+MAX_STRAYED_COUNTS = 4.0  # of the sum of readings at a limit: rounding, and the least dips below
 MIN_FILLED_SHARE = 0.7  # of the counts from the median to the extreme: what noise fills of them
 
 
@@ -109,15 +110,29 @@ def _noise_beside(values: Array, pile: Integers) -> float:
     return float(MAD_TO_SIGMA * np.median(rough) / np.sqrt(6)) if len(rough) else 0.0
 
 
-def standing_at(values: Array, count: float, noise: float) -> float:
-    """The chance that noise leaves all readings of a log, (n,), in two neighbouring counts.
+def standing_at(values: Array, count: float, noise: float) -> tuple[Integers, float]:
+    """The increments of a log, (n,), that stand in its two largest counts, and the chance of that.
 
-    `noise`: sigma of a reading in the other logs.
+    At a limit between two counts all of them are the limit, and what a count leaves over goes into
+    the next: so their sum goes up along a straight line, but where the deepest of the noise comes
+    back below the limit. That of readings that are quiet by themselves strays from it.
+
+    Parameters
+    ----------
+    noise : sigma of a reading in the other logs
     """
-    if not MIN_NOISE_COUNTS * count < np.ptp(values) < 1.5 * count:
-        return 1.0
+    none = np.empty(0, np.int64)
+    steps = np.rint((values.max() - values) / count)
+    standing = np.flatnonzero(steps < 2)
+    if np.ptp(values) <= MIN_NOISE_COUNTS * count or len(standing) < OUTSIDE_READINGS:
+        return none, 1.0
+    start, end = max(joined(standing, 0), key=lambda run: run[1] - run[0])
+    run = steps[start:end]
+    strayed = float(np.ptp(np.cumsum(run - run.mean())))
+    if len(run) < OUTSIDE_READINGS or strayed > MAX_STRAYED_COUNTS:
+        return none, 1.0
     share = min(2 * count / (noise * np.sqrt(2 * np.pi)), 1.0)  # at the most, in two counts
-    return float(TESTS * share ** len(values))
+    return standing, float(TESTS * bdtrc(len(standing) - 1, len(values), share))
 
 
 def _steady(values: Array, most: float, count: float, width: int) -> bool:
@@ -206,8 +221,8 @@ class Saturation(Detector):
     converter. Otherwise a pile of readings at the largest or smallest value of the log shows it,
     where the noise is no less than a count, and the readings run into it: a value that they leap
     to is no end of a range, nor is zero. Increments at a limit between two counts alternate
-    between these. A log that does so throughout stands at the limit where the channel is noisy in
-    the other logs, and goes no farther in any.
+    between these. A log that does so nearly throughout stands at the limit where the channel is
+    noisy in the other logs, and goes no farther in any.
 
     What is cut off is the upper part of the noise, so the mean of the readings left beside it is
     too small: of Gaussian noise σ whose upper half is masked, by σ √(2/π).
@@ -328,9 +343,9 @@ def _unstated(upward: Array, most: float, log: Log, i: int) -> tuple[Integers, f
     if len(pile):
         return pile, p_value
     if log.increments and most > log.reach[i] - 1.5 * count and log.usual_noise[i] > 0:
-        p_value = standing_at(upward, count, log.usual_noise[i])
+        standing, p_value = standing_at(upward, count, log.usual_noise[i])
         if p_value < MAX_CHANCE:
-            return np.arange(len(upward)), p_value
+            return standing, p_value
     return pile, p_value
 
 

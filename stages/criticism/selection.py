@@ -32,6 +32,7 @@ from stages.criticism.bias_drift import (
     likely_random_walk,
     likely_random_walks,
     per_log_name,
+    size_of_walk,
     walk_evidence,
 )
 
@@ -274,9 +275,9 @@ def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
     beside = [cause.effect for cause in walk.named.causes if cause.effect not in others]
     start = law.equations_without(only)
     walking = walk_odds.walk(start, law.half_waves(sensor))
-    known = [effect for effect in law.effects if effect.name in kept]
-    whole = walk_evidence(law.campaign, sensor, known)
-    walking = replace(walking, log_evidence=max(whole, walking.log_evidence))
+    # Of all its waves: without the fast ones a walk would be spared what speaks against it.
+    known = [effect for effect in law.fitted if effect.name not in only]
+    walking = replace(walking, log_evidence=walk_evidence(law.campaign, sensor, known))
     nothing = walk_odds.Explained(0.0, start)
     # A walk is as likely beforehand as any one effect: each further cause pays for its choice.
     further = (len(only) - len(beside) - 1) * float(np.log(len(law.families)))
@@ -306,10 +307,16 @@ def _with_rivals(selection: Selection) -> Selection:
 def _replacing_walk(selection: Selection, number: int) -> float:
     """The most likely random walk of a sensor in place of effects that it explains as well.
 
-    These may be one of the named effects of the sensor or all of them; 0: none.
+    These may be one of the named effects of the sensor or all of them; 0: none. Where none is named
+    the walk may be that of one axis, which all three together do not show.
     """
     sensor = SENSORS[number]
     own = [c.effect for c in selection.named.causes if selection.sensor(c) == sensor]
+    if not own and selection.campaign.by_hand is None and sensor in selection.evidence.labels:
+        start = selection.equations_without([])
+        if walk_odds.walk(start, selection.half_waves(sensor)).log_evidence < MAX_LOG_ODDS:
+            return 0.0
+        return size_of_walk(selection.campaign, sensor, selection.effects)
     for replaced in [[effect] for effect in own] + [own] * (len(own) > 1):
         start = selection.equations_without(replaced)
         walking = walk_odds.walk(start, selection.half_waves(sensor)).log_evidence

@@ -107,6 +107,29 @@ def test_a_log_that_stands_at_the_limit_throughout_is_found_by_the_others():
     assert found(values, usual_noise=0.3 * COUNT, reach=reach) == []
 
 
+@pytest.mark.parametrize("share", [0.1, 0.5])
+def test_so_is_one_where_the_deepest_noise_comes_back(share):
+    """A limit that two to three sigma of the noise lie beyond, between two counts.
+
+    Noise of a count or less stands there too, but what its counts leave over goes nowhere.
+    """
+    values = rest(30_000)
+    limit = values[:, 2].mean() - 2.5 * NOISE[2]
+    limit = (np.floor(limit / COUNT[2]) + share) * COUNT[2]
+    read = np.minimum(values[:, 2], limit)
+    values[:, 2] = np.diff(np.rint(np.append(0.0, np.cumsum(read)) / COUNT[2])) * COUNT[2]
+    least = int(np.sum(read < limit))
+    assert 50 < least < 500
+    reach = np.abs(values).max(axis=0)
+    events = found(values, usual_noise=NOISE, reach=reach)
+    assert {event.channel for event in events} == {2}
+    assert sum(event.size for event in events) == pytest.approx(30_000 - least, abs=least)
+    random = np.random.default_rng(5)
+    for quiet in (0.3, 0.6, 1.0):
+        values[:, 2] = np.rint(limit / COUNT[2] + quiet * random.normal(size=30_000)) * COUNT[2]
+        assert found(values, usual_noise=NOISE, reach=np.abs(values).max(axis=0)) == []
+
+
 def test_both_ends_are_seen():
     values, _ = clipped(np.vstack([turn(), -turn(2)]), 5, RATE - 0.01)
     first, second = found(values)

@@ -78,8 +78,10 @@ def bars(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]]) -> I
         yield _least(words, (right, all_named), RIGHT)
     for sort, wanted in TOGETHER.items():
         number, _, band = sort.partition(" at ")
-        words = f"{number} effects at once at SNR {band} each, all classes right"
-        yield _told_apart(_right(words, of(outcomes, "several", sort), wanted), outcomes, sort)
+        own = of(outcomes, "several", sort)
+        limit = f" (limit {np.mean([one['limit'] for one in own]):.3f})" if own else ""
+        words = f"{number} effects at once at SNR {band} each, all classes right{limit}"
+        yield _told_apart(_right(words, own, wanted), outcomes, sort)
     yield _most("decoys with a false name", of(outcomes, "decoy"))
     physical = of(outcomes, "single", "physical")
     for grade in dict.fromkeys(one["grade"] for one in physical):

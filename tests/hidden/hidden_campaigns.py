@@ -45,6 +45,7 @@ def run(draw: Draw) -> Outcome:
         told["limits"] = reference(draw.plan).limits(*next(iter(draw.ratios.items())))
     if draw.kind == "several":
         told["apart"] = apart(draw.plan, draw.truth, draw.at)
+        told["limit"] = reference(draw.plan).limit_together(draw.truth, draw.at)
     try:
         return told | _found(draw)
     except Exception as error:  # it is counted, and the others go on

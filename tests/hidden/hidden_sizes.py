@@ -104,6 +104,28 @@ class Reference:
             "textbook": float(power_limit(ratio, degrees, seen, LEVEL, values)),
         }
 
+    def limit_together(
+        self, truth: Mapping[str, Mapping[str, float]], at: Mapping[str, float]
+    ) -> float:
+        """The probability that each of several effects is beyond its threshold, the others known.
+
+        What they have in common with each other none can show; the search for the others is free.
+        """
+        information, likely = self.said.total.information, 1.0
+        own = {name: list(self.columns(name, at.get(name))) for name in truth}
+        names = [one.name for one in self.asked]
+        for name, columns in own.items():
+            others = [i for other, some in own.items() if other != name for i in some]
+            sizes = np.array([*truth[name].values()]) / self.typical(name)
+            along = information[:, columns] @ sizes
+            block = np.linalg.pinv(information[np.ix_(others, others)], 1e-9, hermitian=True)
+            left = sizes @ along[columns] - along[others] @ block @ along[others]
+            number = names.index(name)
+            threshold = self.law.threshold(number, self.noise_degrees)
+            degrees = self.law.tails[number].degrees
+            likely *= float(power(np.sqrt(max(left, 0.0)), degrees, threshold))
+        return likely
+
     def size_of(self, effect: Effect) -> float:
         """The signal-to-noise ratio of a course that is known but for its size, which is 1."""
         return float(np.sqrt(evidence(self.campaign, [effect]).total.information[0, 0]))

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -29,9 +30,12 @@ from hidden_scores import (
     unknown_or_true,
     warned,
 )
+from hidden_sizes import Reference
+from scipy.stats import ncx2
 
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.cause import Cause
+from inertial.model_selection.evidence import Evidence, searched_effect
 
 
 def named(cause: str, *members: str, verdict: str = "") -> dict[str, Any]:
@@ -160,12 +164,38 @@ def test_several_are_judged_on_all_and_counted_where_none_does_for_another():
     one = outcome("table_tilt lever_arm", named("table_tilt"), named("lever_arm"))
     two = outcome("table_tilt lever_arm", named("table_tilt"))
     rows = [
-        row | {"kind": "several", "sort": "2 at 6 to 12", "apart": apart}
+        row | {"kind": "several", "sort": "2 at 6 to 12", "apart": apart, "limit": 0.8}
         for row, apart in ((one, True), (two, False))
     ]
     bar = next(bar for bar in bars(rows, []) if bar.words.startswith("2 effects at once at SNR 6"))
     assert bar.met is False and "(1 of 2)" in bar.measured
+    assert bar.words.endswith("(limit 0.800)")
     assert bar.measured.endswith("; 1 of 1 where none does for another")
+
+
+def test_the_limit_of_several_is_that_of_what_the_others_leave():
+    """Two columns of a tilt and three of a lever arm; their first ones have 0.8 in common."""
+    common, threshold, tilt, arm = 0.8, 18.0, 6.0, 7.0
+    information = np.eye(5)
+    information[0, 2] = information[2, 0] = common
+    said = Evidence((EffectInformation(tuple("abcde"), information, np.zeros(5), 0.0, 9),), ("",))
+    asked = [searched_effect("table_tilt", [0, 1]), searched_effect("lever_arm", [2, 3, 4])]
+    law = SimpleNamespace(
+        tails=[SimpleNamespace(degrees=2), SimpleNamespace(degrees=3)],
+        threshold=lambda number, degrees: threshold,
+    )
+    hidden = {one.name: one.candidates for one in asked}
+    known = Reference("positions", None, said, asked, hidden, law, np.inf)
+    truth = {
+        name: dict(zip("pqr", size * known.typical(name), strict=False))
+        for name, size in (("table_tilt", [0.0, tilt]), ("lever_arm", [0.0, arm, 0.0]))
+    }
+    apart = ncx2.sf(threshold, 2, tilt**2) * ncx2.sf(threshold, 3, arm**2)
+    assert known.limit_together(truth, {}) == pytest.approx(apart, rel=1e-9)
+    truth["table_tilt"] = dict(zip("pq", [tilt, 0.0] * known.typical("table_tilt"), strict=True))
+    left = tilt**2 * (1 - common**2)
+    less = ncx2.sf(threshold, 2, left) * ncx2.sf(threshold, 3, arm**2)
+    assert known.limit_together(truth, {}) == pytest.approx(less, rel=1e-9)
 
 
 TRUE = np.array([5.0, 0.0])
@@ -227,7 +257,7 @@ def test_the_page_tells_every_bar(tmp_path: Path):
         outcome(""),
         outcome("table_tilt", named("table_tilt")),
         outcome("table_tilt lever_arm", named("table_tilt"), kind="several", sort="2 at 6 to 12")
-        | {"apart": True},
+        | {"apart": True, "limit": 0.9},
         outcome("gravity_error", kind="decoy", sort="absorbed"),
         outcome("", named("lever_arm"), kind="outside", sort="gyro_telegraph"),
         outcome("oscillation", named("oscillation"), sort="elsewhere"),

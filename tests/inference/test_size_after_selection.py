@@ -30,47 +30,60 @@ def test_the_density_is_that_of_scipy():
 
 
 @pytest.mark.parametrize("z", [3.8, 4.5, 6.0])
-def test_of_one_parameter_the_mean_excess_of_a_truncated_normal_is_subtracted(z):
+def test_of_one_parameter_the_mean_excess_of_a_truncated_normal_is_subtracted_twice(z):
     """Of z ~ N(m, 1) given z > a; that it is below −a has a chance of less than 10⁻¹²."""
     a = 3.72
 
-    def excess(m: float) -> tuple[float, float]:
-        law = truncnorm(a - m, np.inf)
-        return float(law.mean()), float(law.var())
+    def centre(z: float) -> float:
+        return float(np.sqrt(z**2 - 1))
 
-    how, m = selected(z**2, 1, a**2), np.sqrt(z**2 - 1)
-    mean, variance = excess(m)
-    assert how.factor * z == pytest.approx(z - mean, rel=1e-6)
-    step = 1e-4
-    slope = (
-        2 * step - excess(np.sqrt((z + step) ** 2 - 1))[0] + excess(np.sqrt((z - step) ** 2 - 1))[0]
-    ) / (2 * step)
-    assert how.along == pytest.approx(slope**2 * variance, rel=1e-4)
+    def once(z: float) -> float:
+        return z - float(truncnorm(a - centre(z), np.inf).mean())
+
+    def twice(z: float) -> float:
+        law = truncnorm(a - centre(z), np.inf, loc=centre(z))
+        left = law.expect(once, lb=a, ub=a + 12) - centre(z)
+        return once(z) - float(left)
+
+    how, step = selected(z**2, 1, a**2), 1e-3
+    assert how.factor * z == pytest.approx(twice(z), rel=1e-5)
+    slope = (twice(z + step) - twice(z - step)) / (2 * step)
+    variance = float(truncnorm(a - centre(z), np.inf).var())
+    assert how.along == pytest.approx(slope**2 * variance, rel=1e-3)
 
 
 @pytest.mark.parametrize("degrees", [2, 3, 9])
 def test_of_several_parameters_it_is_the_mean_of_draws(degrees):
-    statistic = threshold(degrees) + 3
+    """The excess of draws, and what is left of it once the mean excess of each is subtracted."""
+    c = threshold(degrees)
+    statistic = c + 3
     snr = float(np.sqrt(statistic - degrees))  # as it is estimated from the statistic
     truth, found = named(degrees, snr, 400_000, seed=1)
-    excess = float(np.mean(found @ truth)) / snr - snr
-    how = selected(statistic, degrees, threshold(degrees))
-    assert (1 - how.factor) * np.sqrt(statistic) == pytest.approx(excess, abs=0.01)
+    squares, along = np.sum(found**2, axis=1), found @ truth / snr
+    centres = squares - degrees
+    more = 2 * ncx2.pdf(c, degrees + 2, centres) / ncx2.sf(c, degrees, centres)
+    left = along * (1 - more * np.sqrt(centres / squares)) - snr
+    excess = float(np.mean(along)) - snr + float(np.mean(left))
+    how = selected(statistic, degrees, c)
+    assert (1 - how.factor) * np.sqrt(statistic) == pytest.approx(excess, abs=0.02)
 
 
 @pytest.mark.parametrize("degrees", DEGREES)
 def test_far_above_the_threshold_it_is_least_squares(degrees):
-    how = selected(threshold(degrees) + 100, degrees, threshold(degrees))
-    assert (how.factor, how.along, how.across) == pytest.approx((1, 1, 1), abs=1e-6)
+    how = selected(threshold(degrees) + 150, degrees, threshold(degrees))
+    assert (how.factor, how.along, how.across) == pytest.approx((1, 1, 1), abs=1e-4)
     # Without a threshold nothing was selected.
     assert selected(30.0, degrees, 0.0).factor == 1.0 == selected(30.0, degrees, 0.0).along
 
 
 @pytest.mark.parametrize("degrees", DEGREES)
 def test_the_correction_grows_steadily_towards_the_threshold(degrees):
+    """Further above, the little that was subtracted too much there is given back."""
     c = threshold(degrees)
     factors = [selected(c + more, degrees, c).factor for more in np.linspace(0, 60, 61)]
-    assert (np.diff(factors) > 0).all() and 0.7 < factors[0] < 0.9 and factors[-1] > 0.999
+    short = np.array([factor for factor in factors if factor < 1])
+    assert (np.diff(short) > 0).all() and len(short) > 12
+    assert 0.6 < factors[0] < 0.8 and max(factors) < 1.01
 
 
 @pytest.mark.parametrize("snr", [5.0, 6.0, 8.0])
@@ -86,9 +99,9 @@ def test_what_is_named_is_as_large_as_it_is_said_to_be(degrees, snr):
         sizes.append(value @ truth / snr**2)
         inside += abs(value[0] - truth[0]) < 1.96 * np.sqrt(covariance[0, 0])
     plain = np.mean(found @ truth) / snr**2
-    # Where only half of the draws is named no estimate is without bias; it is half at most.
-    assert np.mean(sizes) == pytest.approx(1, abs=0.02 if len(found) > 2_800 else 0.07)
-    assert abs(np.mean(sizes) - 1) < 0.5 * (plain - 1) + 0.012
+    # Where only half of the draws is named no estimate is without bias; it is two fifths at most.
+    assert np.mean(sizes) == pytest.approx(1, abs=0.02 if len(found) > 2_800 else 0.05)
+    assert abs(np.mean(sizes) - 1) < 0.4 * (plain - 1) + 0.012
     # The least is that of a single parameter at SNR 6, where the correction ends.
     assert (0.91 if degrees == 1 else 0.93) < inside / len(found) < 0.97
 

@@ -8,11 +8,18 @@ folder; can be resumed.
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import resumable
 from hidden_plans import PLANS
 from walk_draws import KINDS, RATIOS, code, outcome
+from walk_guess import guesser
 from walk_page import write
+
+
+def guessed(plan: str, *draw: Any) -> dict[str, Any]:
+    """The outcome of a draw, and what would be said of it without knowing its size."""
+    return outcome(plan, *draw, guesser(plan).says)
 
 
 def main(draws: int, folder: Path) -> None:
@@ -26,7 +33,7 @@ def main(draws: int, folder: Path) -> None:
     ]
     resumable.with_all_stages()
     key = ("plan", "kind", "ratio", "number")
-    resumable.drawn(folder / "walks.jsonl", code(), key, outcome, jobs)
+    resumable.drawn(folder / "walks.jsonl", code(), key, guessed, jobs)
     sys.stdout.write(write(resumable.outcomes_of(folder / "walks.jsonl", code())))
 
 

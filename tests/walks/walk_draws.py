@@ -6,7 +6,7 @@ test that knows the sizes, and that nothing else is there; sign, axis and time i
 they are drawn. By Neyman and Pearson no test is right more often.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
@@ -60,7 +60,8 @@ def code() -> str:
     stages = (*chain.ORDER[: chain.ORDER.index("gyroscope") + 1], "criticism")
     files = {file for stage in stages for file in code_of(stage)}
     files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {chain.ROOT / "tests/walks/walk_draws.py", chain.ROOT / "tests/chain.py"}
+    files |= {chain.ROOT / f"tests/walks/walk_{name}.py" for name in ("draws", "guess")}
+    files |= {chain.ROOT / "tests/chain.py"}
     return hash_of(sorted([*files, *(chain.ROOT / "tests/hidden").glob("hidden_*.py")]))[:16]
 
 
@@ -236,8 +237,10 @@ def drawn(plan: str, truth: Hidden, random: np.random.Generator) -> Campaign:
     return added(campaign, every[column // 3], size * np.eye(3)[column % 3])
 
 
-def outcome(plan: str, kind: str, ratio: float, number: int) -> dict[str, Any]:
-    """Of a draw: what the stages say, and the log likelihood of each kind."""
+def outcome(
+    plan: str, kind: str, ratio: float, number: int, says: Callable[[Campaign], str] | None = None
+) -> dict[str, Any]:
+    """Of a draw: what the stages say, and the log likelihood of each kind; what `says` guesses."""
     made = {"plan": plan, "kind": kind, "ratio": ratio, "number": number, "code": code()}
     place = [list(PLANS).index(plan), KINDS.index(kind), int(ratio), number]
     random = np.random.default_rng([SEED, *place])
@@ -245,7 +248,8 @@ def outcome(plan: str, kind: str, ratio: float, number: int) -> dict[str, Any]:
     truth = hidden(known, kind, ratio, random)
     campaign = drawn(plan, truth, random)
     said = _said(selected(fitted(campaign, known), known.degrees), kind)
-    return made | said | {"likelihoods": limits(known, known.of(campaign), ratio)}
+    guess = {"guess": says(campaign)} if says else {}
+    return made | said | guess | {"likelihoods": limits(known, known.of(campaign), ratio)}
 
 
 # ---- What the stages say.
@@ -281,7 +285,8 @@ def selected(campaign: Campaign, degrees: float) -> Selection:
 def _said(selection: Selection, kind: str) -> dict[str, Any]:
     """Whether the law is in the class that is named, and no walk; or no name for a walk.
 
-    A walk may also be called a drift without a law.
+    A walk may also be called a drift without a law. `members`: of all that is named, or may be in
+    place of a walk.
     """
     own = [c for c in selection.named.causes if selection.sensor(c) == "gyro"]
     named = [c for c in own if c.verdict in CLEAR]
@@ -291,6 +296,10 @@ def _said(selection: Selection, kind: str) -> dict[str, Any]:
         "named": [c.effect for c in named],
         "uncertain": [c.effect for c in own if c.verdict not in CLEAR],
         "walk": walk,
+        "members": sorted(
+            {member for c in own for member in c.members}
+            | ({"gyro_random_walk", *selection.alternatives} if walk else set())
+        ),
         "right": (walk and not named) if kind in WALKS else (law and not walk),
     }
 

@@ -11,6 +11,7 @@ import jinja2
 import numpy as np
 from hidden_plans import PLANS
 from walk_draws import KINDS, LAWS, RATIOS, WALKS
+from walk_guess import SILENCE, WALK
 
 PAGE = chain.ROOT / "docs/walks.md"
 TEMPLATE = Path(__file__).parent / "walks.md.jinja"
@@ -60,7 +61,15 @@ def _pairs(outcomes: Sequence[Outcome]) -> Iterator[Row]:
             limit = float(np.mean([_preferred(*own), _preferred(*own[::-1])]))
             met = "yes" if right >= limit - MAX_BEHIND else "**no**"
             count = str(len(own[0]) + len(own[1]))
-            yield f"{ratio:.0f}", walk, law, count, f"{right:.2f}", f"{limit:.2f}", met
+            guess = float(np.mean([np.mean([guessed_right(one) for one in each]) for each in own]))
+            near = "yes" if right >= guess - MAX_BEHIND else "**no**"
+            figures = (f"{value:.2f}" for value in (right, limit))
+            yield f"{ratio:.0f}", walk, law, count, *figures, met, f"{guess:.2f}", near
+
+
+def guessed_right(one: Outcome) -> bool:
+    """Whether a walk is guessed to be one, and a law to be something else; silence is wrong."""
+    return one["guess"] != SILENCE and (one["guess"] == WALK) == (one["kind"] in WALKS)
 
 
 def _preferred(own: Sequence[Outcome], others: Sequence[Outcome]) -> float:
@@ -77,4 +86,7 @@ def _instead(outcomes: Sequence[Outcome]) -> Iterator[Row]:
         walk = str(sum(one["walk"] and not one["named"] for one in wrong))
         named = Counter(", ".join(one["named"]) for one in wrong if one["named"])
         told = "; ".join(f"{name} ({count})" for name, count in named.most_common())
-        yield f"{ratio:.0f}", kind, f"{len(own) - len(wrong)} of {len(own)}", silent, walk, told
+        true = "gyro_random_walk" if kind in WALKS else kind
+        held = str(sum(true in one["members"] for one in wrong))
+        share = f"{len(own) - len(wrong)} of {len(own)}"
+        yield f"{ratio:.0f}", kind, share, silent, walk, told, held
