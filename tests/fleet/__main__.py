@@ -31,7 +31,7 @@ from fleet_plans import FALSE_DISCOVERIES, SHAPES, code, fleet
 
 PAGE = chain.ROOT / "docs/fleet.md"
 TEMPLATE = Path(__file__).with_name("fleet.md.jinja")
-TRIALS, FLEETS, POPULATIONS, MEANS = 20, 1000, 400, 2000
+TRIALS, FLEETS, POPULATIONS, MEANS = 20, 1000, 400, 1000
 WANTED_POWER, WANTED_FALSE = 0.05, 0.05
 NORMAL = 1.96
 
