@@ -66,7 +66,8 @@
 #                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
 #                                 can be resumed; with DRAWS=100 so many of them
 #   make cluster-test             campaigns through a Slurm of two nodes on this machine, one of which dies;
-#                                 some minutes; it needs root, and Debian's slurm-wlm and munge
+#                                 some minutes; it needs root, and Debian's slurm-wlm and munge; with
+#                                 DRAWS=40 so many campaigns (docs/cluster.md)
 #   make scale                    what campaigns cost, many and long ones, in docs/scale.md; an hour
 #                                 on two cores, can be resumed; with DRAWS=5 so many small campaigns
 #   make docs                     docs/tables.md, docs/theory.md and the catalogues of messages, from the code
@@ -273,7 +274,7 @@ cluster-test: .venv/complete
 		"$${may[@]}" DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends \
 			slurm-wlm munge > /dev/null || true
 	fi
-	$(BIN)/python -m pytest --numprocesses=0 -m slow tests/cluster
+	CLUSTER_CAMPAIGNS=$(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",2) $(BIN)/python -m pytest --numprocesses=0 -m slow tests/cluster
 
 recordings: .venv/complete
 	PYTHONPATH=tests OPENBLAS_NUM_THREADS=1 $(BIN)/python -m recordings

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import chain
 import pyarrow.parquet as pq
@@ -25,6 +26,12 @@ WAITS = "Another run is at work here; this one waits for it."
 KILLS = 20
 ROOM, MORE_ROOM = "2200k", "200m"  # the logs have 1.7 MB, the tables up to the gyros 3 MB
 INDEX = [sys.executable, "-m", "turntable_calibration", "--cores", "1"]
+OTHER = 65534  # user and group; may read what the first one may, so that Python can be anywhere
+READ = "+dac_read_search"
+AS_OTHER = [
+    *("setpriv", f"--reuid={OTHER}", f"--regid={OTHER}", "--clear-groups"),
+    *(f"--inh-caps={READ}", f"--ambient-caps={READ}", f"--bounding-set=-all,{READ}"),
+]
 
 
 def run(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -38,10 +45,23 @@ def goals(campaign: str) -> list[str]:
     return [f"data/derived/{campaign}/{stage}/parameters.parquet" for stage in ESTIMATED]
 
 
-def index_of(folder: Path) -> subprocess.Popen[str]:
-    """The command that makes the page of all campaigns, of which there are none."""
-    command = [*INDEX, "--folder", str(folder), "index"]
-    return subprocess.Popen(command, cwd=chain.ROOT, stdout=subprocess.PIPE, text=True, bufsize=1)
+def index_of(folder: Path, *other: str, umask: int = 0o022) -> subprocess.Popen[str]:
+    """The command that makes the page of all campaigns, of which there are none.
+
+    `other`: what runs it as another user.
+    """
+    command = [*other, *INDEX, "--folder", str(folder), "index"]
+    home = {"HOME": str(folder), "PYTHONDONTWRITEBYTECODE": "1"} if other else {}
+    return subprocess.Popen(
+        command,
+        cwd=chain.ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT if other else None,
+        text=True,
+        bufsize=1,
+        umask=umask,
+        env=os.environ | home,
+    )
 
 
 def test_a_second_run_on_a_folder_waits_for_the_first(tmp_path: Path) -> None:
@@ -76,6 +96,47 @@ def test_a_killed_run_keeps_nobody_waiting_and_of_two_at_once_one_waits(tmp_path
     assert [each.returncode for each in both] == [0, 0]
     # Either makes its pages in two runs, so that each may have to wait for the other.
     assert any(WAITS in text for text in said)
+
+
+@pytest.fixture
+def for_two() -> Iterator[Path]:
+    """A folder of a group that has another user, too, below one that all may enter."""
+    if os.geteuid() != 0 or subprocess.run([*AS_OTHER, "true"], capture_output=True).returncode:
+        pytest.skip("needs leave to run as another user")
+    with TemporaryDirectory(dir="/var/tmp") as name:  # nobody may enter that of pytest
+        Path(name).chmod(0o755)
+        folder = Path(name) / "laboratory"
+        folder.mkdir()
+        os.chown(folder, -1, OTHER)
+        folder.chmod(0o2775)
+        yield folder
+
+
+@pytest.mark.slow
+def test_two_users_make_reports_in_a_folder_of_their_group(for_two: Path) -> None:
+    """At once, and each what the other made before."""
+    page = for_two / "reports/index.html"
+    both = [index_of(for_two, umask=0o002), index_of(for_two, *AS_OTHER, umask=0o002)]
+    said = [each.communicate(timeout=PATIENCE)[0] for each in both]
+    assert [each.returncode for each in both] == [0, 0], said
+    assert any(WAITS in text for text in said)
+    owners = set()
+    for other in (AS_OTHER, []):
+        page.unlink()
+        again = index_of(for_two, *other, umask=0o002)
+        assert again.wait(PATIENCE) == 0
+        owners.add(page.stat().st_uid)
+    assert owners == {0, OTHER}
+
+
+def test_a_folder_that_another_user_keeps_for_himself_is_refused(for_two: Path) -> None:
+    (for_two / LOCK).parent.mkdir(mode=0o755)
+    other = index_of(for_two, *AS_OTHER)
+    said, _ = other.communicate(timeout=PATIENCE)
+    assert other.returncode == 1
+    assert "belongs to another user" in said and "umask 002" in said
+    assert "Traceback" not in said
+    assert not (for_two / "reports").exists()
 
 
 def _children(pid: int) -> list[int]:

@@ -24,6 +24,7 @@ from inertial import tables
 from inertial.campaign.records import rows_of
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Table, Writer, provenance, write_once
+from stages.history import archive
 from stages.history.archive import Archive, file_name
 from stages.history.stage import STAGE
 
@@ -246,6 +247,20 @@ def test_the_condition_of_an_earlier_result_is_handed_on(tmp_path: Path) -> None
     run(tmp_path, bias=2e-5, campaign="autumn", date="2026-10-02")
     (row,) = rows_of(earlier(tmp_path, "autumn"))
     assert (row["verdict"], row["condition"]) == ("on_condition", wired)
+
+
+def test_each_file_of_the_archive_is_read_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number in range(4):
+        Archive(tmp_path, simulated=False).add(calibration(campaign=f"c{number}"))
+    read: list[Path] = []
+    row_of = archive._row
+    monkeypatch.setattr(archive, "_row", lambda path: read.append(path) or row_of(path))
+    kept = Archive(tmp_path, simulated=False)
+    kept.add(calibration(campaign="c9"))
+    assert len(kept.earlier(calibration(campaign="c9"))) == 4
+    assert len(read) == len(set(read)) == 5
 
 
 def test_another_verdict_is_another_calibration(tmp_path: Path) -> None:

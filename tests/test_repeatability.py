@@ -110,6 +110,23 @@ def test_a_jump_is_named_with_its_place_and_nothing_else_is():
     assert np.mean([one["right"] for one in large]) > 0.75
 
 
+def test_the_size_of_a_jump_is_that_of_regression_on_its_step():
+    """Where the sigmas alone explain all else: by weighted least squares, its place by the fit."""
+    generator = np.random.default_rng(5)
+    times, sigma = np.sort(generator.uniform(0, 9, 11)), np.exp(0.3 * generator.normal(size=11))
+    values = 0.5 * times + 0.1 * sigma * generator.normal(size=11) + 40 * (np.arange(11) > 6)
+    fits = []
+    for before in range(10):
+        design = np.column_stack([np.ones(11), times, np.arange(11) > before]) / sigma[:, None]
+        estimate, misfit, *_ = np.linalg.lstsq(design, values / sigma)
+        fits.append((float(misfit[0]), before, estimate[2], np.linalg.inv(design.T @ design)[2, 2]))
+    _misfit, before, size, variance = min(fits)
+    found = jump(History(values, sigma, times), generator)
+    assert (found.before, found.p_value < 1e-3) == (before, True) == (6, True)
+    assert found.size == pytest.approx(size, rel=1e-6)
+    assert found.sigma == pytest.approx(np.sqrt(variance), rel=1e-6)
+
+
 @pytest.mark.parametrize("days", [[1, 1, 1, 1, 1], [1, 1, 1, 2, 2]])
 def test_of_one_day_or_two_no_jump_is_told_from_a_drift(days):
     values = np.array([0.0, 0.3, -0.2, 9.0, 9.1])

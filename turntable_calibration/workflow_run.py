@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
+from typing import TextIO
 
 import click
 
@@ -24,11 +25,7 @@ def snakemake(folder: Path, cores: int, targets: Sequence[str], more: Sequence[s
     Snakefile. The kernel releases the lock when a run is killed; Snakemake's own would stay and
     stop the next run. What Snakemake started has it too.
     """
-    lock = folder / "Snakefile"
-    if not lock.exists():
-        lock = folder / LOCK
-        lock.parent.mkdir(parents=True, exist_ok=True)
-    with lock.open("a") as file:
+    with _lock_of(folder) as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
@@ -40,6 +37,22 @@ def snakemake(folder: Path, cores: int, targets: Sequence[str], more: Sequence[s
             *("--cores", str(cores), "--quiet", "host", "reason", *more, "--", *targets),
         ]
         return subprocess.run(command, pass_fds=[file.fileno()], check=False).returncode
+
+
+def _lock_of(folder: Path) -> TextIO:
+    """The file that a run locks, open; refused where another user keeps the folder for himself."""
+    lock = folder / "Snakefile"
+    try:
+        if not lock.exists():
+            lock = folder / LOCK
+            lock.parent.mkdir(parents=True, exist_ok=True)
+        return lock.open("a")
+    except PermissionError as error:
+        raise click.ClickException(
+            f"{error.filename} cannot be written: the folder belongs to another user.\n"
+            "Who shares it needs a group, with leave to write: chgrp -R <group> and chmod -R g+ws, "
+            "and umask 002 of each who runs it. Or copy its data/raw into a folder of your own."
+        ) from None
 
 
 def part_of(name: str) -> ModuleType:

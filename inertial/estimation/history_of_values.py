@@ -30,6 +30,7 @@ MIN_VALUES = 3  # calibrations, for a prediction
 MIN_FOR_JUMP = 5  # calibrations, for a jump
 MIN_TIMES = 3  # different ones, for a jump: of two a jump and a drift are one
 BISECTIONS = 60
+LEAST_WEIGHT = 1e-12  # of a point of the grid, of that of all
 BOOTSTRAP = 2000  # histories without a jump
 TAIL = 0.1  # of them, by whose excess the chance of a rarer one is extrapolated
 
@@ -89,6 +90,18 @@ class _Sizes:
     slope: Array
     prior: Array
 
+    @property
+    def days(self) -> Array:
+        """The different τ, which vary slowest."""
+        return np.unique(self.day)
+
+    @property
+    def without_days(self) -> "_Sizes":
+        """The points of one τ, without it."""
+        count = len(self.day) // len(self.days)
+        none = np.zeros(count)
+        return _Sizes(none, self.walk[:count], self.slope[:count], self.prior[:count])
+
     def covariance(self, one: Array, other: Array) -> Array:
         """Of walk and slope between times, (g, n, m)."""
         first, second = one[:, None], other[None, :]
@@ -122,42 +135,48 @@ def _weights(absent: float) -> Array:
 def predicted(
     history: History, times: Array, sigma: float, probability: float = 0.95
 ) -> Prediction:
-    """The next calibration at one of these times, (m,), its own sigma that of its noise."""
+    """The next calibration at one of these times, (m,), its own sigma that of its noise.
+
+    With the covariance A of all but the days, A = Q diag(λ) Qᵀ, that of the values is
+    Q diag(λ + τ²) Qᵀ: each walk and slope is solved once for all τ.
+    """
     sizes, n = _grid(history), len(history.values)
     x, y = history.design, history.values
     at = np.concatenate([history.times, times])
-    covariance = sizes.covariance(at, at)
     place = np.append(np.arange(n), np.full(len(times), n - 1))
     shared = np.zeros((n, 0)) if history.shared is None else history.shared
     own = np.diag(np.append(history.sigma**2, np.full(len(times), sigma**2)))
-    covariance = (
-        covariance
-        + own
-        + shared[place] @ shared[place].T
-        + sizes.day[:, None, None] ** 2 * np.eye(len(at))
-    )
-    inner, across = covariance[:, :n, :n], covariance[:, :n, n:]
-    solved = np.linalg.solve(inner, np.concatenate([np.broadcast_to(x, (len(inner), *x.shape)),
-        np.broadcast_to(y[:, None], (len(inner), n, 1)), across], axis=2))  # fmt: skip
-    p = x.shape[1]
-    by_x, by_y, by_across = solved[:, :, :p], solved[:, :, p], solved[:, :, p + 1 :]
-    information = x.T @ by_x
-    inverse = np.linalg.inv(information)
-    estimate = np.einsum("gij,gj->gi", inverse, by_y @ x)
-    residual = y - estimate @ x.T
-    misfit = np.einsum("gi,gi->g", residual, by_y - np.einsum("gip,gp->gi", by_x, estimate))
-    logarithm = np.linalg.slogdet(inner)[1] + np.linalg.slogdet(information)[1] + misfit
+    alike = sizes.without_days
+    covariance = alike.covariance(at, at) + own + shared[place] @ shared[place].T
+    values, vectors = np.linalg.eigh(covariance[:, :n, :n])
+    turned = vectors.transpose(0, 2, 1)
+    by_x, by_y, by_across = turned @ x, turned @ y, turned @ covariance[:, :n, n:]
+    alone = np.diagonal(covariance[:, n:, n:], axis1=1, axis2=2)
+    ahead = np.ones((x.shape[1], len(times)))  # after a jump, too
+    logarithms, means, variances = [], [], []
+    for day in sizes.days:
+        spectrum = values + day**2  # (g, n)
+        weighted = by_x / spectrum[..., None]
+        information = weighted.transpose(0, 2, 1) @ by_x
+        inverse = np.linalg.inv(information)
+        estimate = np.einsum("gpq,gnq,gn->gp", inverse, weighted, by_y, optimize=True)
+        residual = by_y - np.einsum("gnp,gp->gn", by_x, estimate)
+        misfit = np.sum(residual**2 / spectrum, axis=1)
+        logarithms.append(np.log(spectrum).sum(axis=1) + np.linalg.slogdet(information)[1] + misfit)
+        of_across = by_across / spectrum[..., None]
+        means.append(estimate @ ahead + np.einsum("gnm,gn->gm", of_across, residual))
+        open_part = ahead - by_x.transpose(0, 2, 1) @ of_across
+        variances.append(
+            alone
+            + day**2
+            - np.sum(by_across * of_across, axis=1)
+            + np.einsum("gpm,gpq,gqm->gm", open_part, inverse, open_part, optimize=True)
+        )
+    logarithm, mean, variance = map(np.concatenate, (logarithms, means, variances))
     weights = sizes.prior * np.exp(-(logarithm - logarithm.min()) / 2)
-    weights /= weights.sum()
-    ahead = np.ones((p, len(times)))  # after a jump, too
-    mean = estimate @ ahead + np.einsum("gim,gi->gm", by_across, residual)
-    open_part = ahead - np.einsum("ip,gim->gpm", x, by_across)
-    variance = (
-        np.diagonal(covariance[:, n:, n:], axis1=1, axis2=2)
-        - np.einsum("gim,gim->gm", across, by_across)
-        + np.einsum("gpm,gpq,gqm->gm", open_part, inverse, open_part)
-    )
-    spread = np.sqrt(variance)
+    shown = weights > LEAST_WEIGHT * weights.sum()
+    weights = weights[shown] / weights[shown].sum()
+    mean, spread = mean[shown], np.sqrt(variance[shown])
     tail = (1 - probability) / 2
     quantiles = [_quantile(q, weights, mean, spread) for q in (0.5, tail, 1 - tail)]
     return Prediction(*quantiles)
@@ -229,19 +248,21 @@ class _Steps:
             history.errors + day[:, None, None] ** 2 * np.eye(n)
         )
         self.plain = np.column_stack([np.ones(n), history.times - history.times.mean()])
-        place = np.arange(n)
-        self.designs = [self.plain] + [
-            np.column_stack([self.plain, place > before]) for before in range(n - 1)
-        ]
-        inverse = np.linalg.inv(self.covariance)
+        self.inverse = np.linalg.inv(self.covariance)
         self.logarithm = np.linalg.slogdet(self.covariance)[1]
-        self.projections = np.array([_projection(inverse, design) for design in self.designs])
+        self.projection = _projection(self.inverse, self.plain)
+        # By how much each step would be known beside what is there without one, (g, n - 1).
+        summed = np.cumsum(self.projection[:, ::-1, ::-1], axis=1).cumsum(axis=2)
+        self.known = np.diagonal(summed, axis1=1, axis2=2)[:, -2::-1]
+
+    def design(self, before: int) -> Array:
+        """With a step behind a calibration, (n, 3)."""
+        return np.column_stack([self.plain, np.arange(len(self.plain)) > before])
 
     def without_a_step(self, values: Array, generator: np.random.Generator) -> Array:
         """Histories as these values may be from if there is none, (d, n): sizes by their weight."""
-        inverse = np.linalg.inv(self.covariance)
-        information = self.plain.T @ inverse @ self.plain
-        misfit = np.einsum("n,gnm,m->g", values, self.projections[0], values)
+        information = self.plain.T @ self.inverse @ self.plain
+        misfit = np.einsum("n,gnm,m->g", values, self.projection, values)
         restricted = misfit + self.logarithm + np.linalg.slogdet(information)[1]
         weights = np.exp(-(restricted - restricted.min()) / 2)
         sizes = generator.choice(len(weights), size=BOOTSTRAP, p=weights / weights.sum())
@@ -249,10 +270,20 @@ class _Steps:
         normal = generator.normal(size=(BOOTSTRAP, len(values)))
         return np.asarray(np.einsum("dnm,dm->dn", factors[sizes], normal))
 
+    def misfits(self, values: Array) -> Array:
+        """Of draws (d, n) without a step and with one at each place, (g, d, n).
+
+        A step z takes (zᵀ P y)² / zᵀ P z off yᵀ P y; zᵀ P y is a sum of the last of P y.
+        """
+        projected = values @ self.projection  # (g, d, n)
+        plain = np.einsum("dn,gdn->gd", values, projected)
+        steps = projected[..., :0:-1].cumsum(axis=2)[..., ::-1]
+        stepped = plain[..., None] - steps**2 / self.known[:, None]
+        return np.asarray(np.concatenate([plain[..., None], stepped], axis=2))
+
     def deviances(self, values: Array) -> Array:
-        """Of draws (d, n) without a step and with one at each place, (d, n)."""
-        misfit = np.einsum("dn,sgnm,dm->dsg", values, self.projections, values, optimize=True)
-        return np.asarray((misfit + self.logarithm).min(axis=2))
+        """The smallest of any sizes, (d, n); values: (d, n)."""
+        return np.asarray((self.misfits(values) + self.logarithm[:, None, None]).min(axis=0))
 
 
 def _projection(inverse: Array, design: Array) -> Array:
@@ -289,8 +320,8 @@ def jump(
         p_value = TAIL * float(np.exp(-(drop - edge) / excess))
     else:
         p_value = float(np.mean(drops >= drop))
-    design = steps.designs[1 + before]
-    own = np.einsum("n,gnm,m->g", centred, steps.projections[1 + before], centred)
+    design = steps.design(before)
+    own = steps.misfits(centred[None])[:, 0, 1 + before]
     covariance = steps.covariance[int(np.argmin(own + steps.logarithm))]
     weighted = np.linalg.solve(covariance, design)
     inverse = np.linalg.inv(design.T @ weighted)

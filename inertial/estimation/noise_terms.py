@@ -29,6 +29,7 @@ from inertial.estimation.probability import chi2_isf, chi2_sf, t_isf, t_sf
 Booleans = NDArray[np.bool_]
 
 LEVEL = 0.01  # chance that a term that is absent is detected
+MIN_RISE = 1e-6  # of the deviance: less is rounding, whose root would be in the p-value
 CLASS_RISE = 6.0  # of the deviance: a drift in place of another, 20 times less likely
 DRIFTS = ("bias_instability", "random_walk", "ramp")
 INTERVAL = 0.05  # probability outside an interval
@@ -202,7 +203,7 @@ class _Selection:
         if not _places(names - {name}):
             return 0.0
         rise = self.fit(names - {name}).deviance - with_it.deviance
-        return float(chi2_sf(rise, 1)) / 2 if rise > 0 else 0.5
+        return float(chi2_sf(rise, 1)) / 2 if rise > MIN_RISE else 0.5
 
     def _classes(self, names: frozenset[str]) -> dict[str, tuple[str, ...]]:
         """Drifts of which another one in place of one is hardly less likely."""

@@ -10,7 +10,7 @@ together (Searle, Casella & McCulloch, Variance Components, 1992, chapter 7).
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -199,12 +199,23 @@ class Spread:
 
 @dataclass(frozen=True)
 class Population:
-    """A quantity of a type: mean with sigma, and its spreads; `tables`: the part of each table."""
+    """A quantity of a type: mean with sigma, and its spreads; `tables`: the part of each table.
+
+    `mean_degrees`: of freedom of `mean_sigma`, for Student's t; infinite without spreads, NaN
+    where their errors are not known.
+    """
 
     mean: float
     mean_sigma: float
+    mean_degrees: float
     spreads: tuple[Spread, ...]
     tables: Array
+
+    def with_known(self, sigma: float) -> "Population":
+        """With a further error of the mean, whose sigma is known."""
+        whole = float(np.hypot(self.mean_sigma, sigma))
+        degrees = self.mean_degrees * (whole / self.mean_sigma) ** 4
+        return replace(self, mean_sigma=whole, mean_degrees=degrees)
 
 
 def population(values: Array, sigma: Array, labels: Mapping[str, Sequence[str]]) -> Population:
@@ -235,7 +246,8 @@ def population(values: Array, sigma: Array, labels: Mapping[str, Sequence[str]])
     )
     sizes = np.where(np.exp(best.x) < MIN_SHOWN, -np.inf, best.x)
     solved = sharing.solved(with_mean(sizes))
-    sigmas = _sigmas(deviance, sizes)
+    errors = _relative_errors(deviance, sizes)
+    sigmas = np.exp(sizes / 2) * np.sqrt(np.diag(errors))
     root = float(np.sqrt(scale))
     spreads = tuple(
         Spread(names, int(sharing.of[first].max()) + 1, root * float(np.exp(size / 2)), root * s)
@@ -244,22 +256,24 @@ def population(values: Array, sigma: Array, labels: Mapping[str, Sequence[str]])
     return Population(
         float(np.median(values)) + root * float(solved.types[0, 0]),
         root * float(np.sqrt(solved.covariance[0, 0])),
+        _satterthwaite(lambda at: sharing.solved(with_mean(at)).covariance[0, 0], sizes, errors),
         spreads,
         root * solved.tables[:, 0],
     )
 
 
-def _sigmas(deviance: Callable[[Array], float], sizes: Array) -> Array:
-    """Sigmas of the standard deviations by the curvature of the likelihood, NaN of those at 0."""
+def _relative_errors(deviance: Callable[[Array], float], sizes: Array) -> Array:
+    """Covariance of the logarithms of the standard deviations by the curvature of the likelihood.
+
+    `sizes`: logarithms of the variances, (l,); NaN in the rows of those at 0, or without a maximum.
+    """
     shown = np.flatnonzero(np.isfinite(sizes))
-    sigmas = np.full(len(sizes), np.nan)
+    errors = np.full((len(sizes), len(sizes)), np.nan)
+    unit = np.eye(len(sizes))[shown]
 
     def at(steps: Array) -> float:
-        changed = sizes.copy()
-        changed[shown] = changed[shown] + 2 * np.log1p(STEP * steps)
-        return deviance(changed)
+        return deviance(_stepped(sizes, steps))
 
-    unit = np.eye(len(shown))
     curvature = (
         np.array(
             [[at(i + j) + at(-i - j) - at(i - j) - at(j - i) for j in unit] for i in unit]
@@ -267,6 +281,25 @@ def _sigmas(deviance: Callable[[Array], float], sizes: Array) -> Array:
         / (2 * STEP) ** 2
     )
     if len(shown) and np.all(np.linalg.eigvalsh(curvature) > 0):
-        relative = np.sqrt(2 * np.diag(np.linalg.inv(curvature)))
-        sigmas[shown] = np.exp(sizes[shown] / 2) * relative
-    return sigmas
+        errors[np.ix_(shown, shown)] = 2 * np.linalg.inv(curvature)
+    return errors
+
+
+def _stepped(sizes: Array, steps: Array) -> Array:
+    """Logarithms of variances after so many steps of the standard deviations."""
+    return np.asarray(sizes + 2 * np.log1p(STEP * steps))
+
+
+def _satterthwaite(variance: Callable[[Array], float], sizes: Array, errors: Array) -> float:
+    """Degrees of freedom of a variance that is a function of estimated ones: 2 φ² / var(φ).
+
+    With var(φ) = gᵀ A g of the derivatives g and the covariance A of the estimates (Giesbrecht &
+    Burns 1985, Biometrics 41, 477; Fai & Cornelius 1996, J. Statist. Comput. Simul. 54, 363).
+    """
+    shown = np.flatnonzero(np.isfinite(sizes))
+    unit = np.eye(len(sizes))[shown]
+    derivative = np.array(
+        [variance(_stepped(sizes, i)) - variance(_stepped(sizes, -i)) for i in unit]
+    ) / (2 * STEP)
+    of_variance = float(derivative @ errors[np.ix_(shown, shown)] @ derivative)
+    return 2 * variance(sizes) ** 2 / of_variance if of_variance else np.inf

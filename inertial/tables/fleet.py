@@ -86,13 +86,22 @@ FLEET = {
         ),
         Table(
             "population",
-            1,
+            2,
             (
                 *PARAMETER,
                 Column("imus", INTEGER, "1", "IMUs with a value, without outliers"),
                 Column("unit", TEXT, "", "unit of the values, SI"),
                 Column("mean", DOUBLE, "as unit", "of the type"),
                 Column("mean_sigma", DOUBLE, "as unit", "its standard deviation"),
+                Column(
+                    "mean_degrees",
+                    DOUBLE,
+                    "1",
+                    "degrees of freedom of mean_sigma, for Student's t, by Satterthwaite; none: the"
+                    " differences are no larger than the sigmas, or how well they are known is not"
+                    " determined",
+                    nullable=True,
+                ),
                 Column(
                     "prior_sigma",
                     DOUBLE,

@@ -254,10 +254,11 @@ def _populations(rows: Rows) -> outline.Section:
         _("The population of each type"),
         _("Mean and spread of the parameters, correlations, and IMUs that differ from the others."),
         _(
-            "A new IMU of the type is expected at mean ± σ of a new IMU, with so many degrees of "
-            "freedom. Spreads are of largest restricted likelihood; 0: the σ of the campaigns "
-            "explains all differences. Outliers are in no number. An error of gravity is one of "
-            "all campaigns that take the same value as known, and is in σ of the mean alone."
+            "A new IMU of the type is expected at mean ± σ of a new IMU. Behind either σ are its "
+            "degrees of freedom, for Student's t. Spreads are of largest restricted likelihood; "
+            "0: the σ of the campaigns explains all differences. Outliers are in no number. An "
+            "error of gravity is one of all campaigns that take the same value as known, and is in "
+            "σ of the mean alone."
         ),
         parts,
     )
@@ -274,6 +275,7 @@ def _parameters(sensor: str, rows: Sequence[Row], spreads: Sequence[Row]) -> out
             outline.table_row(
                 symbol(row["parameter"]),
                 *_both(unit.of(row["mean"]), unit.of(row["mean_sigma"])),
+                numbers.significant(row["mean_degrees"], 2),
                 *cells,
                 numbers.significant(unit.of(row["prior_sigma"]), 3),
                 numbers.significant(row["prior_degrees"], 2),
@@ -286,6 +288,7 @@ def _parameters(sensor: str, rows: Sequence[Row], spreads: Sequence[Row]) -> out
         (
             outline.Column("", "symbol"),
             *outline.value_and_sigma(_("mean")),
+            outline.Column(_("degrees"), "number"),
             *(
                 column
                 for levels in columns

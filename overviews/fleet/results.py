@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from math import atanh, sqrt
 from typing import Any
 
@@ -158,13 +157,14 @@ def _population(members: Sequence[Member], level: float) -> Iterator[tuple[str, 
     ):
         if one is None:
             continue
-        of = replace(one, mean_sigma=float(np.hypot(one.mean_sigma, common)))
+        of = one.with_known(common)
         unit = UNITS[place[0]] if place[1].startswith("bias") else "1"
         imus = {m.imu for m, value in zip(kept, values, strict=True) if np.isfinite(value)}
         row = _place(kind, place) | {"imus": len(imus), "unit": unit}
         row |= {"mean": of.mean, "mean_sigma": of.mean_sigma}
         sigma, degrees = of_new_imu(of) or (None, np.inf)
-        row |= {"prior_sigma": sigma, "prior_degrees": degrees if np.isfinite(degrees) else None}
+        row |= {"mean_degrees": _finite(of.mean_degrees)}
+        row |= {"prior_sigma": sigma, "prior_degrees": _finite(degrees)}
         yield "population", row
         for spread in of.spreads:
             row = _place(kind, place) | {"levels": _levels(spread.levels), "unit": unit}
@@ -180,6 +180,10 @@ def _population(members: Sequence[Member], level: float) -> Iterator[tuple[str, 
                 "correlations",
                 row | {"p_value": normal_p_value(atanh(r) * sqrt(found.imus - OF_FISHER_Z))},
             )
+
+
+def _finite(degrees: float) -> float | None:
+    return degrees if np.isfinite(degrees) else None
 
 
 def _levels(levels: Sequence[str]) -> str:

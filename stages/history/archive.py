@@ -48,6 +48,7 @@ class Archive:
     def __init__(self, root: Path, *, simulated: bool) -> None:
         self.root = root
         self._base = root / SIMULATED if simulated else root
+        self._read: dict[Path, Entry] = {}  # a file never changes
 
     def add(self, calibration: Row) -> Entry:
         """Add a calibration, unless a current one has the same content.
@@ -115,11 +116,13 @@ class Archive:
         return [self._entry(path) for path in sorted(paths) if path.is_file()]
 
     def _entry(self, path: Path) -> Entry:
-        try:
-            row = _row(path)
-        except Refusal as refusal:
-            raise replace(refusal, cure="move this file out of the archive") from None
-        return Entry(path.relative_to(self.root).as_posix(), row)
+        if path not in self._read:
+            try:
+                row = _row(path)
+            except Refusal as refusal:
+                raise replace(refusal, cure="move this file out of the archive") from None
+            self._read[path] = Entry(path.relative_to(self.root).as_posix(), row)
+        return self._read[path]
 
 
 def results(entry: Entry) -> list[Row]:

@@ -29,7 +29,10 @@ MEASURED = ("s", "cpu_time", "max_rss")  # s, s, MB: columns of Snakemake's benc
 
 @dataclass(frozen=True)
 class Outcome:
-    """What happened: seconds, jobs begun again, jobs ended for their memory, differing tables."""
+    """What happened: seconds, jobs begun again, jobs ended for their memory, differing tables.
+
+    `restarts`: of a controller of Slurm that ended by itself.
+    """
 
     campaigns: int
     exit_codes: tuple[int, ...]
@@ -37,6 +40,7 @@ class Outcome:
     lost_processes: int
     requeued: int
     over_memory: int
+    restarts: int
     again: str  # what a further run finds to do
     different: tuple[str, ...]
     share: float  # of the processor time of the run without Slurm, that of the stages
@@ -69,16 +73,17 @@ def through_slurm(
         until = start + patience
         runs = [_submitting(slurm, folder / "many", "--", *wanted)]
         try:
-            _wait(lambda: _at_work(slurm, folder / "many"), until, runs)
+            _wait(lambda: _at_work(slurm, folder / "many"), until, slurm)
             lost = slurm.kill(DYING)
             small = [f"{stage}:mem_mb=attempt * attempt * {SMALL_MB}" for stage in ORDER]
             runs += [_submitting(slurm, folder / "one", "--set-resources", *small, "--", *greedy)]
-            _wait(lambda: slurm.states()[DYING].startswith("down"), until, runs)
+            _wait(lambda: slurm.states().get(DYING, "").startswith("down"), until, slurm)
             slurm.start_node(DYING)
             for job in slurm.asked("squeue", "--noheader", "--format=%i %r").splitlines():
                 if job.endswith("BeginTime"):  # begun again, which Slurm holds for two minutes
                     slurm.asked("scontrol", "update", f"JobId={job.split()[0]}", "StartTime=now")
-            codes = tuple(run.wait(timeout=max(1.0, until - time.monotonic())) for run in runs)
+            _wait(lambda: all(run.poll() is not None for run in runs), until, slurm)
+            codes = tuple(run.wait() for run in runs)
         finally:
             for run in runs:
                 run.kill()
@@ -95,6 +100,7 @@ def through_slurm(
         lost,
         len(set(re.findall(rf"requeue job JobId=(\d+) due to failure of node {DYING}", log))),
         sum("exceeded memory limit" in path.read_text("utf-8", "replace") for path in logs),
+        slurm.restarts,
         again.stdout + again.stderr,
         tuple(_different(folder)),
         share,
@@ -131,10 +137,11 @@ def _at_work(slurm: Slurm, folder: Path) -> bool:
     return any(begun) and bool(slurm.jobs_on(DYING))
 
 
-def _wait(done: Callable[[], bool], until: float, runs: Sequence[subprocess.Popen[bytes]]) -> None:
+def _wait(done: Callable[[], bool], until: float, slurm: Slurm) -> None:
     while not done():
-        if time.monotonic() > until or all(run.poll() is not None for run in runs):
+        if time.monotonic() > until:
             raise TimeoutError("what was waited for on the cluster did not happen")
+        slurm.revive()
         time.sleep(EVERY)
 
 

@@ -20,6 +20,7 @@ import psutil
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue", "scancel", "sinfo")
 NODES = ("n1", "n2")
 PATIENCE = 60.0  # s, until the nodes are ready
+CONTROLLER = ("slurmctld", "-D", "-i")
 
 CONFIGURATION = """\
 ClusterName=test
@@ -70,6 +71,7 @@ class Slurm:
     def __init__(self, folder: Path, cpus: int = 1, memory_mb: int = 4000) -> None:
         self.folder = folder
         self._daemons: dict[str, subprocess.Popen[bytes]] = {}  # by node, or by program
+        self.restarts = 0  # of a controller that ended by itself
         controller, first, *ports = _free_ports(2 + len(NODES))
         nodes = [
             f"NodeName={name} NodeHostname={socket.gethostname()} NodeAddr=127.0.0.1"
@@ -109,7 +111,7 @@ class Slurm:
             paths = [f"--{name}={self.folder}/munge.{end}" for name, end in files.items()]
             log = f"--log-file={self.folder}/munge.log"
             self._start("munged", "--foreground", "--force", *paths, log)
-            self._start("slurmctld", "-D", "-i")
+            self._start(*CONTROLLER)
             for node in NODES:
                 self.start_node(node)
             self._wait()
@@ -129,6 +131,23 @@ class Slurm:
     def start_node(self, node: str) -> None:
         """Start a node, or one again that was killed."""
         self._start("slurmd", "-D", "-N", node)
+
+    def revive(self) -> None:
+        """Start the controller again if it crashed, and do what is then left to an administrator.
+
+        That of version 22.05.8 sometimes crashes when it begins a job of a dead node again. What it
+        did last it may have forgotten: then it drains the node and holds the job that is there.
+        """
+        if self._daemons[CONTROLLER[0]].poll() is not None:
+            self._start(*CONTROLLER)
+            self.restarts += 1
+        if self.restarts:
+            for node, state in self.states().items():
+                if state.startswith("drain"):
+                    self.asked("scontrol", "update", f"NodeName={node}", "State=RESUME")
+            for job in self.asked("squeue", "--noheader", "--format=%i %r").splitlines():
+                if job.endswith("held"):
+                    self.asked("scontrol", "release", job.split()[0])
 
     def kill(self, node: str) -> int:
         """End a node and all that runs on it at once; the number of processes."""

@@ -13,20 +13,32 @@ import chain
 import jinja2
 import numpy as np
 import resumable
-from fleet_draws import LEVELS, MAIN, RATIOS, SPREAD, drawn_population, mixed, single
+from fleet_draws import (
+    IMUS,
+    LEVELS,
+    MAIN,
+    MEAN_SPREADS,
+    MEAN_TABLES,
+    RATIOS,
+    SPREAD,
+    TOGETHER,
+    drawn_means,
+    drawn_population,
+    mixed,
+    single,
+)
 from fleet_plans import FALSE_DISCOVERIES, SHAPES, code, fleet
-from scipy import stats
 
 PAGE = chain.ROOT / "docs/fleet.md"
 TEMPLATE = Path(__file__).with_name("fleet.md.jinja")
-TRIALS, FLEETS, POPULATIONS = 20, 1000, 400
+TRIALS, FLEETS, POPULATIONS, MEANS = 20, 1000, 400, 1000
 WANTED_POWER, WANTED_FALSE = 0.05, 0.05
 NORMAL = 1.96
 
 Outcomes = Sequence[resumable.Outcome]
 
 
-def page(singles: Outcomes, mixes: Outcomes, populations: Outcomes) -> str:
+def page(singles: Outcomes, mixes: Outcomes, populations: Outcomes, means: Outcomes) -> str:
     """All figures."""
     first = [one for one in singles if one["ratio"] == RATIOS[0]]
     figures = {
@@ -48,6 +60,8 @@ def page(singles: Outcomes, mixes: Outcomes, populations: Outcomes) -> str:
         "by_shape": [_of_shape(name, [m for m in mixes if m["shape"] == name]) for name in SHAPES],
         "populations": len(populations),
         "cover": [_cover(n, [p for p in populations if p["tables"] == n]) for n in (2, 5)],
+        "means": [_means(n, spread, means) for n in MEAN_TABLES for spread in MEAN_SPREADS],
+        "degrees": IMUS - 1,
         "outliers": _outliers(populations),
     }
     template = jinja2.Template(TEMPLATE.read_text(encoding="utf-8"), keep_trailing_newline=True)
@@ -100,13 +114,24 @@ def _of_shape(name: str, mixes: Outcomes) -> tuple[str, ...]:
 
 
 def _cover(tables: int, own: Outcomes) -> tuple[str, ...]:
-    """How often 95 % intervals hold the truth: mean, spread, a new IMU; the correlation."""
-    means = np.array([abs(one["mean"]) < stats.t.isf(0.025, 19) for one in own])
+    """How often 95 % intervals hold the truth: spread, a new IMU; the correlation."""
     spreads = np.array([abs(one["spread"] - SPREAD) < NORMAL * one["spread_sigma"] for one in own])
     new = np.array([one["new_inside"] for one in own])
     correlation = np.array([one["correlation"] for one in own])
-    rates = (f"{100 * each.mean():.1f}" for each in (means, spreads, new))
+    rates = (f"{100 * each.mean():.1f}" for each in (spreads, new))
     return str(tables), str(len(own)), *rates, f"{correlation.mean():.2f} ± {correlation.std():.2f}"
+
+
+def _means(tables: int, spread: float, means: Outcomes) -> tuple[str, ...]:
+    """How often 95 % intervals hold the mean, %, with its standard error."""
+    own = [one for one in means if (one["tables"], one["spread"]) == (tables, spread)]
+    count = max(TOGETHER * len(own), 1)
+    share, by_imus = (sum(one[key] for one in own) / count for key in ("held", "by_imus"))
+    error = np.sqrt(share * (1 - share) / count)
+    return (
+        *(str(tables), f"{spread / SPREAD:.2f}", str(count)),
+        *(f"{100 * share:.1f} ± {100 * error:.1f}", f"{100 * by_imus:.1f}"),
+    )
 
 
 def _outliers(populations: Outcomes) -> dict[str, str]:
@@ -143,7 +168,15 @@ def main(folder: Path, most: int) -> None:
         )
         for name, outcome, count in numbered
     )
-    PAGE.write_text(page(singles, mixes, populations), encoding="utf-8")
+    batches = range(-(-min(MEANS, most) // TOGETHER))
+    means = resumable.drawn(
+        folder / "means.jsonl",
+        code(),
+        ("tables", "spread", "number"),
+        drawn_means,
+        [(n, spread, b) for n in MEAN_TABLES for spread in MEAN_SPREADS for b in batches],
+    )
+    PAGE.write_text(page(singles, mixes, populations, means), encoding="utf-8")
 
 
 if __name__ == "__main__":

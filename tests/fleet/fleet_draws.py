@@ -9,12 +9,15 @@ from typing import Any
 
 import numpy as np
 from fleet_plans import FALSE_DISCOVERIES, SEED, SHAPES, Array, code, fleet
+from numpy.typing import NDArray
 from scipy import stats
 
 from inertial.estimation.sharing import population
 from inertial.estimation.type_population import Campaigns, of_new_imu, type_population
 from inertial.model_selection.fleet_evidence import FleetEvidence
 from inertial.model_selection.fleet_search import Finding, FleetSearch
+
+Integers = NDArray[np.int64]
 
 LEVELS = ("type", "table", "imu")
 RATIOS = (6.0, 8.0, 12.0, 20.0)
@@ -131,14 +134,16 @@ def mixed(number: int) -> dict[str, Any]:
 IMUS, EACH, TABLES = 20, 2, (2, 5)  # tables of even and odd pairs of draws
 SPREAD, TABLE_SPREAD, CAMPAIGN_SPREAD, SIGMA, MEAN = 3.0, 1.0, 0.5, 0.7, 10.0
 CORRELATION = 0.8
+MEAN_TABLES, MEAN_SPREADS = (1, 2, 5), (1.0, 3.0)  # tables; their spread
+TOGETHER = 100  # populations of one job
+RARE = 0.05  # share of intervals that are to miss
 
 
 def drawn_population(number: int) -> dict[str, Any]:
     """A population of three parameters, two of them correlated; the last IMU may be an outlier."""
     random = np.random.default_rng([SEED + 2, number])
-    imu = np.repeat(np.arange(IMUS), EACH)
     tables = TABLES[number // 2 % 2]
-    table = (imu + np.tile(np.arange(EACH), IMUS)) % tables
+    imu, table, labels = _campaigns(tables)
     between = SPREAD**2 * np.array([[1, CORRELATION, 0], [CORRELATION, 1, 0], [0, 0, 1]])
     of_imus = random.multivariate_normal(np.zeros(3), between, IMUS + 1)
     of_tables = TABLE_SPREAD * random.normal(size=(tables, 3))
@@ -147,12 +152,6 @@ def drawn_population(number: int) -> dict[str, Any]:
     odd = bool(number % 2)
     if odd:
         values[imu == IMUS - 1, 0] += OUTLIER_SIGMAS * SPREAD
-    labels = {
-        "type": ["type"] * len(imu),
-        "table": [str(t) for t in table],
-        "imu": [str(i) for i in imu],
-        "campaign": [str(n) for n in range(len(imu))],
-    }
     covariance = np.tile(SIGMA**2 * np.eye(3), (len(imu), 1, 1))
     found = type_population(Campaigns(values, covariance, labels), 0.01)
     clean = population(values[:, 2], np.full(len(imu), SIGMA), labels)
@@ -164,10 +163,45 @@ def drawn_population(number: int) -> dict[str, Any]:
         "code": code(),
         "odd": odd,
         "tables": tables,
-        "mean": float((clean.mean - MEAN) / clean.mean_sigma),
         "spread": by_imu.value,
         "spread_sigma": by_imu.sigma,
         "new_inside": bool(abs(new - clean.mean) < sigma * stats.t.isf(0.025, degrees)),
         "correlation": float(found.correlation[0, 1]),
         "outliers": sorted({one.imu for one in found.outliers}),
     }
+
+
+def drawn_means(tables: int, spread: float, number: int) -> dict[str, Any]:
+    """How many intervals of 95 % hold the mean of a parameter, of `TOGETHER` populations.
+
+    `held`: by the degrees of freedom that are stated; `by_imus`: by those of the IMUs alone. With
+    one table its part is in the mean: nothing tells them apart.
+    """
+    random = np.random.default_rng([SEED + 3, tables, int(spread), number])
+    imu, table, labels = _campaigns(tables)
+    told = {"tables": tables, "spread": spread, "number": number, "code": code()}
+    counts = dict.fromkeys(("held", "by_imus"), 0)
+    for _ in range(TOGETHER):
+        of_tables = spread * random.normal(size=tables)
+        values = MEAN + SPREAD * random.normal(size=IMUS)[imu] + of_tables[table]
+        values += np.hypot(CAMPAIGN_SPREAD, SIGMA) * random.normal(size=len(imu))
+        truth = MEAN + (of_tables[0] if tables == 1 else 0.0)
+        found = population(values, np.full(len(imu), SIGMA), labels)
+        chance = 2 * stats.t.sf(abs(found.mean - truth) / found.mean_sigma, found.mean_degrees)
+        counts["held"] += int(chance > RARE)
+        chance = 2 * stats.t.sf(abs(found.mean - truth) / found.mean_sigma, IMUS - 1)
+        counts["by_imus"] += int(chance > RARE)
+    return told | counts
+
+
+def _campaigns(tables: int) -> tuple[Integers, Integers, dict[str, list[str]]]:
+    """IMU and table of each campaign, (c,), and the labels: each IMU comes to `EACH` tables."""
+    imu = np.repeat(np.arange(IMUS), EACH)
+    table = (imu + np.tile(np.arange(EACH), IMUS)) % tables
+    labels = {
+        "type": ["type"] * len(imu),
+        "table": [str(t) for t in table],
+        "imu": [str(i) for i in imu],
+        "campaign": [str(n) for n in range(len(imu))],
+    }
+    return imu, table, labels

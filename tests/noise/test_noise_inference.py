@@ -1,5 +1,7 @@
 """Sigmas, limits and chances beside closed forms, where there are some."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from noise_draws import INTERVAL
@@ -70,6 +72,16 @@ def test_the_chance_of_a_term_that_is_absent():
         below = int(np.sum(np.array(found) < level))
         assert binom.ppf(0.002, count, level) <= below <= binom.ppf(0.998, count, level)
     assert np.mean(np.array(found) > 0.49) == pytest.approx(0.5, abs=0.15)
+
+
+@pytest.mark.parametrize("rise", [-4e-12, 0.0, 4e-12])
+def test_rounding_of_the_deviance_is_in_no_chance(rise):
+    """The order of a sum of many readings depends on where they lie in memory."""
+    names = WHITE | {"quantisation"}
+    chosen = selection(np.random.default_rng(5).standard_normal(1024))
+    without = chosen.fit(WHITE)
+    chosen._fits[names, True] = replace(without, deviance=without.deviance - rise)
+    assert chosen.p_value(names, "quantisation") == 0.5
 
 
 def test_the_deviance_falls_to_a_minimum_where_its_gradient_vanishes():
