@@ -8,8 +8,8 @@ from scipy.stats import chi2
 
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
-from inertial.campaign.scatter_of_positions import likely_walk, walk_range
-from inertial.estimation.variance_components import most_likely, sigma_of
+from inertial.campaign.scatter_of_positions import likely_walk
+from inertial.estimation.variance_components import sigma_of
 from inertial.model_selection.walk_odds import Equations, walk
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
@@ -30,15 +30,6 @@ def likely_random_walks(campaign: Campaign, effects: Sequence[Effect]) -> tuple[
 def likely_random_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
     """The most likely random walk of one sensor; 0 where none is significant."""
     return likely_walk(campaign, sensor, effects, PRIOR_SIZE)
-
-
-def size_of_walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
-    """The most likely random walk of all axes of a sensor, however significant; 0: it has none."""
-    search = walk_range(campaign, sensor)
-    if search is None:
-        return 0.0
-    deviance = campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE)
-    return most_likely(deviance, search.bounds, np.inf)[0]
 
 
 @dataclass(frozen=True)

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
+from inertial.campaign.records import Manoeuvre
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.periodic_in_angle import Orders, Ripple, detection_limit, search
 from inertial.estimation.periodic_in_time import Taken, line_at, phasor, without_line
-from inertial.tables import AXES, GYRO
+from inertial.tables import ACCEL, AXES, GYRO
 from stages.criticism.oscillation_fits import (
     Coupled,
     Detection,
@@ -372,14 +373,17 @@ def _without(turn: SteadyTurn, frequency: float) -> tuple[SteadyTurn, Taken]:
 
 
 def without_lines(
-    blocks: pd.DataFrame, turns: Sequence[SteadyTurn], lines: Sequence[Oscillation]
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    turns: Sequence[SteadyTurn],
+    lines: Sequence[Oscillation],
 ) -> pd.DataFrame:
     """The same blocks, each line removed from the steady ones with its own phase in each turn.
 
     From rest to rest an oscillation adds no angle. A ripple of the table does where its order is no
     integer, or the turn no whole one, which is removed too where one ripple against the angle
     explains all turns. What else it adds in the steady part is removed while the table accelerates
-    and decelerates.
+    and decelerates. In the rests of a tumble such a ripple is an error of the position.
     """
     if not lines:
         return blocks
@@ -388,18 +392,26 @@ def without_lines(
         own = (blocks["manoeuvre"] == turn.name) & (blocks["phase"] == "steady")
         if own.any() and np.isfinite(turn.start):
             rates = _mean_rates(turn, lines, *_stretches(blocks[own], turn))
-            further = _further(turn, lines) / float(blocks.loc[own, "seconds"].sum()) * turn.about
+            further = (
+                _further(lines, turn.stated) / float(blocks.loc[own, "seconds"].sum()) * turn.about
+            )
             quiet.loc[own, GYRO] -= (rates[:-1] - rates[-1] + further) @ turn.matrix.T
+    for rest in plan:
+        own = blocks["manoeuvre"] == rest.name
+        if rest.tumbled is not None and rest.tumbled.any() and own.any():
+            turned = float(np.linalg.norm(rest.tumbled))
+            further = _further(lines, turned) * rest.tumbled / turned
+            quiet.loc[own, ACCEL] += np.cross(further, blocks.loc[own, ACCEL])
     return quiet
 
 
-def _further(turn: SteadyTurn, lines: Sequence[Oscillation]) -> float:
-    """By how much the table turns further than stated, for its ripples, rad."""
+def _further(lines: Sequence[Oscillation], stated: float) -> float:
+    """By how much the table turns further than a stated angle, for its ripples, rad."""
     further = 0.0
     for line in (part for cause in lines for part in cause.parts):
         ripple = line.likeliest.ripple
         if ripple and line.likeliest.effect != IN_TIME and ripple.common:
-            turned = ripple.order * turn.stated
+            turned = ripple.order * stated
             further += float(ripple.values @ [np.sin(turned), np.cos(turned) - 1.0])
     return further if np.isfinite(further) else 0.0
 
@@ -454,7 +466,7 @@ def shifts(
     largest = []
     for one in oscillations:
         others = [other for other in oscillations if other is not one]
-        blocks = without_lines(data.blocks, turns, others)
+        blocks = without_lines(data.blocks, data.plan, turns, others)
         present = _estimate(campaign_of(replace(data, blocks=blocks)))
         largest.append(None if present is None else _largest(without, present))
     return largest

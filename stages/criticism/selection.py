@@ -32,7 +32,6 @@ from stages.criticism.bias_drift import (
     likely_random_walk,
     likely_random_walks,
     per_log_name,
-    size_of_walk,
     walk_evidence,
 )
 
@@ -307,16 +306,10 @@ def _with_rivals(selection: Selection) -> Selection:
 def _replacing_walk(selection: Selection, number: int) -> float:
     """The most likely random walk of a sensor in place of effects that it explains as well.
 
-    These may be one of the named effects of the sensor or all of them; 0: none. Where none is named
-    the walk may be that of one axis, which all three together do not show.
+    These may be one of the named effects of the sensor or all of them; 0: none.
     """
     sensor = SENSORS[number]
     own = [c.effect for c in selection.named.causes if selection.sensor(c) == sensor]
-    if not own and selection.campaign.by_hand is None and sensor in selection.evidence.labels:
-        start = selection.equations_without([])
-        if walk_odds.walk(start, selection.half_waves(sensor)).log_evidence < MAX_LOG_ODDS:
-            return 0.0
-        return size_of_walk(selection.campaign, sensor, selection.effects)
     for replaced in [[effect] for effect in own] + [own] * (len(own) > 1):
         start = selection.equations_without(replaced)
         walking = walk_odds.walk(start, selection.half_waves(sensor)).log_evidence

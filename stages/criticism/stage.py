@@ -72,7 +72,7 @@ def _of_mount(
     mount, degrees = data.mount, data.noise.degrees
     turns = steady_turns(data, simulated)
     spectrum = find_oscillations(turns, level * SPECTRUM_SHARE, lowest_hz)
-    quiet = without_lines(data.blocks, turns, spectrum.oscillations)
+    quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
     # A jump or a warm-up within a stretch looks like a random walk there. So effects are weighed
     # against a random walk between stretches that is estimated beside them, see `select_effects`.
     measured = campaign_of(replace(data, blocks=quiet))
