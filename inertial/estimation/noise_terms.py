@@ -35,6 +35,7 @@ DRIFTS = ("bias_instability", "random_walk", "ramp")
 INTERVAL = 0.05  # probability outside an interval
 LIMIT = 0.05  # probability above an upper limit
 LINE_LEVEL = 1e-3  # chance of any line in a channel
+ROUNDING = 1e-20  # of the largest power density, that a channel has which stands still
 NEIGHBOURS = 16  # bins on each side of a line that it is compared with
 LINE_ROUNDS = 3
 MAX_LEAKED = 0.1  # sigma of a bin, that may leak into it from an oscillation elsewhere
@@ -82,13 +83,17 @@ class NoiseTerms:
 
 
 def noise_terms(powers: Powers) -> list[NoiseTerms | None]:
-    """The terms of every channel; None where there is no stretch, or nothing but one value."""
+    """The terms of every channel; None where there is no stretch, or nothing but one value.
+
+    None, too, where it is so at some frequencies: there the channel stood still in all stretches.
+    """
     bins, lowest = powers.bins(), list(powers.lowest())
     return [_of_channel(bins, lowest, channel) for channel in range(powers.channels)]
 
 
 def _of_channel(bins: Bins, lowest: Sequence[Lowest], channel: int) -> NoiseTerms | None:
-    if not len(bins.frequency) or not bins.density[:, channel].any():
+    density = bins.density[:, channel]
+    if not len(density) or (density <= ROUNDING * density.max()).any():
         return None
     lines, leaked, within = _usable(bins, lowest, channel)
     used = ~leaked & within

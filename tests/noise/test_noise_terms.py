@@ -171,6 +171,21 @@ def test_nothing_of_nothing():
     assert noise_terms(powers) == [None, None]
 
 
+@pytest.mark.parametrize("still", [(5000,), (700, 3000, 900)])
+def test_a_channel_that_stood_still_in_the_longest_stretches_has_no_terms(still):
+    """Of the other, noisy in all of them, they are what they are."""
+    random, powers = np.random.default_rng(4), Powers(2, 0.02)
+    for count, dead in [*((n, False) for n in (560, 340, 120)), *((n, True) for n in still)]:
+        readings = np.rint(4 * random.standard_normal((count, 2))) * 1e-3
+        readings[:, 1] = 0.0224 if dead else readings[:, 1]
+        powers.add(readings)
+        powers.end()
+    noisy, dead = noise_terms(powers)
+    assert dead is None and noisy is not None
+    white = noisy.terms["white_noise"]
+    assert abs(white.value - 4e-3 * np.sqrt(1 + 1 / 12 / 16) * np.sqrt(0.02)) < 4 * white.sigma
+
+
 @pytest.mark.parametrize("count", [64, 301])
 def test_the_covariance_of_cosine_coefficients(count):
     """By its definition, transforming the covariance of the samples, term by term."""
