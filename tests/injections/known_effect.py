@@ -31,11 +31,13 @@ SCALES = (-3.0, 3.0)  # natural logarithms of a common factor of all scatters
 
 
 def p_value(data: CampaignData, effect: Effect, sensor: str) -> tuple[float, bool]:
-    """Of an effect at the value of its scan that was put in; and whether beside a scatter."""
-    noise = data.noise.degrees
-    given = scattered(campaign_of(data).without_drift_at_rest(), [effect], noise)
-    given = given.without_random_walks()
-    beside = sensor in given.scattering
+    """Of an effect at the value of its scan that was put in; and whether beside a scatter.
+
+    That there is one is known without the effect only: it may be all that the scatter is.
+    """
+    noise, base = data.noise.degrees, campaign_of(data).without_drift_at_rest()
+    given = scattered(base, [effect], noise).without_random_walks()
+    beside = sensor in scattered(base, [], noise).scattering
     test = _beside_scatter if beside else _beside_walk
     return test(given, effect, sensor, noise), beside
 
