@@ -85,7 +85,8 @@ class NoiseTerms:
 def noise_terms(powers: Powers) -> list[NoiseTerms | None]:
     """The terms of every channel; None where there is no stretch, or nothing but one value.
 
-    None, too, where it is so at some frequencies: there the channel stood still in all stretches.
+    None, too, where the power of some bins is no more than rounding: in all stretches that are long
+    enough for these the channel stood still, and what is left of the others is no fair sample.
     """
     bins, lowest = powers.bins(), list(powers.lowest())
     return [_of_channel(bins, lowest, channel) for channel in range(powers.channels)]

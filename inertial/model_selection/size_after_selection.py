@@ -33,6 +33,11 @@ from inertial.estimation.probability import ncx2_pdf, ncx2_sf
 
 Array = NDArray[np.float64]
 
+BEYOND = 8.0  # of |z| above the threshold, where nothing is subtracted any more
+NODES, WEIGHTS = (np.array(each) for each in special.roots_sh_legendre(40))  # of 0 to 1
+MIN_CENTRE = 1e-6
+STEP = 1e-3  # of |z|, for a slope
+
 
 @dataclass(frozen=True)
 class Selected:
@@ -47,11 +52,6 @@ class Selected:
     across: float
     statistic: float
 
-
-BEYOND = 8.0  # of |z| above the threshold, where nothing is subtracted any more
-NODES, WEIGHTS = (np.array(each) for each in special.roots_sh_legendre(40))  # of 0 to 1
-MIN_CENTRE = 1e-6
-STEP = 1e-3  # of |z|, for a slope
 
 NOT_SELECTED = Selected(1.0, 1.0, 1.0, np.inf)
 
