@@ -37,6 +37,11 @@ def same_manoeuvre(cause: Hypothesis, other: Hypothesis) -> bool:
     return bool(cause.manoeuvres & other.manoeuvres)
 
 
+def same_readings(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In the axis and in a manoeuvre that the other finding is about."""
+    return same_axis(cause, other) and same_manoeuvre(cause, other)
+
+
 def same_log(cause: Hypothesis, other: Hypothesis) -> bool:
     """In the log that the other finding is about, or in one of its manoeuvres."""
     log = cause.row["log"]
@@ -151,9 +156,12 @@ EXPLANATIONS = (
     ),
     Explanation(
         ("dead_axis", "saturation"),
-        _is(*PERFORMANCE, "bias_jump", "oscillation", "quantisation", *MISFITS),
+        _is(*PERFORMANCE, "oscillation", "quantisation", *MISFITS),
         same_axis,
     ),
+    Explanation(("dead_axis",), _is("bias_jump"), same_axis),
+    # A motion beyond the range says nothing of a rest before it or behind it.
+    Explanation(("saturation",), _is("bias_jump"), same_readings),
     # Once in every period a reading is off: beside it that makes spikes, and lines of a spectrum.
     Explanation(("periodic_glitch",), _is("spike", "oscillation"), same_axis),
     # Axes, signs, units: they change everything that their sensor reads.

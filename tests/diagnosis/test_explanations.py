@@ -44,6 +44,14 @@ def test_a_gap_explains_the_turn_that_it_cuts_and_no_other():
     assert causes(gap, other) == {"gap": set(), "incomplete_turn": set()}
 
 
+@pytest.mark.parametrize(("rest", "explained"), [("p-01", {"bias_jump"}), ("p-02", set())])
+def test_a_clipped_motion_does_not_explain_the_jump_of_a_bias_at_rest(rest, explained):
+    clipped = finding("quality", "saturation", "gyro", **of("p-01"), masked=True)
+    jump = finding("segment", "bias_jump", "gyro", **of(rest))
+    assert causes(clipped, jump)["saturation"] == explained
+    assert len(causes(clipped, jump)) == 2 - len(explained)
+
+
 def test_an_effect_explains_the_position_that_it_looks_like():
     off = finding("accelerometer", "table_position_error", "accel")
     quadratic = effect("accel_quadratic", "accel", "one_of_class", "accel_scale_asymmetry")
