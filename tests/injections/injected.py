@@ -76,6 +76,8 @@ HIDDEN = (
     *("gyro_warm_up", "accel_quadratic", "accel_scale_asymmetry", "accel_cross_products"),
     *("accel_cubic", "accel_bias_jump", "accel_bias_ramp", "accel_warm_up"),
 )
+# A bias that jumps while the IMU rests is found there, and the model need not name it once more.
+AT_REST = {"gyro_bias_jump": ("bias_jump", "gyro"), "accel_bias_jump": ("bias_jump", "accel")}
 RATIOS = (5.0, 8.0, 12.0, 20.0)
 FAULTS: Mapping[str, frozenset[str]] = {
     "spikes": frozenset({"spike"}),
@@ -296,7 +298,7 @@ def outcome(number: int) -> Outcome:
         if number < 0:
             name = INTO[number]
             causes = _causes(as_it_is(name).results)
-            false = [cause for cause, members in causes if not members & THERE[name]]
+            false = [cause for (cause, _), members in causes if not members & THERE[name]]
             return {"number": number, "code": code(), "recording": name, "false": false}
         what = drawn(number)
         kept = as_it_is(what.recording)
@@ -320,23 +322,27 @@ def outcome(number: int) -> Outcome:
         if not what.is_fault:
             (data,) = chain.mounts(after)
             told_of |= {"shows": kept.shows(data, _modelled(what.name, effect))}
-        before_it = {cause for cause, _ in own}
-        found = [members for _, members in rows if members & wanted]
-        beside = [c for c, members in rows if not members & wanted and c not in before_it]
-        return told_of | {
-            "limit": limit,
-            "found": bool(found),
-            "beside": beside,
-            "shown": True,
-        }
+        before_it = {cause for (cause, _), _ in own}
+        at_rest = {AT_REST.get(what.name)} - {one for one, _ in own}
+        found = [one in at_rest or bool(members & wanted) for one, members in rows]
+        beside = [
+            cause
+            for ((cause, _), _), its_own in zip(rows, found, strict=True)
+            if not its_own and cause not in before_it
+        ]
+        return told_of | {"limit": limit, "found": any(found), "beside": beside, "shown": True}
 
 
-def _causes(results: chain.Results) -> list[tuple[str, frozenset[str]]]:
-    """The rows of the diagnosis, each with all that it may be."""
+def _causes(results: chain.Results) -> list[tuple[tuple[str, str | None], frozenset[str]]]:
+    """The rows of the diagnosis: cause and sensor, and all that it may be."""
     members = results["diagnosis/members"].groupby("cause")["member"].agg(set).to_dict()
     rows = results["diagnosis/causes"].to_dict("records")
     return [
-        (str(row["cause"]), frozenset({row["cause"], *members.get(row["id"], ())})) for row in rows
+        (
+            (str(row["cause"]), row["sensor"]),
+            frozenset({row["cause"], *members.get(row["id"], ())}),
+        )
+        for row in rows
     ]
 
 
