@@ -131,7 +131,7 @@ def test_what_a_mechanism_never_turns_is_not_dead_when_it_stands_still_again():
 
 
 def test_the_chance_to_stand_still_is_that_of_drawn_rates():
-    """Of a rate of 20 counts, from block to block another, in the middle count."""
+    """That a drawn rate is in the middle count, where two others change sideways by 108 counts."""
     rng = np.random.default_rng(5)
     phase = 2 * np.pi * np.arange(6400) / 64
     rates = np.column_stack([0 * phase, 200 * np.cos(phase), 200 * np.sin(phase)])
