@@ -1,6 +1,6 @@
 """A channel that does not change."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,7 @@ from inertial.signal.detector import (
     channel_name,
     read_in,
 )
+from inertial.signal.free_rotation import FreeRotation
 from inertial.signal.scatter import BLOCK, MIN_NOISE_COUNTS, roughness, smallest_step
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
@@ -27,6 +28,7 @@ MAX_CHANCE = 1e-4  # chance of so long a run of equal readings in a log
 MIN_RUN = 4  # equal readings; fewer may be spikes
 MIN_LEAP_RATIO = 20.0  # times the changes beside a run, by which the readings leap to it and back
 MAX_LEAP_CHANCE = 1e-6  # chance that they do so by themselves
+SMOOTH = 6  # order of the differences that are left of a smooth motion
 SIDE_READINGS = 8  # readings before a run and after it
 MIN_COMMON_RUN = 1000  # equal readings of all axes, where nothing is known of their noise
 
@@ -44,12 +46,15 @@ class DeadAxis(Detector):
     """A channel that reads the same for longer than its noise allows.
 
     How much noise it has is seen in the rest of the log, or, where it never changes, in the other
-    axes of the same sensor. With noise of σ counts a reading falls into the count in the middle
-    with the chance p = erf(1 / (√8 σ)), and L in a row into the same one with
-    p^L (1 + σ √(2π/L)), times all readings of the log; fewer suffice where they leap to a value far
-    away and back. Where the noise is less than 0.6 counts an
-    axis may well stand still: that is `quantisation`, and nothing is said here; nor of a sensor
-    none of whose axes changes.
+    axes of the same sensor, without what is smooth in them: they may be turned. With noise of
+    σ counts a reading falls into the count in the middle with the chance p = erf(1 / (√8 σ)), and L
+    in a row into the same one with p^L (1 + σ √(2π/L)), times all readings of the log; with no less
+    than q^L where a share q of the other readings repeats the one before, as in steady turns. Fewer
+    suffice where they leap to a value far away and back.
+
+    Where the noise is less than 0.6 counts an axis may well stand still: that is `quantisation`,
+    and nothing is said here, unless it is a gyro that does so while the other two are turned about
+    a changing axis, see `FreeRotation`. Nothing is said of a sensor none of whose axes changes.
     """
 
     name = "dead_axis"
@@ -61,38 +66,36 @@ class DeadAxis(Detector):
     masks = True
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        channels = [piece.channel(i) for i in range(6)]
-        runs = [_runs(values) for _, values in channels]
-        noise = [_noise(values, *run) for (_, values), run in zip(channels, runs, strict=True)]
-        for axes in SENSORS.values():
-            known = [sigma for sigma in noise[axes] if np.isfinite(sigma)]
+        channels = [_Channel.of(*piece.channel(i)) for i in range(6)]
+        noise = [channel.noise for channel in channels]
+        loudest = max(np.nan_to_num(noise))
+        for sensor, axes in SENSORS.items():
+            changing = [own for own in channels[axes] if np.isfinite(own.noise)]
             for i in range(axes.start, axes.stop):
-                places, values = channels[i]
-                start, end = runs[i]
-                chance = np.ones(len(start))
-                if known:
-                    own = noise[i] if np.isfinite(noise[i]) else min(known)
-                    tests = (
-                        6
-                        * log.records
-                        * np.where(_leapt_to(values, start, end), MAX_LEAP_CHANCE, 1.0)
-                    )
-                    chance = tests * _chance(end - start, own)
-                    for k in np.flatnonzero(chance < MAX_CHANCE):
-                        beside = _quieter(values, int(start[k]), int(end[k]), own)
-                        chance[k] = tests[k] * _chance(end[k : k + 1] - start[k], beside)[0]
-                elif len(values) >= MIN_COMMON_RUN and max(np.nan_to_num(noise)) > MIN_NOISE_COUNTS:
+                own = channels[i]
+                chance = np.ones(len(own.length))
+                if changing:
+                    always = own not in changing
+                    usual = min(each.jitter for each in changing) if always else own.noise
+                    chance = own.chance_by_noise(usual, 6 * log.records)
+                    long = np.flatnonzero((own.length > BLOCK) & (chance > MAX_CHANCE)).tolist()
+                    if sensor == "gyro" and long:
+                        turned = _turned(piece, i - axes.start, channels[axes])
+                        for k in long:
+                            stays = 6 * log.records * turned.chance_of(*own.records(k))
+                            chance[k] = min(chance[k], stays)
+                elif len(own.values) >= MIN_COMMON_RUN and loudest > MIN_NOISE_COUNTS:
                     chance[:] = np.nan  # the whole sensor stands still, and the other does not
-                for k in np.flatnonzero(~(chance > MAX_CHANCE) & (end - start >= MIN_RUN)):
-                    number = int(end[k] - start[k])
+                named = ~(chance > MAX_CHANCE) & (own.length >= MIN_RUN)
+                for k in np.flatnonzero(named).tolist():
+                    number = int(own.length[k])
                     yield piece.event(
-                        int(places[start[k]]),
-                        int(places[end[k] - 1]) + 1,
+                        *own.records(k),
                         float(number),
                         channel=i,
                         p_value=float(chance[k]) if np.isfinite(chance[k]) else None,
                         facts=Stillness(
-                            float(values[start[k]]),
+                            float(own.values[own.start[k]]),
                             bool(log.least[i] == log.most[i]),
                             number * log.step,
                         ),
@@ -130,6 +133,66 @@ class DeadAxis(Detector):
             ),
             _("The readings are masked; what cannot do without them must be recorded again."),
         )
+
+
+@dataclass(frozen=True, eq=False)
+class _Channel:
+    """A channel with its runs of equal readings.
+
+    places: (m,), where in the piece; values: (m,); start, end: (k,), first reading of a run and the
+    one after it; count: its smallest step; noise: in counts, NaN where it never changes.
+    """
+
+    places: Integers
+    values: Array
+    start: Integers
+    end: Integers
+    count: float
+    noise: float
+
+    @classmethod
+    def of(cls, places: Integers, values: Array) -> "_Channel":
+        """By where it is recorded, and what it reads there."""
+        start, end = _runs(values)
+        return cls(places, values, start, end, smallest_step(values), _noise(values, start, end))
+
+    @property
+    def jitter(self) -> float:
+        """Its noise in counts without what is smooth in it: it may be all that moves."""
+        return min(self.noise, roughness(self.values, SMOOTH) / self.count)
+
+    @property
+    def length(self) -> Integers:
+        """Of the runs, (k,)."""
+        return self.end - self.start
+
+    def records(self, k: int) -> tuple[int, int]:
+        """The first place in the piece of a run, and the one after its last."""
+        return int(self.places[self.start[k]]), int(self.places[self.end[k] - 1]) + 1
+
+    def equal_elsewhere(self, k: int) -> float:
+        """The share of the readings outside a run that are equal to the one before."""
+        outside = len(self.values) - int(self.length[k])
+        return (outside - len(self.length) + 1) / outside if outside else 0.0
+
+    def chance_by_noise(self, usual: float, readings: int) -> Array:
+        """The chance of each run by noise, (k,), of so many readings; usual: noise, counts."""
+        leapt = _leapt_to(self.values, self.start, self.end)
+        tests = readings * np.where(leapt, MAX_LEAP_CHANCE, 1.0)
+        chance = tests * _chance(self.length, usual)
+        for k in np.flatnonzero(chance < MAX_CHANCE).tolist():
+            beside = _quieter(self.values, int(self.start[k]), int(self.end[k]), usual)
+            alike = self.equal_elsewhere(k) ** self.length[k]
+            chance[k] = tests[k] * max(_chance(self.length[k : k + 1], beside)[0], alike)
+        return np.asarray(chance)
+
+
+def _turned(piece: Piece, axis: int, gyros: Sequence[_Channel]) -> FreeRotation:
+    """Where the other gyros are turned freely, for a gyro by its number, 0 to 2."""
+    counts = np.array([gyro.count for gyro in gyros])
+    noise = counts * np.array([gyro.noise for gyro in gyros])
+    count = float(counts[np.isfinite(counts)].max())
+    return FreeRotation.beside(axis, piece.values[:, SENSORS["gyro"]], noise, count)
 
 
 def _chance(length: Integers, rough: float) -> Array:

@@ -1,5 +1,6 @@
 """Robust measures of the scatter of readings, and their smallest step."""
 
+from math import comb
 from typing import Any
 
 import numpy as np
@@ -28,13 +29,14 @@ def median(values: NDArray[Any], axis: int = -1) -> NDArray[Any]:
     return np.asarray((lower + upper) / 2)
 
 
-def roughness(values: Array) -> float:
+def roughness(values: Array, order: int = 1) -> float:
     """The root mean square change between readings, divided by √2, in the quiet blocks of (n,).
 
     For white noise of σ and a count q it is √(σ² + q²/12), of increments that carry over
     √(σ² + q²/4), if σ is no less than half a count. NaN for fewer readings than a block has.
+    Differences of a higher order have the same of white noise, and less of a smooth motion.
     """
-    square = in_blocks(np.diff(values) ** 2 / 2)
+    square = in_blocks(np.diff(values, order) ** 2 / comb(2 * order, order))
     return float(np.sqrt(np.quantile(square.mean(axis=1), QUIET_SHARE))) if len(square) else np.nan
 
 
