@@ -11,18 +11,24 @@ together (Searle, Casella & McCulloch, Variance Components, 1992, chapter 7).
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
+from scipy.optimize import OptimizeResult, minimize
+
+from inertial.estimation.type_mean import Mixture, TableMeans
 
 Array = NDArray[np.float64]
+Booleans = NDArray[np.bool_]
 Integers = NDArray[np.int64]
 
 LEVELS = ("type", "table", "imu", "campaign")
 FLAT = 1e8  # variance of the mean of a type that is free, in variances of the values
 SMALLEST, LARGEST = 1e-7, 1e3  # variances that are sought, in variances of the values
 STARTS = (0.01, 0.3)
+# Of the search: a deviance of precise values is large, and its last digits tell.
+DIFFERENCE, CONVERGED = 1e-4, 1e-13
 STEP = 0.05  # relative, of standard deviations, for the curvature of the likelihood
 MIN_SHOWN = 1e-5  # of the variance of the values: a component of less is zero
 ADAPTING, DRAWS = 1000, 4000  # of the sampler
@@ -199,29 +205,46 @@ class Spread:
 
 @dataclass(frozen=True)
 class Population:
-    """A quantity of a type: mean with sigma, and its spreads; `tables`: the part of each table.
+    """A quantity of a type: the law of its mean, its spreads; `tables`: the part of each table.
 
-    `mean_degrees`: of freedom of `mean_sigma`, for Student's t; infinite without spreads, NaN
-    where their errors are not known.
+    Sigma and degrees of freedom of the mean are those of a Student's t with its 68 % and 95 %
+    intervals; degrees are infinite without spreads, NaN where their errors are not known.
     """
 
-    mean: float
-    mean_sigma: float
-    mean_degrees: float
+    law: Mixture
     spreads: tuple[Spread, ...]
     tables: Array
 
+    @property
+    def mean(self) -> float:
+        """Of the type."""
+        return self.law.mean
+
+    @cached_property
+    def student(self) -> tuple[float, float]:
+        """Sigma and degrees of freedom of the mean."""
+        return self.law.student()
+
+    @property
+    def mean_sigma(self) -> float:
+        """Of Student's t with `mean_degrees`."""
+        return self.student[0]
+
+    @property
+    def mean_degrees(self) -> float:
+        """Of freedom, of `mean_sigma`."""
+        return self.student[1]
+
     def with_known(self, sigma: float) -> "Population":
         """With a further error of the mean, whose sigma is known."""
-        whole = float(np.hypot(self.mean_sigma, sigma))
-        degrees = self.mean_degrees * (whole / self.mean_sigma) ** 4
-        return replace(self, mean_sigma=whole, mean_degrees=degrees)
+        return replace(self, law=self.law.with_known(sigma))
 
 
 def population(values: Array, sigma: Array, labels: Mapping[str, Sequence[str]]) -> Population:
     """Mean and spreads of a quantity over the campaigns of one type, by restricted likelihood.
 
     `values`, `sigma`: (c,), of each campaign, independent. The spread between types is not sought.
+    The mean is averaged over the spreads between tables that are possible, see `type_mean`.
     """
     scale = max(float(np.var(values)), float(np.median(sigma**2)))
     information = (scale / sigma**2)[:, None, None]
@@ -240,12 +263,15 @@ def population(values: Array, sigma: Array, labels: Mapping[str, Sequence[str]])
         return sharing.solved(with_mean(sizes)).deviance
 
     bounds = [(np.log(SMALLEST), np.log(LARGEST))] * len(levels)
-    best = min(
-        (minimize(deviance, np.full(len(levels), np.log(s)), bounds=bounds) for s in STARTS),
-        key=lambda found: float(found.fun),
-    )
+
+    def search(start: float) -> OptimizeResult:
+        first = np.full(len(levels), np.log(start))
+        return minimize(
+            deviance, first, bounds=bounds, options={"eps": DIFFERENCE, "ftol": CONVERGED}
+        )
+
+    best = min(map(search, STARTS), key=lambda found: float(found.fun))
     sizes = np.where(np.exp(best.x) < MIN_SHOWN, -np.inf, best.x)
-    solved = sharing.solved(with_mean(sizes))
     errors = _relative_errors(deviance, sizes)
     sigmas = np.exp(sizes / 2) * np.sqrt(np.diag(errors))
     root = float(np.sqrt(scale))
@@ -253,13 +279,41 @@ def population(values: Array, sigma: Array, labels: Mapping[str, Sequence[str]])
         Spread(names, int(sharing.of[first].max()) + 1, root * float(np.exp(size / 2)), root * s)
         for (first, names), size, s in zip(levels.items(), sizes, sigmas, strict=True)
     )
-    return Population(
-        float(np.median(values)) + root * float(solved.types[0, 0]),
-        root * float(np.sqrt(solved.covariance[0, 0])),
-        _satterthwaite(lambda at: sharing.solved(with_mean(at)).covariance[0, 0], sizes, errors),
-        spreads,
-        root * solved.tables[:, 0],
+    law = _law_of_mean(sharing, dict(zip(levels, sizes.tolist(), strict=True)), errors)
+    in_units = replace(
+        law, centres=float(np.median(values)) + root * law.centres, sigmas=root * law.sigmas
     )
+    return Population(in_units, spreads, root * sharing.solved(with_mean(sizes)).tables[:, 0])
+
+
+def _law_of_mean(sharing: Sharing, sizes: Mapping[str, float], errors: Array) -> Mixture:
+    """Of the mean of a type, tables being free to differ.
+
+    `sizes`: logarithms of the variances of the levels; `errors`: of the standard deviations.
+    """
+    others = [level for level in sizes if level != "table"]
+
+    def tables(at: Array) -> TableMeans:
+        own = dict(zip(others, np.exp(at).tolist(), strict=True))
+        solved = sharing.solved({"table": FLAT, **own})
+        count = len(solved.tables)
+        return TableMeans(solved.tables[:, 0], solved.covariance[-count:, -count:])
+
+    at = np.array([sizes[level] for level in others])
+    means = tables(at)
+    squares, weights = means.squares()
+    centres, variances = means.mean(squares)
+    known = _given(errors, np.array([level == "table" for level in sizes], bool))
+    degrees = _satterthwaite(lambda at: tables(at).mean(squares)[1], at, known)
+    return Mixture(weights, centres, np.sqrt(variances), degrees)
+
+
+def _given(errors: Array, known: Booleans) -> Array:
+    """The covariance of the others if some were known; NaN in the rows of what is at 0."""
+    kept = errors[np.ix_(~known, ~known)].copy()
+    beside = known & np.isfinite(np.diag(errors))
+    across = errors[np.ix_(~known, beside)]
+    return kept - across @ np.linalg.solve(errors[np.ix_(beside, beside)], across.T)
 
 
 def _relative_errors(deviance: Callable[[Array], float], sizes: Array) -> Array:
@@ -290,16 +344,18 @@ def _stepped(sizes: Array, steps: Array) -> Array:
     return np.asarray(sizes + 2 * np.log1p(STEP * steps))
 
 
-def _satterthwaite(variance: Callable[[Array], float], sizes: Array, errors: Array) -> float:
-    """Degrees of freedom of a variance that is a function of estimated ones: 2 φ² / var(φ).
+def _satterthwaite(variance: Callable[[Array], Array], sizes: Array, errors: Array) -> Array:
+    """Degrees of freedom of variances (k,) that are functions of estimated ones: 2 φ² / var(φ).
 
     With var(φ) = gᵀ A g of the derivatives g and the covariance A of the estimates (Giesbrecht &
     Burns 1985, Biometrics 41, 477; Fai & Cornelius 1996, J. Statist. Comput. Simul. 54, 363).
     """
+    here = variance(sizes)
     shown = np.flatnonzero(np.isfinite(sizes))
     unit = np.eye(len(sizes))[shown]
     derivative = np.array(
         [variance(_stepped(sizes, i)) - variance(_stepped(sizes, -i)) for i in unit]
-    ) / (2 * STEP)
-    of_variance = float(derivative @ errors[np.ix_(shown, shown)] @ derivative)
-    return 2 * variance(sizes) ** 2 / of_variance if of_variance else np.inf
+    ).reshape(len(shown), len(here)) / (2 * STEP)
+    of_variance = np.einsum("ik,ij,jk->k", derivative, errors[np.ix_(shown, shown)], derivative)
+    with np.errstate(divide="ignore"):
+        return np.asarray(2 * here**2 / of_variance)

@@ -86,18 +86,25 @@ FLEET = {
         ),
         Table(
             "population",
-            2,
+            3,
             (
                 *PARAMETER,
                 Column("imus", INTEGER, "1", "IMUs with a value, without outliers"),
                 Column("unit", TEXT, "", "unit of the values, SI"),
                 Column("mean", DOUBLE, "as unit", "of the type"),
-                Column("mean_sigma", DOUBLE, "as unit", "its standard deviation"),
+                Column(
+                    "mean_sigma",
+                    DOUBLE,
+                    "as unit",
+                    "of the Student's t that has the 68 % and 95 % intervals of the mean, averaged"
+                    " over the spreads between tables that are possible; with one table its part is"
+                    " in the mean and not in sigma",
+                ),
                 Column(
                     "mean_degrees",
                     DOUBLE,
                     "1",
-                    "degrees of freedom of mean_sigma, for Student's t, by Satterthwaite; none: the"
+                    "degrees of freedom of mean_sigma, for Student's t; none: on one table the"
                     " differences are no larger than the sigmas, or how well they are known is not"
                     " determined",
                     nullable=True,

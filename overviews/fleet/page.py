@@ -255,10 +255,10 @@ def _populations(rows: Rows) -> outline.Section:
         _("Mean and spread of the parameters, correlations, and IMUs that differ from the others."),
         _(
             "A new IMU of the type is expected at mean ± σ of a new IMU. Behind either σ are its "
-            "degrees of freedom, for Student's t. Spreads are of largest restricted likelihood; "
-            "0: the σ of the campaigns explains all differences. Outliers are in no number. An "
-            "error of gravity is one of all campaigns that take the same value as known, and is in "
-            "σ of the mean alone."
+            "degrees of freedom, for Student's t. With one table its part is in the mean and not "
+            "in σ. Spreads are of largest restricted likelihood; 0: the σ of the campaigns "
+            "explains all differences. Outliers are in no number. An error of gravity is one of "
+            "all campaigns that take the same value as known, and is in σ of the mean alone."
         ),
         parts,
     )

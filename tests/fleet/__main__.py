@@ -14,7 +14,6 @@ import jinja2
 import numpy as np
 import resumable
 from fleet_draws import (
-    IMUS,
     LEVELS,
     MAIN,
     MEAN_SPREADS,
@@ -61,7 +60,6 @@ def page(singles: Outcomes, mixes: Outcomes, populations: Outcomes, means: Outco
         "populations": len(populations),
         "cover": [_cover(n, [p for p in populations if p["tables"] == n]) for n in (2, 5)],
         "means": [_means(n, spread, means) for n in MEAN_TABLES for spread in MEAN_SPREADS],
-        "degrees": IMUS - 1,
         "outliers": _outliers(populations),
     }
     template = jinja2.Template(TEMPLATE.read_text(encoding="utf-8"), keep_trailing_newline=True)
@@ -123,14 +121,15 @@ def _cover(tables: int, own: Outcomes) -> tuple[str, ...]:
 
 
 def _means(tables: int, spread: float, means: Outcomes) -> tuple[str, ...]:
-    """How often 95 % intervals hold the mean, %, with its standard error."""
+    """How often 95 % intervals hold the mean, %, with its standard error; half of their width."""
     own = [one for one in means if (one["tables"], one["spread"]) == (tables, spread)]
     count = max(TOGETHER * len(own), 1)
-    share, by_imus = (sum(one[key] for one in own) / count for key in ("held", "by_imus"))
+    share = sum(one["held"] for one in own) / count
     error = np.sqrt(share * (1 - share) / count)
+    width = np.median([one["half_width"] for one in own] or [np.nan])
     return (
         *(str(tables), f"{spread / SPREAD:.2f}", str(count)),
-        *(f"{100 * share:.1f} ± {100 * error:.1f}", f"{100 * by_imus:.1f}"),
+        *(f"{100 * share:.1f} ± {100 * error:.1f}", f"{width / SPREAD:.2f}"),
     )
 
 

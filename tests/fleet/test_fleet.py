@@ -237,45 +237,75 @@ def test_spreads_are_those_of_an_analysis_of_variance():
     assert degrees < each * imus
 
 
-def test_degrees_of_freedom_of_the_mean_are_those_of_an_analysis_of_variance():
-    """Of crossed balanced data var(mean) = (MS_table + MS_imu - MS_rest) / c (Satterthwaite 1946).
-
-    Each mean square has relative variance 2 / degrees: 1 table against 19 IMUs and 19 of the rest.
-    """
-    imus, tables = 20, 2
+def test_degrees_of_freedom_of_the_mean_on_one_table_are_those_of_the_imus():
+    """Of balanced data var(mean) = MS_imu / c, a mean square of one degree less than IMUs."""
+    imus, each = 9, 4
     random = np.random.default_rng(21)
-    table = 2 * random.normal(size=imus)[:, None] + np.array([0.0, 3.0]) + 0.5
-    table = table + random.normal(size=table.shape)
+    values = 3 * np.repeat(random.normal(size=imus), each) + random.normal(size=each * imus)
+    own = labels(imus=imus, each=each, tables=1)
+    found = population(values, np.full(len(values), 0.1), own)
+    assert found.mean_degrees == pytest.approx(imus - 1, rel=0.03)
+    surer = found.with_known(2 * found.mean_sigma)
+    assert surer.mean_sigma == pytest.approx(np.sqrt(5) * found.mean_sigma, rel=1e-3)
+    assert surer.mean_degrees == pytest.approx(25 * found.mean_degrees, rel=0.02)
+
+
+@pytest.mark.parametrize("tables", [2, 3, 6])
+def test_where_only_tables_differ_the_mean_is_that_of_as_many_values(tables):
+    of_tables = np.random.default_rng(23).normal(size=tables)
+    own = labels(imus=6, each=tables, tables=tables)
+    table = np.unique(own["table"], return_inverse=True)[1]
+    values = of_tables[table] + 1e-2 * np.random.default_rng(24).normal(size=len(table))
+    found = population(values, np.full(len(values), 1e-2), own)
+    assert found.mean == pytest.approx(of_tables.mean(), abs=1e-2)
+    assert found.mean_sigma == pytest.approx(of_tables.std(ddof=1) / np.sqrt(tables), rel=0.02)
+    assert found.mean_degrees == pytest.approx(tables - 1, rel=0.05)
+
+
+@pytest.mark.parametrize("difference", [0.0, 0.4, 3.0])
+def test_the_mean_of_two_tables_has_the_generalised_interval_of_mean_squares(difference):
+    """Of crossed balanced data var(mean) = (MS_table + MS_imu - MS_rest) / c.
+
+    Here by draws of the three, MS · degrees / χ² each (Weerahandi 1993), of 1, 19 and 19 degrees.
+    """
+    imus, tables, draws = 20, 2, 400_000
+    random = np.random.default_rng(21)
+    table = 2 * random.normal(size=imus)[:, None] + random.normal(size=(imus, tables))
+    table += np.array([0.0, difference]) - table.mean(axis=0)
     rows, columns, grand = table.mean(axis=1), table.mean(axis=0), table.mean()
     rest = table - rows[:, None] - columns + grand
     squares = np.array(
         [imus * columns.var(ddof=1), tables * rows.var(ddof=1), (rest**2).sum() / (imus - 1)]
     )
-    parts = squares * np.array([1, 1, -1]) / (imus * tables)
     degrees = np.array([tables - 1, imus - 1, imus - 1])
+    of_table, of_imu, of_rest = (squares * degrees / random.chisquare(degrees, (draws, 3))).T
+    variance = (np.maximum(of_table - of_rest, 0) + of_imu) / (imus * tables)
+    errors = np.abs(random.normal(size=draws)) * np.sqrt(variance)
     own = labels(imus=imus, each=tables, tables=tables)
     values = np.array([table[i, (i + n) % tables] for i in range(imus) for n in range(tables)])
     found = population(values, np.full(imus * tables, 0.1), own)
-    assert found.mean_sigma**2 == pytest.approx(parts.sum(), rel=5e-3)
-    wanted = parts.sum() ** 2 / (parts**2 / degrees).sum()
-    assert wanted < 4
-    assert found.mean_degrees == pytest.approx(wanted, rel=0.03)
-    surer = found.with_known(2 * found.mean_sigma)
-    assert surer.mean_sigma**2 == pytest.approx(5 * parts.sum(), rel=5e-3)
-    assert surer.mean_degrees == pytest.approx(25 * found.mean_degrees, rel=1e-6)
+    for outside in (0.32, 0.05):
+        width = found.law.half_width(outside)
+        assert width == pytest.approx(np.quantile(errors, 1 - outside), rel=0.04)
+    half = found.mean_sigma * stats.t.isf(LEVEL / 2, found.mean_degrees)
+    assert half == pytest.approx(found.law.half_width(LEVEL), rel=1e-3)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("tables", "spread", "held"),
-    [(1, 1.0, 0.95), (2, 1.0, 0.934), (5, 1.0, 0.95), (5, 3.0, 0.95), (2, 3.0, 0.88)],
+    [
+        *((1, 1.0, 0.95), (2, 0.0, 0.984), (2, 1.0, 0.986), (2, 3.0, 0.963), (2, 9.0, 0.953)),
+        *((5, 1.0, 0.96), (5, 3.0, 0.96)),
+    ],
 )
 def test_intervals_hold_the_mean_of_simulated_populations(tables, spread, held):
     """20 IMUs of spread 3, each twice: 1500 times, so that 95 % have a standard error of 0.6 %.
 
-    Two tables are too few for 95 %, for their difference may be small by chance. What is left then
-    is from 400000 draws of the mean squares of a crossed analysis of variance; with the degrees of
-    the IMUs alone, 19, they hold 91.6 and 80 %.
+    More than 95 % where two tables differ less than IMUs: that they do is not known from one
+    difference. How much more is by 20 000 draws of the mean squares of a crossed analysis of
+    variance; with Satterthwaite's degrees of the likeliest spreads they held 93.6 and 87.9 % of 1
+    and 3.
     """
     imus, each, sigma, own_spread, count = 20, 2, 0.7, 0.5, 1500
     own = labels(imus=imus, each=each, tables=tables)
