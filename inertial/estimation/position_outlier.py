@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.accelerometers import StaticForce, equations
+from inertial.estimation.accelerometers import Reference, StaticForce, equations
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.triad import UNKNOWNS
@@ -46,9 +46,7 @@ class OffPosition:
 
 def off_position(
     statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
+    reference: Reference,
     about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
     measured: MeasuredDrift = NO_DRIFT,
@@ -59,9 +57,12 @@ def off_position(
     drift of the bias.
     """
     positions = list(dict.fromkeys(static.position for static in statics))
-    setup = (gravity, gravity_sigma, position_sigma, 0.0, about)
+    setup = (reference, 0.0, about)
     columns = [f"{position}/{i}" for position in positions for i in (0, 1)]
-    with_tilts, known = _with_tilts(statics, gravity, about.matrix), dict(effect_sigma or {})
+    with_tilts, known = (
+        _with_tilts(statics, reference.gravity, about.matrix),
+        dict(effect_sigma or {}),
+    )
     drift = (0.0, measured)
     information = equations(
         with_tilts, *setup, known | dict.fromkeys(columns, FREE_TILT_SIGMA), *drift
