@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from inertial.campaign.effect_sizes import sizes_of_result
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened, significant
@@ -223,21 +224,13 @@ def _parameters(tables: Tables, row: Record) -> Iterator[outline.Table]:
 
 
 def _of_result(tables: Tables, finding: Record, known: Sequence[Record]) -> list[Record]:
-    """The same parameters of an effect with the values of the result.
-
-    None where these are not in it, or in it several times: of several effects of one kind.
-    """
-    effect = finding["cause"]
-    of_effect = [
-        row
-        for row in tables.rows("result")
-        if (row["mount"], row["effect"]) == (finding["mount"], effect) and row["value"] is not None
-    ]
-    by_name = {row["parameter"]: row for row in of_effect}
-    if not by_name or len(by_name) < len(of_effect):
-        return []
+    """The same parameters of an effect with the values of the result; none: these are not in it."""
+    of_result = sizes_of_result(tables.rows("result"))
     missing = {"value": None, "sigma": None}
-    values = [by_name.get(f"{effect}.{row['parameter']}", missing) for row in known]
+    place = finding["mount"], finding["cause"]
+    values = [of_result.get((*place, row["parameter"]), missing) for row in known]
+    if all(own is missing for own in values):
+        return []
     return [
         row | {key: own[key] for key in missing} for row, own in zip(known, values, strict=True)
     ]
