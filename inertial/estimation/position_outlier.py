@@ -31,8 +31,8 @@ class OffPosition:
     """A position that does not fit the others.
 
     `positions`: all candidates, the most likely first; `tilt`, `sigma`: rad, of that one; `about`:
-    (3,), body axes, unit vector; `moved`, `freed_sigma`: (12,), change of the parameters when it is
-    fitted freely, and their sigmas then; `p_value`: after Bonferroni.
+    (3,), body axes, unit vector; `moved`: (12,), change of the parameters when it is fitted freely;
+    `p_value`: after Bonferroni.
     """
 
     positions: tuple[str, ...]
@@ -40,7 +40,6 @@ class OffPosition:
     sigma: float
     about: Array
     moved: Array
-    freed_sigma: Array
     p_value: float
 
 
@@ -95,7 +94,6 @@ def off_position(
         float(np.sqrt(variance)),
         vector / tilt,
         after.values[:UNKNOWNS] - before.values[:UNKNOWNS],
-        after.sigma[:UNKNOWNS],
         p_value,
     )
 
