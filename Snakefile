@@ -813,9 +813,9 @@ rule fleet:
     input:
         "data/fleets/{fleet}.txt",
         lambda wildcards: [
-            f"data/derived/{campaign}/{place}"
+            f"data/derived/{campaign}/{read.place}"
             for campaign in in_fleet(wildcards)
-            for place, _table in READ_BY_FLEET.values()
+            for read in READ_BY_FLEET.values()
         ],
     output:
         "reports/fleet-{fleet}.html",

@@ -14,7 +14,7 @@ import sys
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 from commands.no_result import NoResult, no_results
@@ -22,10 +22,12 @@ from inertial import tables
 from inertial.campaign.explanations import Explained, compete
 from inertial.campaign.hypotheses import Findings, hypotheses
 from inertial.campaign.records import Performed, performed_of, rows_of
+from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened, visible
+from stages.diagnosis.declared import DECLARED
 
 LINE_WIDTH = 100
 MAX_FULL_CAUSES = 20  # of further ones only the names are listed
@@ -80,21 +82,11 @@ def recording_of(derived: Path) -> Recording:
     Refusal
         where one of them is missing, damaged, or of another version
     """
-    findings = Findings(
-        quality_findings=tables.FINDINGS.read(derived / "quality/findings.parquet"),
-        segment_findings=tables.FINDINGS.read(derived / "segment/findings.parquet"),
-        accelerometer_findings=tables.FINDINGS.read(derived / "accelerometer/findings.parquet"),
-        gyroscope_findings=tables.FINDINGS.read(derived / "gyroscope/findings.parquet"),
-        criticism_findings=tables.EFFECT_FINDINGS.empty(),
-        members=tables.MEMBERS.empty(),
-        cause_positions=tables.CAUSE_POSITIONS.empty(),
-        plan_repairs=tables.REPAIRS.read(derived / "plan/repairs.parquet"),
-        segment_repairs=tables.REPAIRS.read(derived / "segment/repairs.parquet"),
-        channel_repairs=tables.CHANNEL_REPAIRS.read(derived / "segment/channel_repairs.parquet"),
-        masks=tables.MASKS.read(derived / "quality/masks.parquet"),
-        gaps=tables.GAPS.read(derived / "quality/gaps.parquet"),
-        segments=tables.SEGMENTS.read(derived / "segment/segments.parquet"),
-    )
+    sources = {each.name: DECLARED.reads[each.name] for each in fields(Findings)}
+    # Criticism comes later and is not part of the check.
+    earlier = {name: source for name, source in sources.items() if source.stage != "criticism"}
+    none = {name: source.table.empty() for name, source in sources.items() if name not in earlier}
+    findings = Findings(**read_declared(derived, earlier), **none)
     performed = performed_of(tables.PERFORMED.read(derived / "segment/performed.parquet"))
     refused = {
         row["log"]: row["lines"]

@@ -151,7 +151,7 @@ class _Crate:
         inputs = [self._file(path) for path in self.hashes]
         outputs = [self._file(path) for one in done for path in one.written]
         agent = self._agent()
-        steps = [self._step(workflow, one, place, agent) for place, one in enumerate(done, 1)]
+        steps = [self._step(one, place, agent) for place, one in enumerate(done, 1)]
         workflow["step"] = [step for step, _action, _control in steps]
         workflow["hasPart"] = [step["workExample"] for step, _action, _control in steps]
         start, end = min(one.start for one in done), max(one.end for one in done)
@@ -243,7 +243,7 @@ class _Crate:
         properties = {"name": name, "version": "1.0-RELEASE"}
         return self._entity(f"{BIOSCHEMAS}/{name}/1.0-RELEASE", "CreativeWork", properties)
 
-    def _step(self, workflow: Any, one: Done, place: int, agent: Any) -> tuple[Any, Any, Any]:
+    def _step(self, one: Done, place: int, agent: Any) -> tuple[Any, Any, Any]:
         """The stage as a step of the workflow, as an action, and the order to do it."""
         about = import_module(f"stages.{one.stage}").__doc__ or one.stage
         tool = self._software(f"stages.{one.stage}", f"python -m stages.{one.stage}", one.code)

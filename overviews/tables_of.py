@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from inertial.tables.code import hash_of_file
+from inertial.tables.declared import read_declared
 from inertial.tables.parquet import provenance
 from inertial.text.messages import _
 from inertial.text.numbers import shortened
@@ -26,7 +27,7 @@ def tables_of(derived: Path, names: Iterable[str]) -> Tables:
     """
     sources = {name: DECLARED.reads[name] for name in names}
     paths = {name: derived / source.place for name, source in sources.items()}
-    frames = {name: source.table.read(paths[name]) for name, source in sources.items()}
+    frames = read_declared(derived, sources)
     return Tables(frames, {name: provenance(path) for name, path in paths.items()})
 
 

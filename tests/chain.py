@@ -16,6 +16,7 @@ from ruamel.yaml import YAML
 import laboratory
 import stages
 from inertial.campaign.campaign_data import CampaignData, CampaignTables, campaigns_of
+from inertial.tables.campaign_inputs import FITTED, RECORDED
 from inertial.tables.stage import Stage
 
 ROOT = Path(__file__).parent.parent
@@ -166,21 +167,9 @@ def run(
 
 def mounts(results: Results, **changes: Any) -> list[CampaignData]:
     """The campaign as later stages take it, with the joint result where there is one."""
-    tables: dict[str, Any] = {
-        "manoeuvres": "segment/manoeuvres",
-        "performed": "segment/performed",
-        "blocks": "segment/blocks",
-        "levels": "noise/levels",
-        "known": "plan/known",
-        "clocks": "decode/clocks",
-    }
-    for stage in ("accelerometer", "gyroscope"):
-        if f"{stage}/parameters" in results:
-            tables |= {
-                f"{stage}_{of}": f"{stage}/{of}"
-                for of in ("parameters", "positions", "switch_ons", "fit")
-            }
-    read = {name: results[table] for name, table in tables.items()}
+    sources = RECORDED | FITTED
+    places = {name: source.place.removesuffix(".parquet") for name, source in sources.items()}
+    read = {name: results[place] for name, place in places.items() if place in results}
     return campaigns_of(CampaignTables(**read | changes))
 
 

@@ -25,7 +25,7 @@ from stages.history.repeatability import (
     repeatability_rows,
     series_of,
 )
-from stages.plan.allowed_changes import allowed_changes
+from stages.plan.certificate import allowed_changes
 
 sys.path.insert(0, str(Path(__file__).parent / "histories"))
 import history_draws

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from commands.design.turntable import Turntable
 from commands.design.visits import Item, Visit, items_of, plan_of, visit_seconds
-from inertial import tables
 from inertial.campaign.campaign_data import CampaignData, CampaignTables, campaigns_of
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import SENSORS, Campaign
@@ -29,6 +28,8 @@ from inertial.estimation.random_walk import NO_DRIFT
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.splitting import MIN_SEPARATION, Rivals
 from inertial.physics.effect import Effect
+from inertial.tables.campaign_inputs import FITTED, RECORDED
+from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
@@ -80,26 +81,7 @@ def campaign_tables(derived: Path) -> list[CampaignData]:
     Refusal
         where a table is missing, damaged, or of another version
     """
-    return campaigns_of(
-        CampaignTables(
-            manoeuvres=tables.MANOEUVRES.read(derived / "segment/manoeuvres.parquet"),
-            performed=tables.PERFORMED.read(derived / "segment/performed.parquet"),
-            blocks=tables.BLOCKS.read(derived / "segment/blocks.parquet"),
-            levels=tables.LEVELS.read(derived / "noise/levels.parquet"),
-            known=tables.KNOWN.read(derived / "plan/known.parquet"),
-            clocks=tables.CLOCKS.read(derived / "decode/clocks.parquet"),
-            accelerometer_parameters=tables.PARAMETERS.read(
-                derived / "accelerometer/parameters.parquet"
-            ),
-            accelerometer_positions=tables.POSITIONS.read(
-                derived / "accelerometer/positions.parquet"
-            ),
-            accelerometer_fit=tables.FIT.read(derived / "accelerometer/fit.parquet"),
-            gyroscope_parameters=tables.PARAMETERS.read(derived / "gyroscope/parameters.parquet"),
-            gyroscope_positions=tables.POSITIONS.read(derived / "gyroscope/positions.parquet"),
-            gyroscope_fit=tables.FIT.read(derived / "gyroscope/fit.parquet"),
-        )
-    )
+    return campaigns_of(CampaignTables(**read_declared(derived, RECORDED | FITTED)))
 
 
 def classes_of(findings: pd.DataFrame, members: pd.DataFrame, scores: pd.DataFrame) -> list[Class]:

@@ -28,6 +28,7 @@ from inertial.campaign.records import (
 )
 from inertial.campaign.solution import Estimated, Solution, solution_of
 from inertial.campaign.static_positions import StaticPosition, static_positions
+from inertial.estimation.accelerometers import Reference
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.random_walk import MeasuredDrift
 
@@ -77,6 +78,11 @@ class CampaignData:
     def position_sigma(self) -> float:
         """Sigma of the attitude of a set position, rad."""
         return self.known["position"].scatter
+
+    @property
+    def reference(self) -> Reference:
+        """What the static positions of the accelerometers are compared with."""
+        return Reference(self.gravity.number, self.gravity.scatter, self.position_sigma)
 
     @property
     def rate_sigma(self) -> float:

@@ -18,7 +18,7 @@ from inertial.campaign.rate_segments import GyroInputs, Recorded
 from inertial.campaign.records import Known
 from inertial.campaign.solution import Solution
 from inertial.estimation import accelerometers, gyroscopes
-from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.accelerometers import Reference, StaticForce
 from inertial.estimation.between_positions import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import Name
@@ -417,9 +417,7 @@ class Campaign:
             return replace(self.by_hand.accelerometer(rests, *known), measured=drift)
         return accelerometers.drifting(
             rests,
-            self.gravity.number,
-            self.gravity.scatter,
-            self.position_sigma,
+            Reference(self.gravity.number, self.gravity.scatter, self.position_sigma),
             self.solution.accelerometer,
             prior_sigmas,
             walking=walking,

@@ -19,7 +19,7 @@ from inertial.campaign.records import Clock, Known, Manoeuvre, Performed, Row
 from inertial.campaign.rotating_positions import LEVER_ARM, turning_rests
 from inertial.campaign.solution import Solution
 from inertial.estimation import accelerometers, gyroscopes
-from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.accelerometers import Reference, StaticForce
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.least_squares import Estimate
@@ -310,11 +310,11 @@ def _normal(equations: DriftingEquations) -> Array:
     return np.asarray(rows.T @ rows)
 
 
-def _forces(data: CampaignData) -> tuple[list[StaticForce], float, float, float]:
+def _forces(data: CampaignData) -> tuple[list[StaticForce], Reference]:
     """Static positions and steady turns of the accelerometers, and what is known."""
     rests = [
         StaticForce(p.manoeuvre.position, p.up_now, *p.over(), stretch=p.stretch)
         for p in data.accelerometer_positions[0]
     ]
     rests += [rest for _, rest in turning_rests(data)]
-    return rests, data.gravity.number, data.gravity.scatter, data.position_sigma
+    return rests, data.reference

@@ -9,6 +9,7 @@ cosine takes from g u follows from the reading itself (`_versed`).
 
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,11 +58,17 @@ class StaticForce:
     turning: bool = False
 
 
+class Reference(NamedTuple):
+    """What static positions are compared with: gravity, m/s², and the planned attitudes, rad."""
+
+    gravity: float
+    gravity_sigma: float
+    position_sigma: float
+
+
 def weighted(
     statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
+    reference: Reference,
     scatter: float = 0.0,
     walk: float = 0.0,
     effect_sigma: Mapping[str, float] | None = None,
@@ -73,38 +80,36 @@ def weighted(
     of the bias, see `random_walk`; both beyond the `measured` drift; `effect_sigma`: of parameters
     of effects, which are unknowns too.
     """
-    known = (gravity, gravity_sigma, position_sigma)
     about = Triad(np.eye(3), np.full(3, np.nan))
     for _ in range(ITERATIONS):  # M multiplies the tilts and gravity
-        estimate = equations(statics, *known, scatter, about, effect_sigma, walk, measured).solve()
+        estimate = equations(
+            statics, reference, scatter, about, effect_sigma, walk, measured
+        ).solve()
         about = triad_of(estimate)
     return estimate
 
 
 def fit(
     statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
+    reference: Reference,
     noise_degrees: float = np.inf,
     effect_sigma: Mapping[str, float] | None = None,
     measured: MeasuredDrift = NO_DRIFT,
 ) -> ScatterFit:
     """The estimate with the scatter and random walk of largest restricted likelihood."""
-    known = (gravity, gravity_sigma, position_sigma)
-    estimate = weighted(statics, *known, effect_sigma=effect_sigma, measured=measured)
+    estimate = weighted(statics, reference, effect_sigma=effect_sigma, measured=measured)
     about = triad_of(estimate)
 
     def fit_with(scatter: float, walk: float) -> Estimate:
         return equations(
-            statics, *known, scatter, about, effect_sigma, walk, measured
+            statics, reference, scatter, about, effect_sigma, walk, measured
         ).solve_shared()
 
     each = list(range(len(statics)))  # has a block of its own, and so a scatter of its own
-    likelihood = _drifting(statics, *known, about, effect_sigma, each, 0.0, measured).likelihood
+    likelihood = _drifting(statics, reference, about, effect_sigma, each, 0.0, measured).likelihood
     if measured.switch_on is None and (switched := likelihood.switch_ons()) is not None:
         then = replace(measured, switch_on=switched.covering)
-        result = fit(statics, *known, noise_degrees, effect_sigma, then)
+        result = fit(statics, reference, noise_degrees, effect_sigma, then)
         return replace(result, switch_ons=switched)
     stretches = [static.stretch for static in statics if static.stretch is not None]
     alternatives = [
@@ -121,16 +126,14 @@ def fit(
     result = with_random_walk(fit_with, likely, SCATTER_BOUNDS, search, alternatives, noise_degrees)
     if result.scatter or result.random_walk:
         estimate = weighted(
-            statics, *known, result.scatter, result.random_walk, effect_sigma, measured
+            statics, reference, result.scatter, result.random_walk, effect_sigma, measured
         )
     return replace(result, estimate=estimate)
 
 
 def equations(
     statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
+    reference: Reference,
     scatter: float,
     about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
@@ -143,7 +146,7 @@ def equations(
 
     Unknowns: M by rows, bias, gravity, effects; eliminated: the tilts.
     """
-    known = (gravity, gravity_sigma, position_sigma, about, effect_sigma)
+    known = (reference, about, effect_sigma)
     stretches = [static.stretch for static in statics if static.stretch is not None]
     if (
         walk or measured or measured.differs(stretches)
@@ -155,9 +158,7 @@ def equations(
 
 def drifting(
     statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
+    reference: Reference,
     about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
     scatter: float = 0.0,
@@ -171,15 +172,12 @@ def drifting(
     """
     timed = walking or bool(measured)
     keys: list[Hashable] = [(s.position, s.stretch if timed else None) for s in statics]
-    known = (gravity, gravity_sigma, position_sigma, about, effect_sigma)
-    return _drifting(statics, *known, keys, scatter, measured)
+    return _drifting(statics, reference, about, effect_sigma, keys, scatter, measured)
 
 
 def _drifting(
     statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
+    reference: Reference,
     about: Triad,
     effect_sigma: Mapping[str, float] | None,
     keys: Sequence[Hashable],
@@ -190,8 +188,8 @@ def _drifting(
     effect_sigma = effect_sigma or {}
     names = [("parameter", str(i)) for i in range(UNKNOWNS)] + [("gravity", "")]
     names += [("effect", name) for name in effect_sigma]
-    prior = np.concatenate([PRIOR, [gravity], np.zeros(len(effect_sigma))])
-    rows = linear_rows(statics, gravity, about, prior, list(effect_sigma))
+    prior = np.concatenate([PRIOR, [reference.gravity], np.zeros(len(effect_sigma))])
+    rows = linear_rows(statics, reference.gravity, about, prior, list(effect_sigma))
     noise = np.hypot([static.sigma for static in statics], scatter)
     same: dict[Hashable, list[int]] = {}
     for i, key in enumerate(keys):
@@ -202,7 +200,7 @@ def _drifting(
     for number, some in enumerate(same.values()):
         position, stretch = statics[some[0]].position, statics[some[0]].stretch
         tilts = tuple((f"tilt {axis}", position) for axis in (0, 1))
-        sigma |= dict.fromkeys(tilts, position_sigma)
+        sigma |= dict.fromkeys(tilts, reference.position_sigma)
         block = whitened(rows[some].reshape(-1, rows.shape[-1]), noise[some].ravel(), tilts)
         block = replace(block, rows=compressed(block.rows))
         blocks.append((block, stretch or Stretch(f"rest {number}")))
@@ -212,7 +210,7 @@ def _drifting(
         positions,
         sigma,
         prior,
-        np.array([*PRIOR_SIGMA, gravity_sigma, *effect_sigma.values()]),
+        np.array([*PRIOR_SIGMA, reference.gravity_sigma, *effect_sigma.values()]),
         tuple(names),
         BIAS,
         measured=measured,

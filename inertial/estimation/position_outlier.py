@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.estimation.accelerometers import StaticForce, equations
+from inertial.estimation.accelerometers import Reference, StaticForce, equations
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.triad import UNKNOWNS
@@ -31,8 +31,8 @@ class OffPosition:
     """A position that does not fit the others.
 
     `positions`: all candidates, the most likely first; `tilt`, `sigma`: rad, of that one; `about`:
-    (3,), body axes, unit vector; `moved`, `freed_sigma`: (12,), change of the parameters when it is
-    fitted freely, and their sigmas then; `p_value`: after Bonferroni.
+    (3,), body axes, unit vector; `moved`: (12,), change of the parameters when it is fitted freely;
+    `p_value`: after Bonferroni.
     """
 
     positions: tuple[str, ...]
@@ -40,15 +40,12 @@ class OffPosition:
     sigma: float
     about: Array
     moved: Array
-    freed_sigma: Array
     p_value: float
 
 
 def off_position(
     statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
+    reference: Reference,
     about: Triad,
     effect_sigma: Mapping[str, float] | None = None,
     measured: MeasuredDrift = NO_DRIFT,
@@ -59,9 +56,12 @@ def off_position(
     drift of the bias.
     """
     positions = list(dict.fromkeys(static.position for static in statics))
-    setup = (gravity, gravity_sigma, position_sigma, 0.0, about)
+    setup = (reference, 0.0, about)
     columns = [f"{position}/{i}" for position in positions for i in (0, 1)]
-    with_tilts, known = _with_tilts(statics, gravity, about.matrix), dict(effect_sigma or {})
+    with_tilts, known = (
+        _with_tilts(statics, reference.gravity, about.matrix),
+        dict(effect_sigma or {}),
+    )
     drift = (0.0, measured)
     information = equations(
         with_tilts, *setup, known | dict.fromkeys(columns, FREE_TILT_SIGMA), *drift
@@ -94,7 +94,6 @@ def off_position(
         float(np.sqrt(variance)),
         vector / tilt,
         after.values[:UNKNOWNS] - before.values[:UNKNOWNS],
-        after.sigma[:UNKNOWNS],
         p_value,
     )
 

@@ -176,7 +176,7 @@ class FleetSearch:
         given = self.evidence.given(others)
         own = model[place]
         drop, degrees = self._alone(own, others)
-        weights = self._weights(given, set(others))
+        weights = self._weights(given)
         members = {
             effect: sum(weight for (of, _), weight in weights.items() if of == effect)
             for effect in range(len(self.evidence.names))
@@ -194,7 +194,7 @@ class FleetSearch:
             ),
         )
 
-    def _weights(self, given: Given, others: set[Shared]) -> dict[tuple[int, str], float]:
+    def _weights(self, given: Given) -> dict[tuple[int, str], float]:
         """Posterior probability of each effect with each level."""
         logs: dict[tuple[int, str], float] = {}
         for effect, level in product(range(len(self.evidence.names)), LEVELS):

@@ -1,9 +1,16 @@
 """What a stage reads and writes: declared apart from its function, so that it costs no import."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from inertial.tables.table import Table
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -37,3 +44,14 @@ class Declared:
     files: Sequence[str] = ()
     documents: Sequence[str] = ()
     unfolded: Sequence[str] = ()
+
+
+def read_declared(derived: Path, sources: Mapping[str, From]) -> dict[str, pd.DataFrame]:
+    """The tables of the campaign whose folder is `derived`, by argument.
+
+    Raises
+    ------
+    Refusal
+        where one is missing, damaged, or of another version
+    """
+    return {name: source.table.read(derived / source.place) for name, source in sources.items()}

@@ -41,7 +41,7 @@ def main() -> None:
         with room_for(folder), Writer(folder, FLEET, lambda: made_by) as writer:
             for name, table in FLEET.items():
                 writer.write(name, table.frame(rows[name]))
-        files = [given.derived / c / place for c in given.campaigns for place, _ in READ.values()]
+        files = [given.derived / c / read.place for c in given.campaigns for read in READ.values()]
         share = settings["false_discoveries"]
         html = fleet_page(rows, searched, share, given.name, files, code)
         write_whole({given.reports / f"fleet-{given.name}.html": html.encode()})

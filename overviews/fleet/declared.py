@@ -1,13 +1,14 @@
-"""What a page of a fleet reads of each campaign: places and tables. It loads no library."""
+"""What a page of a fleet reads of each campaign. It loads no library."""
 
 from inertial import tables
+from inertial.tables.declared import From
 
 READ = {
-    "campaign": ("plan/campaign.parquet", tables.CAMPAIGN),
-    "inputs": ("plan/inputs.parquet", tables.INPUTS),
-    "known": ("plan/known.parquet", tables.KNOWN),
-    "score": ("criticism/score_vector.parquet", tables.SCORE_VECTOR),
-    "information": ("criticism/information_matrix.parquet", tables.INFORMATION_MATRIX),
-    "result": ("diagnosis/result.parquet", tables.PARAMETERS),
-    "covariance": ("diagnosis/covariance.parquet", tables.COVARIANCE),
+    "campaign": From("plan", tables.CAMPAIGN),
+    "inputs": From("plan", tables.INPUTS),
+    "known": From("plan", tables.KNOWN),
+    "score": From("criticism", tables.SCORE_VECTOR),
+    "information": From("criticism", tables.INFORMATION_MATRIX),
+    "result": From("diagnosis", tables.PARAMETERS, "result"),
+    "covariance": From("diagnosis", tables.COVARIANCE),
 }

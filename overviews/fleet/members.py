@@ -15,6 +15,7 @@ from inertial.campaign.references import NAMELESS
 from inertial.estimation.triad import linear_names
 from inertial.estimation.type_population import Campaigns
 from inertial.model_selection.fleet_evidence import FleetEvidence
+from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.parameters import SCALE
@@ -94,7 +95,7 @@ def members_of(names: Sequence[str], derived: Path) -> list[Member]:
 
 
 def _members(name: str, folder: Path) -> Iterator[Member]:
-    frames = {key: table.read(folder / place) for key, (place, table) in READ.items()}
+    frames = read_declared(folder, READ)
     about = frames["campaign"].iloc[0]
     compensated = _(", compensated logs") if about["compensated"] else ""
     kind = f"{about['instrument']}{compensated}"

@@ -74,7 +74,9 @@ def selected(name: str, known: Sequence[str], derived: Path) -> list[str]:
         )
     conditions, names = parts(file.read_text(encoding="utf-8"))
     complete = [
-        one for one in known if all((derived / one / p).is_file() for p, _table in READ.values())
+        one
+        for one in known
+        if all((derived / one / read.place).is_file() for read in READ.values())
     ]
     if names and names != [EVERY]:
         unknown = [one for one in names if one not in known]

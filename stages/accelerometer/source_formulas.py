@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from inertial.campaign.estimates import NAMES, Estimates, Wanted
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.accelerometer_formulas import Upright, pooled_positions, up_and_down
-from inertial.estimation.accelerometers import StaticForce, six_position_formula
+from inertial.estimation.accelerometers import Reference, StaticForce, six_position_formula
 from inertial.estimation.triad import UNKNOWNS, errors_of
 from inertial.tables import AXES
 
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 def add_six_positions(
     estimates: Estimates,
     planned: Sequence[tuple[StaticPosition, StaticForce]],
-    about: tuple[float, float, float],  # gravity, its sigma, m/s², sigma of a position, rad
+    reference: Reference,
     scatter: float,
     wanted: float,
 ) -> None:
@@ -34,13 +34,13 @@ def add_six_positions(
     length of the rests follows.
     """
     rests = [rest for _, rest in planned]
-    solved = six_position_formula(rests, *about, scatter) if rests else None
+    solved = six_position_formula(rests, *reference, scatter) if rests else None
     if solved is None:
-        _add_up_and_down(estimates, rests, about, scatter)
+        _add_up_and_down(estimates, rests, reference, scatter)
         return
     unknowns, covariance = solved
     estimates.add("six_position", NAMES, errors_of(unknowns), covariance, {})
-    ideal = six_position_formula([replace(rest, sigma=np.zeros(3)) for rest in rests], *about)
+    ideal = six_position_formula([replace(rest, sigma=np.zeros(3)) for rest in rests], *reference)
     assert ideal is not None  # it depends on the same attitudes
     seconds = float(np.mean([position.seconds.sum() for position, _ in planned]))
     for i, axis in enumerate(AXES, UNKNOWNS - 3):
@@ -51,7 +51,7 @@ def add_six_positions(
 def _add_up_and_down(
     estimates: Estimates,
     rests: Sequence[StaticForce],
-    about: tuple[float, float, float],
+    reference: Reference,
     scatter: float,
 ) -> None:
     for i, axis in enumerate(AXES):
@@ -60,7 +60,7 @@ def _add_up_and_down(
             for rest in rests
             if abs(rest.up[i]) > 1 - 1e-9 and np.isfinite(rest.mean[i] * rest.sigma[i])
         ]
-        result = up_and_down(readings, *about)
+        result = up_and_down(readings, *reference)
         if result is not None:
             values = np.array([result.bias, result.scale])
             sigmas = np.array([result.bias_sigma, result.scale_sigma])
@@ -71,11 +71,11 @@ def _add_up_and_down(
 def add_pooled_positions(
     estimates: Estimates,
     rests: Sequence[StaticForce],
-    about: tuple[float, float, float],
+    reference: Reference,
     scatter: float,
 ) -> None:
     """S3's formula, for plans with rotations both ways and stops at common positions."""
-    pooled = pooled_positions(rests, *about, scatter)
+    pooled = pooled_positions(rests, *reference, scatter)
     if pooled is not None:
         values = errors_of(pooled.values)
         estimates.add("pooled_positions", NAMES, values, pooled.covariance, {})

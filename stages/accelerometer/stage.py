@@ -13,7 +13,7 @@ from inertial.campaign.rotating_positions import LEVER_ARM, turning_rests
 from inertial.campaign.static_positions import StaticPosition, averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
-from inertial.estimation.accelerometers import StaticForce, equations, triad_of, weighted
+from inertial.estimation.accelerometers import Reference, StaticForce, equations, triad_of, weighted
 from inertial.estimation.position_outlier import off_position
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
@@ -50,8 +50,7 @@ def accelerometer(
     collected = Estimates("accelerometer")
     raised: list[Finding] = []
     for data in mounts:
-        estimates, gravity = collected.on(data.mount), data.gravity
-        about = (gravity.number, gravity.scatter, data.position_sigma)
+        estimates, reference = collected.on(data.mount), data.reference
         add_free_accelerometers(estimates, data)
         positions, left_out = data.accelerometer_positions
         if not positions:
@@ -62,7 +61,7 @@ def accelerometer(
         moving = [rest for _, rest in turns]
         rests = [*(_static_force(position) for position in positions), *moving]
         drift = data.noise.drift("accel")
-        fitted = accelerometers.fit(rests, *about, data.noise.degrees, effect_sigma, drift)
+        fitted = accelerometers.fit(rests, reference, data.noise.degrees, effect_sigma, drift)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
         estimates.add_triad("joint", fitted.estimate, why)
@@ -75,35 +74,35 @@ def accelerometer(
             np.all(fitted.estimate.determined[: triad.UNKNOWNS])
         )  # by criticism, against effects
         if not weighed and fitted.p_value < MIN_CONSISTENT_P_VALUE:
-            raised += _position_findings(rests, about, result, effect_sigma, drift, data.mount)
+            raised += _position_findings(rests, reference, result, effect_sigma, drift, data.mount)
         for seconds in averaging_times(positions, averaging_steps):
             part = [*(_static_force(position, seconds) for position in positions), *moving]
             shorter = equations(
-                part, *about, fitted.scatter, result, effect_sigma, fitted.random_walk, drift
+                part, reference, fitted.scatter, result, effect_sigma, fitted.random_walk, drift
             )
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
         stops = [_static_force(position) for position in positions]
         planned = [
             pair for pair in zip(positions, stops, strict=True) if pair[0].manoeuvre.do == "rest"
         ]
-        add_six_positions(estimates, planned, about, fitted.scatter, wanted_bias)
+        add_six_positions(estimates, planned, reference, fitted.scatter, wanted_bias)
         if stops_between_turns(data.plan):
-            add_pooled_positions(estimates, stops, about, fitted.scatter)
+            add_pooled_positions(estimates, stops, reference, fitted.scatter)
     return {**collected.tables(), "findings": table_of(raised)}
 
 
 def _position_findings(
     rests: list[StaticForce],
-    about: tuple[float, float, float],
+    reference: Reference,
     result: Triad,
     effect_sigma: Mapping[str, float] | None,
     drift: MeasuredDrift,
     mount: str,
 ) -> Iterator[Finding]:
     """The position in error, where a single one explains the misfit of the model."""
-    off = off_position(rests, *about, result, effect_sigma, drift)
+    off = off_position(rests, reference, result, effect_sigma, drift)
     if off is not None:
-        joint = weighted(rests, *about, effect_sigma=effect_sigma, measured=drift)
+        joint = weighted(rests, reference, effect_sigma=effect_sigma, measured=drift)
         yield from findings(off, joint.sigma[: triad.UNKNOWNS], mount)
 
 

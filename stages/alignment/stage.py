@@ -126,7 +126,7 @@ class Case:
         ]
         frame, rows = static, list(self._alignment_rows("static", static))
         if turns:
-            frame, level_rate = self._by_rotation(turns[0], static)
+            frame, level_rate = self._by_rotation(turns[0])
             rows += self._alignment_rows("rotation", frame)
             rows.append(self._alignment("rotation", "level_rate", *level_rate, "rad/s"))
             rows[-1]["known"] = self.data.earth.level
@@ -146,9 +146,7 @@ class Case:
         force, rate = run.mean(run.force), run.mean(run.rate)
         return at_rest(force, rate, accel, float(gyro), self.data.earth.up)
 
-    def _by_rotation(
-        self, run: Run, static: CoarseAlignment
-    ) -> tuple[CoarseAlignment, tuple[float, float]]:
+    def _by_rotation(self, run: Run) -> tuple[CoarseAlignment, tuple[float, float]]:
         """By what turns in the axes of the case; and the level rate that it gives, with sigma."""
         rate = self._separated(run, run.rate, run.density[0])
         force = self._separated(run, run.force, run.density[1])

@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import ESTIMATED, RECORDED
+from inertial.tables.campaign_inputs import FITTED, RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
@@ -15,9 +15,7 @@ DECLARED = Declared(
         "segments": From("segment", tables.SEGMENTS),
         **RECORDED,
         "campaign": From("plan", tables.CAMPAIGN),
-        "accelerometer_fit": From("accelerometer", tables.FIT),
-        "gyroscope_fit": From("gyroscope", tables.FIT),
-        **ESTIMATED,
+        **FITTED,
         "extended_fit": From("extension", tables.FIT),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "simulated": From("simulation", tables.SIMULATED),

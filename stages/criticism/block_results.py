@@ -115,7 +115,7 @@ class BlockResults:
         value = cause.value if cause else test.value
         effect = self.selection.effect(test.effect, value)
         identifier = finding_id(effect.name, self.mount)
-        parameters = self._parameters(effect, value)
+        parameters = self._parameters(effect)
         if cause is None:
             reasons = [
                 limit.reason for limit in self.selection.limits if limit.effect == test.effect
@@ -183,7 +183,7 @@ class BlockResults:
         split = None if cause.effect in LAWS else self.extended.splitting(number)
         free = cause.effect not in self.selection.families
         effect = None if free else self.selection.effect(cause.effect, cause.value)
-        parameters = [] if effect is None else self._parameters(effect, cause.value)
+        parameters = [] if effect is None else self._parameters(effect)
         positions = self._positions(effect)
         identifier = finding_id(cause.effect, self.mount)
         clear = cause.verdict in NAMED
@@ -248,7 +248,7 @@ class BlockResults:
         shares = self.extended.mimicry(effect.name, "gyro_scale_quadratic", TURNED_OVER)
         return None if shares is None else sentences.same_rate_sentence(*shares)
 
-    def _parameters(self, effect: Effect, value: int) -> list[Estimated]:
+    def _parameters(self, effect: Effect) -> list[Estimated]:
         """An effect's parameters, estimated with those of the causes."""
         evidence = self.selection.evidence
         if not evidence.sensors:

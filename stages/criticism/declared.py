@@ -1,16 +1,14 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import ESTIMATED, RECORDED
+from inertial.tables.campaign_inputs import FITTED, RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
     reads={
         "simulated": From("simulation", tables.SIMULATED),
         **RECORDED,
-        **ESTIMATED,
-        "accelerometer_fit": From("accelerometer", tables.FIT),
-        "gyroscope_fit": From("gyroscope", tables.FIT),
+        **FITTED,
     },
     writes={
         "scores": tables.SCORES,

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
+from inertial.campaign.effect_sizes import sizes_of_result
 from inertial.campaign.explanations import Explained
 from inertial.campaign.hypotheses import Findings
 from inertial.campaign.records import Row, rows_of
@@ -16,17 +17,8 @@ MIN_CLEAR_SIGMA = 4.0  # of a parameter: the effect is in its axis
 
 
 def by_result(effects: Iterable[Row], results: Sequence[SensorResult]) -> list[Row]:
-    """The rows of criticism's table of effects, with value and sigma of the result that has them.
-
-    Of an effect in the models of both sensors those with the smaller sigma.
-    """
-    of_result: dict[tuple[str, str, str], Row] = {}
-    for result in results:
-        for row in result.chosen.rows:
-            if row["effect"] is not None and row["sigma"]:
-                name = row["parameter"].rpartition(".")[2]
-                key = (result.mount, row["effect"], name)
-                of_result[key] = min(of_result.get(key, row), row, key=lambda one: one["sigma"])
+    """The rows of criticism's table of effects, with value and sigma of a result that has them."""
+    of_result = sizes_of_result(row for result in results for row in result.chosen.rows)
     return [
         row | {key: own[key] for key in ("value", "sigma")}
         if (own := of_result.get((row["mount"], row["effect"], row["parameter"])))

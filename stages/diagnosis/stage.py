@@ -25,8 +25,7 @@ def diagnosis(
     random_walks: pd.DataFrame,
     performed: pd.DataFrame,
     swept: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
-    terms: pd.DataFrame,
+    noise_alone: bool,
     tolerances: pd.DataFrame,
 ) -> Tables:
     """Causes, consequences, members of classes, the result with its covariance, the verdict.
@@ -38,7 +37,7 @@ def diagnosis(
     estimated : the candidates for the result of each sensor and mount
     effects : of criticism: sizes of the effects
     swept : of criticism: changes with temperature of what one attitude shows
-    terms : of the noise at rest
+    noise_alone : whether the campaign is a recording of the noise
     """
     explained = list(compete(list(hypotheses(findings))))
     results = list(estimated.results(explained))
@@ -50,9 +49,8 @@ def diagnosis(
         frozenset(curves),
     )
     causes = evidence.causes(explained)
-    noisy = only_noise(manoeuvres, terms)
     verdicts = [
-        verdict(result, causes, _range(swept, result.sensor, result.mount), only_noise=noisy)
+        verdict(result, causes, _range(swept, result.sensor, result.mount), only_noise=noise_alone)
         for result in results
     ]
     by_criticism = rows_of(effects)
@@ -144,4 +142,8 @@ def _written(
     }
 
 
-STAGE = Stage(diagnosis, DECLARED, gathers={"findings": Findings, "estimated": Estimated})
+STAGE = Stage(
+    diagnosis,
+    DECLARED,
+    gathers={"findings": Findings, "estimated": Estimated, "noise_alone": only_noise},
+)

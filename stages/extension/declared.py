@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import ESTIMATED, RECORDED
+from inertial.tables.campaign_inputs import FITTED, RECORDED
 from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
@@ -13,9 +13,7 @@ DECLARED = Declared(
         "cause_positions": From("criticism", tables.CAUSE_POSITIONS),
         "random_walks": From("criticism", tables.RANDOM_WALKS),
         **RECORDED,
-        **ESTIMATED,
-        "accelerometer_fit": From("accelerometer", tables.FIT),
-        "gyroscope_fit": From("gyroscope", tables.FIT),
+        **FITTED,
         "accelerometer_fit_manoeuvres": From("accelerometer", tables.FIT_MANOEUVRES),
         "gyroscope_fit_manoeuvres": From("gyroscope", tables.FIT_MANOEUVRES),
     },

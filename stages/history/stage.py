@@ -98,12 +98,18 @@ def published_differences_of(
     return differences
 
 
+def between_switch_ons_of(
+    gyroscope_fit: pd.DataFrame, accelerometer_fit: pd.DataFrame
+) -> list[Row]:
+    """What biases differ by between the switch-ons of this campaign."""
+    return list(power_cycle_rows([*rows_of(gyroscope_fit), *rows_of(accelerometer_fit)]))
+
+
 def history(
     archive: list[Path],
     calibration: Row,
     published_differences: list[Difference],
-    accelerometer_fit: pd.DataFrame,
-    gyroscope_fit: pd.DataFrame,
+    between_switch_ons: list[Row],
     blocks: pd.DataFrame,
     allowed_changes: pd.DataFrame,
     *,
@@ -136,7 +142,7 @@ def history(
         "published_differences": table_of(published_differences, level),
         "repeatability": [
             *repeatability_rows(series, blocks),
-            *power_cycle_rows([*rows_of(gyroscope_fit), *rows_of(accelerometer_fit)]),
+            *between_switch_ons,
         ],
         "jumps": list(jump_rows(jumps, len(series))),
         "forecast": list(forecast_rows(series, jumps, changes)) if others else [],
@@ -165,5 +171,6 @@ STAGE = Stage(
         "references": reference_shares,
         "calibration": calibration_of,
         "published_differences": published_differences_of,
+        "between_switch_ons": between_switch_ons_of,
     },
 )

@@ -1,4 +1,7 @@
-"""What a certificate states beside its numbers, from campaign.yaml and laboratory.yaml."""
+"""What a certificate states beside its numbers, from campaign.yaml and laboratory.yaml.
+
+And by how much parameters may change until the IMU is due for calibration again.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -136,6 +139,15 @@ class Statements:
                         "unit": unit,
                         "decision_rule": rule or GUARD_BAND,
                     }
+
+
+def allowed_changes(campaign: YamlFile) -> Iterator[Row]:
+    """The changes that a campaign file allows under `may_change`, in SI."""
+    stated = campaign.content.get("may_change", {})
+    for key, sensor in SENSORS:
+        for name, limit in stated.get(key, {}).items():
+            kind, size, unit = LIMITS[name]
+            yield {"sensor": sensor, "kind": kind, "limit": limit * size, "unit": unit}
 
 
 def _nested(items: Mapping[str, Any]) -> Row:

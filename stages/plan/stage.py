@@ -15,8 +15,7 @@ from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
-from stages.plan.allowed_changes import allowed_changes
-from stages.plan.certificate import Statements
+from stages.plan.certificate import Statements, allowed_changes
 from stages.plan.declared import DECLARED
 from stages.plan.ideal_readings import ideal_readings
 from stages.plan.manoeuvres import expanded

@@ -51,14 +51,26 @@ class Undone:
     rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
 
 
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """What the samples show of the plan.
+
+    performed : by manoeuvre
+    segments, blocks : the tables; temperatures of blocks as recorded
+    counts : rad, what a count of the gyros is, by log; NaN where not stated
+    """
+
+    performed: Mapping[str, Performed]
+    segments: pd.DataFrame
+    blocks: pd.DataFrame
+    counts: Mapping[str, float]
+
+
 def recorded_of(
     plan: Sequence[Manoeuvre],
     explained: Explained,
     undone: Undone,
-    performed: Mapping[str, Performed],
-    segments: pd.DataFrame,
-    blocks: pd.DataFrame,
-    counts: Mapping[str, float],
+    recording: Recording,
     given: Given,
     tolerance: float,
 ) -> Recorded:
@@ -67,17 +79,15 @@ def recorded_of(
     Parameters
     ----------
     explained : what is still not as planned, undone : what was set right
-    segments, blocks : the tables; temperatures of blocks as recorded
-    counts : rad, what a count of the gyros is, by log; NaN where not stated
     tolerance : accepted difference of a turn's angle or rate from the plan's, 1
     """
     where = {
         m.name: located for located in explained.located for m in located.binned.window.manoeuvres
     }
-    parts = _parts(segments)
-    done = [performed[m.name] for m in plan]
+    parts = _parts(recording.segments)
+    done = [recording.performed[m.name] for m in plan]
     observations = [_shown(m, where[m.name]) for m in plan]
-    warm = blocks.groupby("manoeuvre")["temperature"].mean().to_dict()
+    warm = recording.blocks.groupby("manoeuvre")["temperature"].mean().to_dict()
     places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
     return Recorded(
         given=given,
@@ -107,7 +117,7 @@ def recorded_of(
         from_s=_numbers([place[2] for place in places]),
         to_s=_numbers([place[3] for place in places]),
         gyros=np.array([np.isfinite(where[m.name].binned.rates).any(axis=0) for m in plan], bool),
-        count=_numbers([counts.get(m.log) for m in plan]),
+        count=_numbers([recording.counts.get(m.log) for m in plan]),
         temperature=_numbers([warm.get(m.name) for m in plan]),
         stated_temperature=_numbers([m.temperature for m in plan]),
         temperature_sigma=_numbers([m.temperature_sigma for m in plan]),

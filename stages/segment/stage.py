@@ -21,7 +21,7 @@ from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
-from stages.segment.detection import ExaminationOfRests, compare, recorded_of
+from stages.segment.detection import ExaminationOfRests, Recording, compare, recorded_of
 from stages.segment.encoder import ByEncoder, plan_by_encoder, without_unused
 from stages.segment.matching import (
     AS_NAMED,
@@ -135,10 +135,7 @@ def segment(
         plan,
         made.explained,
         made.undone,
-        performed,
-        segments,
-        blocks,
-        _counts(by_name)["gyro"],
+        Recording(performed, segments, blocks, _counts(by_name)["gyro"]),
         stated.given,
         angle_tolerance,
     )

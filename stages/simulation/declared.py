@@ -11,7 +11,6 @@ DECLARED = Declared(
         **RECORDED,
         "segments": From("segment", tables.SEGMENTS),
         **ESTIMATED,
-        "gyroscope_switch_ons": From("gyroscope", tables.SWITCH_ONS),
     },
     writes={
         "simulated": tables.SIMULATED,

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 import s0
 
-from inertial.estimation.accelerometers import StaticForce, six_position_formula, weighted
+from inertial.estimation.accelerometers import (
+    Reference,
+    StaticForce,
+    six_position_formula,
+    weighted,
+)
 
 # Noise of each sensor (rows) in each pair of positions, m/s² per sample: by six positions,
 # for single epochs var(M_rk) = σ_rk² / (2 g²), and the variance of the bias is Σ σ_rk² / 18.
@@ -43,7 +48,7 @@ def test_t8_the_variances_of_the_bias_follow_from_it():
 
 def test_t25_what_weights_gain():
     _, covariance = six_position_formula(six_epochs(), s0.GRAVITY, 0.0, 0.0)
-    fit = weighted(six_epochs(), s0.GRAVITY, 1e-12, 1e-12)
+    fit = weighted(six_epochs(), Reference(s0.GRAVITY, 1e-12, 1e-12))
     gain = np.sqrt(np.diag(covariance)[9:]) / fit.sigma[9:12]
     np.testing.assert_allclose(gain, [1.079, 3.343, 2.501], atol=1e-3)
     # Opposite positions of equal noise: scale factors and cross terms gain nothing.

@@ -22,9 +22,9 @@ def pooled(drafted, tmp_path_factory):
     folder = tmp_path_factory.mktemp("mpu9150")
     for name in NAMES:
         _, results = drafted(name)
-        for place, _table in READ.values():
-            (folder / name / place).parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(results.folder / place, folder / name / place)
+        for read in READ.values():
+            (folder / name / read.place).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(results.folder / read.place, folder / name / read.place)
         file = folder / name / "plan/campaign.parquet"
         about = tables.CAMPAIGN.read(file).assign(instrument="MPU-9150", serial=name)
         pq.write_table(tables.CAMPAIGN.arrow(about), file)

@@ -8,7 +8,7 @@ from inference.walking import DEGREE_PER_HOUR, EARTH, TILT, UNIT, campaign
 from scipy.stats import chi2
 
 from inertial.estimation import accelerometers
-from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.accelerometers import Reference, StaticForce
 from inertial.estimation.elimination import EquationBlock, eliminate
 from inertial.estimation.gyroscopes import fit as fit_gyroscopes
 from inertial.estimation.gyroscopes import joint, linearisation_at, linearised
@@ -173,7 +173,7 @@ def test_a_walk_of_the_accelerometers_comes_back():
             rests.append(StaticForce(f"{number}", up, mean, sigma, stretch=stretch))
             time += 360.0
             drift = drift + size * np.sqrt(60.0) * rng.standard_normal(3)
-        found.append(accelerometers.fit(rests, G, GRAVITY_SIGMA, 1e-7))
+        found.append(accelerometers.fit(rests, Reference(G, GRAVITY_SIGMA, 1e-7)))
     walks = np.array([fit.random_walk for fit in found])
     assert np.all(walks > 0)
     pulls = np.array([(fit.random_walk - size) / fit.random_walk_sigma for fit in found])

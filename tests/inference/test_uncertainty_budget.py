@@ -6,7 +6,7 @@ import pytest
 
 from inertial.campaign.equations import PRIOR_SIZE
 from inertial.campaign.observations import campaign_of
-from inertial.estimation.accelerometers import StaticForce, drifting
+from inertial.estimation.accelerometers import Reference, StaticForce, drifting
 from inertial.estimation.uncertainty_budget import Model, budget
 from inertial.physics.forward import Triad
 
@@ -20,8 +20,8 @@ def parts():
     statics = [
         StaticForce(f"p{i}", up, GRAVITY * up, np.full(3, NOISE)) for i, up in enumerate(ups)
     ]
-    known = (GRAVITY, GRAVITY_SIGMA, TILT, Triad(np.eye(3), np.zeros(3)))
-    return budget(Model(drifting(statics, *known, walking=False)))
+    reference, about = Reference(GRAVITY, GRAVITY_SIGMA, TILT), Triad(np.eye(3), np.zeros(3))
+    return budget(Model(drifting(statics, reference, about, walking=False)))
 
 
 def test_the_parts_add_up(parts):

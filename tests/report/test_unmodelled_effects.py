@@ -71,6 +71,27 @@ def test_residuals_stand_before_and_after() -> None:
     assert "without (hollow) and with effects in the model (filled)" in html
 
 
+def test_an_effect_in_the_model_of_the_result_is_shown_with_its_numbers() -> None:
+    html = demo()["criticism/gyro_g_sensitivity"]
+    assert "as they were detected; the result does not contain them" in html
+    made = synthetic.brief()
+    result = made["result"]
+    gyro = result[result["sensor"] == "gyro"].iloc[[0]]
+    of_effect = gyro.assign(
+        id="diagnosis/gyroscope/gyro_g_sensitivity.g_yy",
+        effect="gyro_g_sensitivity",
+        parameter="gyro_g_sensitivity.g_yy",
+        value=-4.92e-7,
+        sigma=1.4e-8,
+    )
+    made["result"] = pd.concat([result, of_effect], ignore_index=True)
+    html = blocks(on(made))["criticism/gyro_g_sensitivity"]
+    assert "Gyro g-sensitivity: the parameters beyond 3 σ, by the result." in html
+    # 4.92e-7 (rad/s)/(m/s²) · 206 264.8 · 9.80665
+    (row,) = re.findall(r'<tr id="criticism/gyro_g_sensitivity/.*?</tr>', html)
+    assert "−0.995" in row and "0.028" in row
+
+
 def test_an_oscillation_is_shown_as_s0_shows_it() -> None:
     html = demo()["criticism/oscillation"]
     shown = "x gyro in x-forward, a turn about x; y gyro in y-forward, a turn about y; x gyro in"

@@ -38,7 +38,7 @@ TESTS = {
 # ---- parameters of an effect
 
 
-def parameters(title: str, rows: Sequence[Record]) -> outline.Table:
+def parameters(caption: str, rows: Sequence[Record]) -> outline.Table:
     """Those beyond 3 σ; how many others there are."""
     clear = [row for row in rows if _clear(row)]
     others = sum(row["value"] is not None and bool(row["sigma"]) for row in rows) - len(clear)
@@ -48,7 +48,7 @@ def parameters(title: str, rows: Sequence[Record]) -> outline.Table:
     ] * bool(others)
     notes += [_("{gaps} not determined", gaps=numbers.counted(gaps, "parameter"))] * bool(gaps)
     return outline.Table(
-        _("{title}: the parameters beyond 3 σ.", title=capital(title)),
+        caption,
         (
             outline.Column("", "symbol"),
             *outline.value_and_sigma(unit=True),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from inertial.campaign.effect_sizes import sizes_of_result
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened, significant
@@ -200,13 +201,39 @@ def _title(row: Record) -> str:
 
 
 def _parameters(tables: Tables, row: Record) -> Iterator[outline.Table]:
-    """Its parameters; of a random walk none, for its only number is in the sentence."""
+    """Its parameters, by the result where its model has the effect.
+
+    Of a random walk none, for its only number is in the sentence.
+    """
     tested = effect_of(tables, row)
     known: Sequence[Record] = tested.parameters if tested else ()
     if not any(each["value"] is not None for each in known):
         known = row["parameters"]
-    if known and kind_of(row) != "walk":
-        yield effect_tables.parameters(name_of(row), known)
+    if kind_of(row) == "walk" or not known:
+        return
+    title = capital(name_of(row))
+    if by_result := _of_result(tables, row, known) if tested else []:
+        caption = _("{title}: the parameters beyond 3 σ, by the result.", title=title)
+    else:
+        caption = _(
+            "{title}: the parameters beyond 3 σ, as they were detected; the result does not "
+            "contain them.",
+            title=title,
+        )
+    yield effect_tables.parameters(caption, by_result or known)
+
+
+def _of_result(tables: Tables, finding: Record, known: Sequence[Record]) -> list[Record]:
+    """The same parameters of an effect with the values of the result; none: these are not in it."""
+    of_result = sizes_of_result(tables.rows("result"))
+    missing = {"value": None, "sigma": None}
+    place = finding["mount"], finding["cause"]
+    values = [of_result.get((*place, row["parameter"]), missing) for row in known]
+    if all(own is missing for own in values):
+        return []
+    return [
+        row | {key: own[key] for key in missing} for row, own in zip(known, values, strict=True)
+    ]
 
 
 def _own_figures(tables: Tables, row: Record, key: str) -> Iterator[outline.Figure]:
