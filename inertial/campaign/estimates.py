@@ -15,6 +15,7 @@ from inertial.estimation.least_squares import Estimate
 from inertial.estimation.switch_ons import SwitchOns
 from inertial.estimation.variance_components import ScatterFit
 from inertial.tables import AXES
+from inertial.tables.campaign_inputs import ESTIMATION
 from inertial.text.messages import _
 from inertial.text.parameters import CROSS, MOUNTING, PARTS, SCALE, SENSOR_OF, SYMMETRIC
 
@@ -65,13 +66,9 @@ OF_POSITIONS = {
 OF_SWITCH_ONS = {f"switch-on {i}": axis for i, axis in enumerate(AXES)}
 UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 TABLES = {
-    "parameters": tables.PARAMETERS,
-    "fit": tables.FIT,
-    "fit_manoeuvres": tables.FIT_MANOEUVRES,
-    "averaging": tables.AVERAGING,
-    "positions": tables.POSITIONS,
-    "switch_ons": tables.SWITCH_ONS,
-    "wanted": tables.WANTED,
+    name: table
+    for name, table in ESTIMATION.writes.items()
+    if name not in ("covariance", "findings")  # which are of the joint result alone
 }
 
 
