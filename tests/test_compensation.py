@@ -163,6 +163,19 @@ def test_what_the_result_has_wrong_is_left_over(coupled):
     assert abs(off[1]) < 0.5
 
 
+def test_static_positions_are_predicted_about_the_azimuth_of_the_result(coupled):
+    """That of the joint estimate, which lacks the g-sensitivity, is off by tens of degrees."""
+    table = coupled["compensation/residuals"]
+    still = table[table["phase"].isin(["rest", "rest-before", "rest-after"])]
+    for channel in GYRO:
+        weights = still[f"sigma_{channel}"] ** -2.0
+        own = still.assign(weights=weights, sums=weights * still[f"residual_{channel}"])
+        sums = own.groupby(["manoeuvre", "phase"])[["weights", "sums"]].sum()
+        means = sums["sums"] / np.sqrt(sums["weights"])  # in sigma
+        assert means.abs().max() < 6  # errors of the parameters beside the noise
+        assert np.sqrt((means**2).mean()) < 1.5
+
+
 # ---- the stream
 
 

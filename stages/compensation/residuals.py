@@ -1,8 +1,9 @@
-"""Readings less what the result that counts predicts: static positions and steady rotation.
+"""Readings less what the final result predicts: static positions and steady rotation.
 
-A static position is predicted in its blocks, by the forward model with all effects of the result.
+A static position is predicted in its blocks, by the forward model with all effects of the result,
+about the azimuth that these give where the heading is not known.
 The rate in a rotation is that of `simulated`, of which M and bias of the joint fit are undone; the
-effects are those that a reading tells, so that one of the table stays in.
+effects are those that follow from a reading, so that one of the table stays in.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,6 +22,7 @@ from inertial.physics.forward import Site, Triad, predict
 from inertial.physics.motion import Motion, stretches
 from inertial.tables import ACCEL, CHANNELS, GYRO
 from inertial.tables.parquet import Stream
+from stages.compensation.azimuths import with_azimuths
 
 Array = NDArray[np.float64]
 
@@ -45,8 +47,7 @@ def residuals(
             sensors.append((GYRO, measurement.gyro, known))
         motions = CampaignMotions(data)
         for channels, result, positions in sensors:
-            for position in positions:
-                yield _at_rest(data, position, motions.at_rest(position), channels, result)
+            yield from _static(data, positions, motions, channels, result)
         yield from (
             _in_rotation(data, name, turn, measurement)
             for name, turn in turns.items()
@@ -54,28 +55,41 @@ def residuals(
         )
 
 
-def _at_rest(
+def _static(
     data: CampaignData,
-    position: StaticPosition,
-    rest: Motion,
+    positions: Sequence[StaticPosition],
+    motions: CampaignMotions,
     channels: Sequence[str],
     result: SensorResult,
-) -> pd.DataFrame:
-    """A static position in its blocks; by hand it tells of |f| alone, along the vertical."""
+) -> Iterator[pd.DataFrame]:
+    """The static positions in their blocks; by hand they tell of |f| alone, along the vertical."""
+    rests = [_in_blocks(position, motions.at_rest(position)) for position in positions]
+
+    def residuals_at(motions: Sequence[Motion]) -> list[Array]:
+        predicted = (_predicted(each, data.result.site, channels, result) for each in motions)
+        return [p.means - values for p, values in zip(positions, predicted, strict=True)]
+
+    if channels is GYRO and result.triad is not None:
+        rests = with_azimuths(data, positions, rests, result.triad.matrix, residuals_at)
+    for position, values in zip(positions, residuals_at(rests), strict=True):
+        if data.by_hand:
+            values[:, np.abs(position.up_now) < MIN_COSINE] = np.nan
+        sigma = position.density[:, None] / np.sqrt(position.seconds)
+        yield _frame(
+            data,
+            (position.manoeuvre.name, position.part.phase),
+            (position.time, position.seconds),
+            dict(zip(channels, values.T, strict=True)),
+            dict(zip(channels, sigma, strict=True)),
+        )
+
+
+def _in_blocks(position: StaticPosition, rest: Motion) -> Motion:
+    """The motion of a static position, one stretch, in its blocks."""
     count = len(position.seconds)
     same = {f.name: getattr(rest, f.name).repeat(count, axis=0) for f in fields(rest)[2:]}
     own = {"time": position.time, "seconds": position.seconds, "temperature": position.temperature}
-    motion = replace(rest, **(same | own))
-    left = position.means - _predicted(motion, data.result.site, channels, result)
-    if data.by_hand:
-        left[:, np.abs(position.up_now) < MIN_COSINE] = np.nan
-    return _frame(
-        data,
-        (position.manoeuvre.name, position.part.phase),
-        (position.time, position.seconds),
-        dict(zip(channels, left.T, strict=True)),
-        dict(zip(channels, position.density[:, None] / np.sqrt(position.seconds), strict=True)),
-    )
+    return replace(rest, **(same | own))
 
 
 def _predicted(motion: Motion, site: Site, channels: Sequence[str], result: SensorResult) -> Array:
