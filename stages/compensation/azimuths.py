@@ -73,12 +73,14 @@ def _horizontal(rests: Sequence[tuple[StaticPosition, Array, Array]], gain: Arra
         weights = np.nan_to_num(each)
         information = information + (columns.T * weights.sum(axis=0)) @ columns
         right = right + columns.T @ (weights * np.nan_to_num(left)).sum(axis=0)
-    found: Array = np.linalg.solve(information + PRIOR_INFORMATION * np.eye(2), right)
+    prior = PRIOR_INFORMATION * np.eye(2)
+    found: Array = np.asarray(np.linalg.solve(information + prior, right), np.float64)
     for _ in range(ITERATIONS):
-        along = found / np.linalg.norm(found)
+        along = found / float(np.linalg.norm(found))
         across = np.array([-along[1], along[0]])
         determined = float(across @ information @ across)
         if determined < MAX_AZIMUTH_SIGMA**-2:
             return found
-        found = along + across * (across @ (right - information @ along)) / determined
+        step = float(across @ (right - information @ along)) / determined
+        found = along + step * across
     return found / float(np.linalg.norm(found))
