@@ -13,7 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -35,6 +35,7 @@ SEED = 20261123
 BUDGET_S = 40.0  # of tests for each mutant
 PATIENCE = 5.0  # times as long as without the fault, and 30 s: a mutant that takes longer hangs
 DURATION = re.compile(r"([\d.]+)s call +(.+)")
+SOME_FAILED = 1  # exit status of pytest
 
 
 @dataclass(frozen=True)
@@ -64,7 +65,10 @@ def pytest_command(*arguments: str) -> list[str]:
 
 
 def covered(folder: Path) -> Coverage:
-    """What executes each line, by a run of the suite that is kept in a folder for this code."""
+    """What executes each line, by a run of the suite that is kept in a folder for this code.
+
+    A test that fails without any fault is left out.
+    """
     data, durations = folder / f"{code()[:16]}.coverage", folder / f"{code()[:16]}.txt"
     if not durations.exists():
         folder.mkdir(parents=True, exist_ok=True)
@@ -72,12 +76,18 @@ def covered(folder: Path) -> Coverage:
         cov = [*(f"--cov=inertial/{room}" for room in ROOMS), "--cov-context=test"]
         command = pytest_command(*suite, *cov, "--cov-report=", "--durations=0", "-vv")
         env = os.environ | {"COVERAGE_FILE": str(data)}
-        done = subprocess.run(command, cwd=ROOT, env=env, stdout=subprocess.PIPE, check=True)
+        done = subprocess.run(command, cwd=ROOT, env=env, stdout=subprocess.PIPE, check=False)
+        if done.returncode > SOME_FAILED:
+            sys.exit(done.stdout.decode()[-2000:])
         durations.write_bytes(done.stdout)
+    output = durations.read_text(encoding="utf-8")
     seconds = {}
-    for line in durations.read_text(encoding="utf-8").splitlines():
+    for line in output.splitlines():
         if match := DURATION.fullmatch(line):
             seconds[match[2]] = float(match[1])
+    for test in _failed(output):
+        sys.stdout.write(f"fails without any fault, and is left out: {test}\n")
+        seconds.pop(test, None)
     measured = CoverageData(str(data))
     measured.read()
     lines: dict[str, dict[int, list[str]]] = {}
@@ -148,10 +158,14 @@ def killed(file: str, mutation: Mutation, tests: Sequence[str], limit: int) -> s
         return None
     if done.returncode < 0:
         return "takes far longer"
-    for line in done.stdout.splitlines():
+    return next(_failed(done.stdout), "cannot be imported")
+
+
+def _failed(output: str) -> Iterator[str]:
+    """The tests that failed, by the summary of pytest."""
+    for line in output.splitlines():
         if line.startswith(("FAILED ", "ERROR ")):
-            return line.split(" ", 1)[1].partition(" - ")[0]
-    return "cannot be imported"
+            yield line.split(" ", 1)[1].partition(" - ")[0]
 
 
 _covered = cache(lambda folder: covered(Path(folder)))
