@@ -9,6 +9,6 @@ from inertial.text.messages import _
 
 def listed(names: Sequence[str], last: str = "and") -> str:
     """Names as part of a sentence: a, b and c."""
-    if len(names) == 1:
-        return names[0]
+    if len(names) < 2:
+        return "".join(names)
     return _(", ").join(names[:-1]) + (_(" and ") if last == "and" else _(" or ")) + names[-1]
