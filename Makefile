@@ -27,17 +27,17 @@
 #   make test-slow                those that draw many campaigns; ten minutes on two cores
 #   make bench                    errors, time and memory compared with other programs, in one run;
 #                                 also with ONLY="cost noise"
-#   make style                    linters, types, and which room may import which
+#   make style                    linters, types, and which package may import which
 #   make challenge                hides effects in many campaigns and reports what is detected, in
-#                                 docs/challenge.md; three hours on two cores, can be resumed; with
-#                                 DRAWS=100 a tenth of them; with ONLY=diagnosis only what the
-#                                 diagnosis says of 688 of them, in docs/diagnosis.md, an hour of
-#                                 one core; with ONLY="diagnosis fault spikes" those that have
-#                                 these words; this and what follows with CORES=1 in one process
+#                                 docs/challenge.md; two hours on two cores, can be resumed; with
+#                                 DRAWS=100 a twelfth of them; with ONLY=diagnosis only the 688 of
+#                                 the diagnosis, in docs/diagnosis.md, an hour of one core; with
+#                                 ONLY="diagnosis fault spikes" those that have these words; this
+#                                 and what follows with CORES=1 in one process
 #   make temperature              records campaigns in a simulated temperature chamber and compares
 #                                 parameters as curves of the temperature with their bound, in
-#                                 docs/temperature.md; two hours on two cores, can be resumed; with
-#                                 DRAWS=100 a tenth of them
+#                                 docs/temperature.md; an hour of one core, can be resumed; with
+#                                 DRAWS=100 a twelfth of them
 #   make silence                  records 2000 clean campaigns and counts what is named in them, in
 #                                 docs/silence.md; three hours on two cores, can be resumed; with
 #                                 DRAWS=100 so many of them
@@ -63,7 +63,7 @@
 #   make screenshots              a campaign's report as a person sees it, wide and narrow, light, dark and
 #                                 printed, into reports/screenshots/; also with CAMPAIGN=<name>
 #   make mutants                  puts faults into the physics, one at a time, and reports which of them the
-#                                 tests see, in docs/mutants.md; 1200 faults take an hour on two cores,
+#                                 tests detect, in docs/mutants.md; 1200 faults take an hour on two cores,
 #                                 can be resumed; with DRAWS=100 so many of them
 #   make cluster-test             campaigns through a Slurm of two nodes on this machine, one of which dies;
 #                                 some minutes; it needs root, and Debian's slurm-wlm and munge; with
@@ -129,7 +129,7 @@ COMMAND := $(BIN)/python -m turntable_calibration
 CALLED := report crate check draft new design trace index compare fleet
 ENDED := $(shell mktemp --dry-run --suffix=.make)
 $(CALLED:%=try-%): export ENDED := $(ENDED)
-try = -trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "what is wrong stands above" > $$ENDED' EXIT
+try = -trap '(( $$? == 0 )) || [[ -s $$ENDED ]] || echo "see the message above" > $$ENDED' EXIT
 ended = $(if $(file < $(ENDED)),$(error $(shell cat $(ENDED); rm $(ENDED))))
 
 .PHONY: $(CALLED:%=try-%)

@@ -40,14 +40,14 @@ def call(program: Path, *arguments: str, cwd: Path) -> subprocess.CompletedProce
 def test_it_ships_what_the_workflow_needs_and_nothing_of_this_checkout(installed: Path) -> None:
     (home,) = installed.parent.parent.glob("lib/python*/site-packages/turntable_calibration")
     shipped = home / "workflow"
-    for room in ("stages", "inertial", "commands", "overviews", "laboratory", "profiles"):
+    for place in ("stages", "inertial", "commands", "overviews", "laboratory", "profiles"):
         here = {
             path.relative_to(chain.ROOT)
-            for path in (chain.ROOT / room).rglob("*")
+            for path in (chain.ROOT / place).rglob("*")
             if path.is_file() and "__pycache__" not in path.parts
         }
         there = {
-            path.relative_to(shipped) for path in (shipped / room).rglob("*") if path.is_file()
+            path.relative_to(shipped) for path in (shipped / place).rglob("*") if path.is_file()
         }
         assert {path for path in there if "__pycache__" not in path.parts} == here
     assert not (home / "tests").exists()

@@ -53,7 +53,7 @@ def evidence(
 def _informative(
     campaign: Campaign, effects: Sequence[Effect]
 ) -> tuple[list[tuple[str, System]], list[tuple[str, EffectInformation]]]:
-    """The equations by sensor, and what they say of the effects, as independent ones."""
+    """The equations by sensor, and their information on the effects, made independent."""
     tilts = campaign.shared_tilts
     pairs = zip(SENSORS, campaign.systems(effects, 1.0, sharing=tilts), strict=True)
     systems = [(sensor, system) for sensor, system in pairs if system is not None]

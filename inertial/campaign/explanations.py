@@ -1,4 +1,4 @@
-"""What each cause explains: the findings that vanish where it is true and undone, or modelled.
+"""What each cause explains: the findings that it removes once it is corrected or modelled.
 
 One table, read from top to bottom: a cause, what it makes other stages report, and where it does.
 """
@@ -79,7 +79,7 @@ _KIND = {
     }.items()
     for name in names
 }
-# What a recording shows of its circumstances: no fault, and whether it matters the model tells.
+# What a recording shows of its circumstances: no fault; whether it matters follows from the model.
 CIRCUMSTANCES = ("temperature_drift",)
 MAX_WALK_P = 0.005  # as of all names together, of a random walk that is a cause and no mere noise
 MISFITS = ("unexplained", "unknown_structure")
@@ -160,7 +160,7 @@ EXPLANATIONS = (
         same_axis,
     ),
     Explanation(("dead_axis",), _is("bias_jump"), same_axis),
-    # A motion beyond the range says nothing of a rest before it or behind it.
+    # A motion beyond the range does not explain findings of a rest before or after it.
     Explanation(("saturation",), _is("bias_jump"), same_readings),
     # Once in every period a reading is off: beside it that makes spikes, and lines of a spectrum.
     Explanation(("periodic_glitch",), _is("spike", "oscillation"), same_axis),
@@ -218,7 +218,7 @@ def _in_proportion(effect: Hypothesis) -> bool:
 
 
 def _rank(hypothesis: Hypothesis) -> int:
-    """Which of two findings of one thing speaks for it: the repaired, then the named one."""
+    """Which of two findings of the same thing represents it: the repaired, then the named one."""
     return (
         8 * (hypothesis.repair is not None)
         + 4 * hypothesis.named
@@ -238,17 +238,17 @@ def _explains_position(cause: Hypothesis, other: Hypothesis) -> bool:
     return cause.stage != POSITIONS and same_manoeuvre(cause, other)
 
 
-# Findings of the model whose law is not known, that which leaves most unsaid first: each explains
-# those behind it.
-UNSAID = ("unknown_structure", "random walk", "consistent", "unexplained")
+# Findings of the model whose law is not known, the least specific first: each explains those after
+# it.
+UNSPECIFIC = ("unknown_structure", "random walk", "consistent", "unexplained")
 
 
-def _unsaid(finding: Hypothesis) -> int:
-    """The place of a finding of the model in UNSAID."""
+def _generality(finding: Hypothesis) -> int:
+    """The place of a finding of the model in UNSPECIFIC."""
     if finding.cause in MISFITS:
-        return UNSAID.index(finding.cause)
+        return UNSPECIFIC.index(finding.cause)
     walk = finding.cause.endswith("_random_walk")
-    return UNSAID.index("random walk" if walk else "consistent")
+    return UNSPECIFIC.index("random walk" if walk else "consistent")
 
 
 def _uncertain(finding: Hypothesis) -> bool:
@@ -268,7 +268,7 @@ def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
     are; a fault of the recording does, where it spoils what is not masked or repaired.
     """
     if _without_law(cause):
-        return cause.sensor == other.sensor and _unsaid(cause) < _unsaid(other)
+        return cause.sensor == other.sensor and _generality(cause) < _generality(other)
     if cause.stage in (MODEL, POSITIONS):
         return False
     return _unresolved(cause) and same_axis(cause, other)
@@ -311,7 +311,7 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
 
 
 def _is_noise(finding: Hypothesis) -> bool:
-    """Whether it is a random walk at rest, or one that chance may make: a term of the noise.
+    """Whether it is a random walk at rest, or one that is not significant: a term of the noise.
 
     It is in the sigmas and among the terms of the noise; the result lacks nothing by it.
     """

@@ -81,7 +81,7 @@ def detections_of(
 
     Parameters
     ----------
-    logs : the log of each name under which events stand
+    logs : the log by the name of the event
     of_manoeuvres : the names are those of manoeuvres
     """
     detections: list[Detection] = []
@@ -105,7 +105,7 @@ Named = tuple[str, Event]  # under the name of its log, its rest, or none: the c
 
 
 def _groups(events: Events) -> dict[tuple[Any, ...], list[Named]]:
-    """Events that are one finding, by detector, sensor or channel, and what else tells them apart.
+    """Events that are one finding, by detector, sensor or channel, and by what else differs.
 
     Where events are things of their own they are told apart by their place and number, unless
     many are in one place.

@@ -1,8 +1,8 @@
 """A campaign before it is recorded: its blocks without noise, and the sigmas to be expected.
 
-What a manoeuvre tells depends on attitude, rate, duration and noise, not on the readings. So the
-blocks of manoeuvres that are only planned are computed by the forward model, and the equations of
-the estimation are formed of them as of recorded ones.
+The information of a manoeuvre depends on attitude, rate, duration and noise, not on the readings.
+So the blocks of manoeuvres that are only planned are computed by the forward model, and the
+equations of the estimation are formed of them as of recorded ones.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -84,7 +84,7 @@ def _visits(plan: Sequence[Manoeuvre]) -> Iterator[list[Manoeuvre]]:
 
 
 def _periods(plan: Sequence[Manoeuvre], pace: Pace, start: float) -> Iterator[Period]:
-    """What the stage `segment` would find: a rest takes in the standing of turns beside it."""
+    """What the stage `segment` would find: a rest includes the time at rest of adjacent turns."""
     now = start
     for visit in _visits(plan):
         for i, m in enumerate(visit):
@@ -153,7 +153,7 @@ def _blocks(
     assert m.up is not None  # else it is not planned here
     about = m.up if m.about is None else m.about
     north = solution.north(position_of(m, heading))
-    # An azimuth that nobody knows may be any one.
+    # An unknown azimuth: any value does.
     north = level_axes(m.up)[0] if np.isnan(north).any() else north
     middle, swept = pieces.angle, pieces.rate * pieces.seconds
     zero = np.zeros(len(middle))
@@ -243,7 +243,7 @@ def stated_noise(figures: Mapping[str, Mapping[str, float | None]]) -> NoiseLeve
     return NoiseLevels(pd.DataFrame(rows).reindex(columns=LEVEL_COLUMNS))
 
 
-# ---- What the estimation will make of it.
+# ---- The sigmas of the estimation.
 
 
 def sigmas(data: CampaignData) -> Array:

@@ -139,7 +139,7 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
 def _repairs(findings: Findings) -> tuple[dict[str, list[Row]], list[Row]]:
     """The repairs by the id of the finding that they undo, and those that no finding reports.
 
-    A repair of the plan cannot know that id: it has the finding of its cause and sensor.
+    A repair of the plan does not have that id: it is matched by cause and sensor.
     """
     axes: dict[str, set[str]] = {}
     for row in rows_of(findings.channel_repairs):

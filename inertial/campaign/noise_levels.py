@@ -37,7 +37,7 @@ STATED, RESIDUALS = "stated", "residuals"  # of means without time
 def drift_of(terms: NoiseTerms) -> dict[str, float]:
     """What of the terms of a channel enters the covariance, by name.
 
-    Of drifts that the data do not tell from each other that is the likeliest.
+    Of drifts that the data do not distinguish that is the likeliest.
     """
     sizes = {name: float(getattr(terms.model, name)) for name in DRIFTS}
     certain = {name for name in DRIFTS if terms.terms[name].p_value < MAX_P_VALUE}

@@ -210,14 +210,14 @@ class Recorded:
 
     @property
     def in_part(self) -> bool:
-        """Whether it is refused as a turn, but the encoder knows the angle of what is recorded."""
+        """Whether it is refused as a turn, but the encoder gives the angle of what is recorded."""
         lacks = self.done.found and not (self.done.complete or self.done.bridged)
         whole = self.plan.recorded == "whole" and self.done.angle is not None
         return bool(lacks and whole and windows_of(self.blocks, self.plan.axis))
 
     @property
     def by_encoder(self) -> bool:
-        """Whether the encoder knows the angle of its steady part."""
+        """Whether the encoder gives the angle of its steady part."""
         return bool(windows_of(self.steady, self.plan.axis))
 
     @property
@@ -234,7 +234,7 @@ class GyroInputs:
     recorded: list[Recorded]
     turns: list[RateSegment]  # from rest to rest, with their angle known
     steady_rates: list[SteadyRate]  # at a known rate
-    # As the joint estimate takes them: windows of the encoder where that knows parts of turns.
+    # As the joint estimate takes them: windows of the encoder where that gives parts of turns.
     segments: list[RateSegment]
     set_rates: list[SteadyRate]
     earth: Earth

@@ -61,7 +61,7 @@ class Manoeuvre:
 
     @property
     def selected(self) -> bool:
-        """Whether the plan says which stretch of the log it is."""
+        """Whether the plan states which stretch of the log it is."""
         return (self.from_s, self.from_row, self.label) != (None, None, None)
 
     @property
@@ -281,7 +281,7 @@ def runs_of(logs: Iterable[str], clocks: Mapping[str, Clock], shared: bool) -> d
     """Which run of the instrument each log is of, from switch-on to switch-off.
 
     Logs that share a clock and follow one another within minutes are of one run, for nobody
-    switches an instrument off that must warm up again. Of others nothing tells, so each may be one.
+    switches an instrument off that must warm up again. Other logs may each be a run of their own.
     """
     names = list(logs)
     if not shared or any(name not in clocks for name in names):

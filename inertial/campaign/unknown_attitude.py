@@ -136,7 +136,7 @@ def fitted_to(data: "CampaignData", positions: Sequence[FreeStaticPosition]) -> 
     """P and bias of the accelerometers, with a scatter between positions beyond the white noise.
 
     Within a position by hand it is the support that drifts, not only the bias: so what drifts there
-    tells nothing of the differences between positions, which show their scatter themselves.
+    does not determine the differences between positions, which show their scatter themselves.
     """
     gravity, rests = data.gravity, [position.rest for position in positions]
     fit = partial(free_positions, rests, gravity.number, gravity.scatter)

@@ -18,16 +18,16 @@ TRANSLATIONS = "inertial/text/*.po"
 SPEAKS = "speak_as_set("  # stands in __main__.py of what speaks other languages
 
 
-def code_of(stage: str, room: str = "stages") -> list[Path]:
+def code_of(stage: str, package: str = "stages") -> list[Path]:
     """Every file that `python -m stages.<stage>` can reach by its imports, and the lock file.
 
-    `room`: where it lies, which for a page of several campaigns is `overviews`.
+    `package`: where it lies, which for a page of several campaigns is `overviews`.
 
     The imports are read from the text, so nothing is run. With a module come the
     schemas and templates that lie in its folder.
     """
     reached: set[Path] = set()
-    waiting = [f"{room}.{stage}.__main__", room, f"{room}.{stage}"]
+    waiting = [f"{package}.{stage}.__main__", package, f"{package}.{stage}"]
     seen: set[str] = set()
     while waiting:
         if (module := waiting.pop()) not in seen:
@@ -39,7 +39,7 @@ def code_of(stage: str, room: str = "stages") -> list[Path]:
     beside = {file for folder in folders for file in _data(folder)}
     if any(
         SPEAKS in file.read_text(encoding="utf-8")
-        for file in _files(ROOT, f"{room}.{stage}.__main__")
+        for file in _files(ROOT, f"{package}.{stage}.__main__")
     ):
         beside |= set(ROOT.glob(TRANSLATIONS))
     return sorted(reached | beside | {ROOT / "requirements.lock"})

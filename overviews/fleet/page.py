@@ -9,13 +9,14 @@ from typing import Any
 
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _, plural
 from overviews.tables_of import made_from
 from stages.report import outline
 from stages.report.page import page
 from stages.report.results import quantity_of, symbol
 from stages.report.tables import Tables
-from stages.report.words import SENSOR, SENSORS, capital, listed
+from stages.report.words import SENSOR, SENSORS, capital
 
 Row = dict[str, Any]
 Rows = Mapping[str, Sequence[Row]]

@@ -1,1 +1,1 @@
-"""Which physical effects the simulation lacks, by name."""
+"""The physical effects that the simulation does not contain, by name."""

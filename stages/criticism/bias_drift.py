@@ -51,9 +51,10 @@ def random_walks_with_sigmas(campaign: Campaign, effects: Sequence[Effect]) -> d
 
 
 def _walk(campaign: Campaign, sensor: str, size: float, effects: Sequence[Effect]) -> Walk:
-    """A size is never below 0, so half of all draws without a walk have none (Self & Liang 1987).
+    """A random walk of a sensor with its sigma and p-value.
 
-    Two sensors are searched, which makes that up.
+    A size cannot be negative, so the statistic is zero in half of all draws without a random walk
+    (Self & Liang 1987); the factor of two for the two sensors cancels this.
     """
     deviance = campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE)
     drop = max(deviance(0.0) - deviance(size), 0.0)

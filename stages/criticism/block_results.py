@@ -242,7 +242,7 @@ class BlockResults:
         return [(names[int(family[i].at or 0)], float(drops[i])) for i in near]
 
     def _same_rate(self, effect: Effect, parameter: str) -> str | None:
-        """What turns up and down at the same rate, unlike those of source S3, would bring."""
+        """The gain from turns with the axis up and down at the same rate, unlike those of S3."""
         if effect.name != "gyro_scale_g_dependence" or parameter != effect.parameters[0].name:
             return None
         shares = self.extended.mimicry(effect.name, "gyro_scale_quadratic", TURNED_OVER)

@@ -128,7 +128,7 @@ def split_sentence(split: Splitting | None) -> str:
 
 
 def same_rate_sentence(now: float, then: float) -> str:
-    """What turning at the same rate with the axis down would bring; shares of the signal."""
+    """The gain from turns with the axis up and down at the same rate; shares of the signal."""
     return SAME_RATE.format(now=100 * now, then=100 * then, manoeuvre=TURNED_OVER)
 
 

@@ -2,9 +2,10 @@
 
 Bound to time it has one frequency f in all turns, bound to the angle one order n, so the frequency
 n θ'/2π in a turn at the rate θ'. Amplitude and phase are free in each turn under either hypothesis:
-nobody knows beforehand how an amplitude goes with the rate, nor where on a gear a turn starts. What
-turns with the table does so about its axis in every turn; what vibrates in the case, about one axis
-of the case. Where all turns that show it have one rate, frequency tells nothing.
+how an amplitude depends on the rate, and at which tooth of a gear a turn starts, is unknown
+beforehand. What turns with the table does so about its axis in every turn; what vibrates in the
+case, about one axis of the case. Where all turns that show it have one rate, the frequency does not
+distinguish them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -34,7 +35,7 @@ IN_TIME, RIPPLE, ECCENTRICITY = "oscillation", "table_ripple", "table_eccentrici
 TRIED = (*AXES, TABLE)  # axes about which a line may arise
 
 MIN_LOG_ODDS = 3.0  # of one of two hypotheses to be accepted alone: 20 to 1
-MIN_PERIODS = 3.0  # in a turn, of what is bound to time; slower it is not told from drift
+MIN_PERIODS = 3.0  # in a turn, of what is bound to time; slower it is not distinguished from drift
 MIN_PERIODS_REMOVED = 0.5  # in a turn; an alias slower than that is bias and slope
 MIN_REFINED_DROP = 30.0  # of chi-squared, from which a turn has a frequency of its own
 MIN_FREE_ORDER_DROP = 9.0  # of chi-squared, by an order other than 1

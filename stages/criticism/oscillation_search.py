@@ -48,7 +48,7 @@ Array = NDArray[np.float64]
 MAX_MULTIPLE = 10  # of a frequency or an order, that is still the same cause
 MAX_ALIAS_MULTIPLE = 3  # the same beyond half the sample rate
 MULTIPLE_SIGMAS = 4.0  # within which a line is a multiple of another
-MAX_MULTIPLE_SHARE = 0.02  # of a frequency or an order: less certain, a multiple says nothing
+MAX_MULTIPLE_SHARE = 0.02  # of a frequency or an order: less certain, a multiple is not informative
 UNRESOLVED_BINS = 2.0  # between two lines, that are one whose frequency wanders
 
 
@@ -76,7 +76,7 @@ class Oscillation:
 
     @property
     def log_odds(self) -> float:
-        """Logarithm of the odds of the likeliest against the other; its multiples tell too."""
+        """Logarithm of the odds of the likeliest against the other, its multiples included."""
         if len(self.hypotheses) < 2:
             return np.inf
         return sum(_lead(part.hypotheses, self.likeliest.effect) for part in self.parts)

@@ -16,7 +16,7 @@ from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
 from stages.criticism.oscillation_hypotheses import ANGLE, IN_TIME
 from stages.criticism.oscillation_search import Oscillation
 
-MAX_LOG_ODDS = 40.0  # beyond which the number of the odds says nothing
+MAX_LOG_ODDS = 40.0  # beyond which the number of the odds is not informative
 MIN_PERIODS_IN_TURN = 1.5  # below which a turn determines little of an eccentricity
 MAX_INTEGER_SIGMAS = 3.0  # within which an order is a whole number
 MAX_TURNS = 4  # that a sentence names

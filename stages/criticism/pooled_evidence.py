@@ -1,4 +1,4 @@
-"""What the campaign says of effects that are too small for it alone, for fleets of campaigns."""
+"""Information of the campaign on effects too small to detect in it alone, for fleets."""
 
 from collections.abc import Iterator
 

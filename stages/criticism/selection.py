@@ -274,11 +274,12 @@ def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
     beside = [cause.effect for cause in walk.named.causes if cause.effect not in others]
     start = law.equations_without(only)
     walking = walk_odds.walk(start, law.half_waves(sensor))
-    # Of all its waves: without the fast ones a walk would be spared what speaks against it.
+    # Of all its waves: without the fast ones the evidence against a walk would be incomplete.
     known = [effect for effect in law.fitted if effect.name not in only]
     walking = replace(walking, log_evidence=walk_evidence(law.campaign, sensor, known))
     nothing = walk_odds.Explained(0.0, start)
-    # A walk is as likely beforehand as any one effect: each further cause pays for its choice.
+    # A walk is as likely beforehand as any one effect: each further cause is penalised for having
+    # been chosen.
     further = (len(only) - len(beside) - 1) * float(np.log(len(law.families)))
     return law.explained(only, nothing) - law.explained(beside, walking) - max(further, 0.0)
 

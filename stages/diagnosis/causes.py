@@ -82,7 +82,7 @@ class Cause:
 
     @property
     def main(self) -> Hypothesis:
-        """The largest of the equal ones, which speaks for all."""
+        """The largest of the equal ones, which represents all."""
         return max(
             (member.cause for member in self.members),
             key=lambda h: (h.row["severity"], abs(h.row["size"] or 0.0)),
@@ -285,8 +285,8 @@ def _moved_by_clock(error: float, own: Sequence[SensorResult]) -> float | None:
     """By how many sigma specific forces that are off by a share move the parameters.
 
     One of two opposite rests reads g (1 + error): half of that goes into the scale factor, half of
-    g times it into the bias. So far apart are the results of stamps that are wrong and of a
-    sampling that is.
+    g times it into the bias. This is the difference between the results for wrong stamps and
+    for a wrong sampling interval.
     """
     shifts = [
         error / 2 * size / sigma

@@ -1,8 +1,8 @@
 """Which result of a sensor counts: the joint one, or one with effects in the model.
 
 One with effects does where it predicts the manoeuvres not used in its fit better than the joint
-one, no finding shows that the model is still incomplete, no single manoeuvre carries the effects,
-and no parameter is lost.
+one, no finding shows that the model is still incomplete, no effect rests on a single manoeuvre, and
+no parameter is lost.
 """
 
 from collections.abc import Iterable, Sequence
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from inertial.campaign.records import Row
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.parameters import JOINT
 
@@ -125,7 +126,7 @@ def likeliest(candidates: Iterable[Row]) -> Row | None:
 
 
 def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
-    """What speaks against a candidate; empty where nothing does."""
+    """The objections to a candidate; empty where there are none."""
     if causes:
         return NOT_EXPLAINED.format(causes=causes)
     for row in effects:
@@ -143,9 +144,9 @@ def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
 
 
 def _freed(effects: Sequence[Row]) -> list[str]:
-    """The manoeuvres that the effects free, where each is the own error of one; else none.
+    """The manoeuvres whose own errors these effects are; none where any is something else.
 
-    Such an effect cannot be predicted from other manoeuvres, and needs not: in the model it only
+    Such an effect cannot be predicted from other manoeuvres, and need not be: in the model it only
     gives its manoeuvre an unknown of its own, so that it no longer moves the parameters.
     """
     if any(r["effect"] not in OF_ONE_MANOEUVRE or not r["carried_by"] for r in effects):
@@ -171,7 +172,4 @@ def _other_members(own: Sequence[Row], effects: Sequence[Row]) -> str:
 
 
 def _listed(causes: Sequence[str], last: str = "and") -> str:
-    names = [in_words(cause) for cause in causes]
-    if len(names) < 2:
-        return "".join(names)
-    return f"{', '.join(names[:-1])} {last} {names[-1]}"
+    return listed([in_words(cause) for cause in causes], last)

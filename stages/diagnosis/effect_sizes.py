@@ -51,7 +51,7 @@ def sentences(
             )
             for rows in (before, now)
         )
-        # Criticism says more of some effects, such as where a line is: that stays as it is.
+        # Criticism reports more of some effects, such as where a line is: that stays as it is.
         if cause.row["sentence"] == old:
             yield cause.id, new
 

@@ -1,4 +1,4 @@
-"""The verdict of a sensor, never greener than the worst of its causes."""
+"""The verdict of a sensor, no better than its worst cause allows."""
 
 from __future__ import annotations
 

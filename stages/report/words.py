@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
 from inertial.text.messages import ENGLISH, _, language
 from inertial.text.numbers import shortened
@@ -68,13 +67,6 @@ def parameter(sensor: str, quantity: str) -> str:
         return f"{SENSOR[sensor]} {quantity}"
     kind, axes = PARTS[quantity]
     return _("{sensor}, {kind} {axes}", sensor=SENSOR[sensor], kind=KINDS[kind], axes=axes)
-
-
-def listed(names: Sequence[str], last: str = "and") -> str:
-    """Names as part of a sentence: a, b and c."""
-    if len(names) == 1:
-        return names[0]
-    return _(", ").join(names[:-1]) + (_(" and ") if last == "and" else _(" or ")) + names[-1]
 
 
 def capital(text: str) -> str:

@@ -254,10 +254,11 @@ def _right(words: str, outcomes: Sequence[Outcome], wanted: float) -> Bar:
 
 
 def _told_apart(bar: Bar, outcomes: Sequence[Outcome], sort: str) -> Bar:
-    """And where no effect would do for another one, so that all are needed."""
+    """And where no effect accounts for another one, so that all are needed."""
     own = [one for one in of(outcomes, "several", sort) if one["apart"]]
     count, number = tally(own, class_right)
-    return replace(bar, measured=f"{bar.measured}; {count} of {number} where none does for another")
+    apart = f"{count} of {number} where none accounts for another"
+    return replace(bar, measured=f"{bar.measured}; {apart}")
 
 
 def _most(words: str, outcomes: Sequence[Outcome]) -> Bar:

@@ -27,6 +27,7 @@ from hidden_statistics import TRIALS, every_job
 
 PAGE = chain.ROOT / "docs/challenge.md"
 TEMPLATE = Path(__file__).parent / "challenge.md.jinja"
+WANTED = 1200  # campaigns
 SEEN = 8.0  # the ratio from which on an effect of a physical size should be found
 
 Row = Sequence[str]
@@ -40,6 +41,7 @@ def write(outcomes: Sequence[Outcome], statistics: Statistics, page: Path = PAGE
     seconds += sum(row.get("seconds", 0.0) for row in statistics)
     figures = {
         "campaigns": len(outcomes),
+        "wanted": WANTED,
         "statistical": sum(row["trials"] for row in statistics),
         "tried": len(statistics),
         "every": len(every_job()),
@@ -53,7 +55,7 @@ def write(outcomes: Sequence[Outcome], statistics: Statistics, page: Path = PAGE
         "elsewhere": list(_elsewhere(outcomes)),
         "power": list(_power(statistics)),
         "sizes": list(rows_of_page(statistics)),
-        "level": f"{100 * LEVEL:.1f}",
+        "level": f"{100 * LEVEL:.2f}",
         "clean_draws": list(_false(statistics)),
         "time": list(_time(outcomes)),
         "hours": f"{seconds / 3600:.1f}",

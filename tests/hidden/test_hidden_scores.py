@@ -170,7 +170,7 @@ def test_several_are_judged_on_all_and_counted_where_none_does_for_another():
     bar = next(bar for bar in bars(rows, []) if bar.words.startswith("2 effects at once at SNR 6"))
     assert bar.met is False and "(1 of 2)" in bar.measured
     assert bar.words.endswith("(limit 0.800)")
-    assert bar.measured.endswith("; 1 of 1 where none does for another")
+    assert bar.measured.endswith("; 1 of 1 where none accounts for another")
 
 
 def test_the_limit_of_several_is_that_of_what_the_others_leave():

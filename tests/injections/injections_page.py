@@ -30,7 +30,7 @@ def write(outcomes: Sequence[Outcome], count: int, page: Path = PAGE) -> str:
     figures = {
         "code": code(),
         "wanted": WANTED,
-        "count": len(faults) + len(effects),
+        "count": len(faults) + len(effects) + len(hidden),
         "effects": len(effects),
         "found": f"{found:.3f}",
         "limit": f"{limit:.3f}",

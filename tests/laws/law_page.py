@@ -97,4 +97,4 @@ def _of(outcomes: Sequence[Outcome], key: str) -> str:
 
 
 def _met(met: bool) -> str:
-    return "met" if met else "missed"
+    return "met" if met else "**not met**"

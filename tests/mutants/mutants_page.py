@@ -33,15 +33,15 @@ def write(outcomes: Sequence[Outcome], of: int) -> str:
         "explained": sum(bool(row[-1]) for row in rows),
         "alive": rows,
         "kinds": list(_table(outcomes, "kind", KINDS)),
-        "rooms": list(
-            _table([one | {"room": one["file"].split("/")[1]} for one in outcomes], "room")
+        "packages": list(
+            _table([one | {"package": one["file"].split("/")[1]} for one in outcomes], "package")
         ),
         "code": ", ".join(sorted({one["code"][:16] for one in outcomes})),
     }
     text = TEMPLATE.read_text(encoding="utf-8")
     PAGE.write_text(jinja2.Template(text, keep_trailing_newline=True).render(figures), "utf-8")
     return (
-        f"{len(outcomes)} of {of} mutants: {len(alive)} live, {figures['explained']} explained\n"
+        f"{len(outcomes)} of {of} mutants: {len(alive)} survive, {figures['explained']} explained\n"
         f"The page: {PAGE}\n"
     )
 
@@ -56,10 +56,6 @@ def _words(one: Outcome) -> tuple[str, str, str, str]:
         " ".join(one[name].split()).replace("|", "\\|") for name in ("before", "after")
     )
     return f"{one['file']}:{one['line']}", before, after, str(one["tests"])
-
-
-def _room(one: Outcome) -> str:
-    return str(one["file"].split("/")[1])
 
 
 def _table(

@@ -4,7 +4,7 @@ The likelihood-ratio test knows both sizes, and that there is one of the two. Wh
 a prior: silence, a random walk or an effect of the catalogue, each as likely; the logarithm of its
 signal-to-noise ratio uniform from 2 to 40; in one axis or in all, as likely; any value of its scan.
 He names what is most probable, but nothing where all of it together is no more probable than in
-one of a hundred draws of noise alone. No test with this prior is right more often on what is drawn
+a share LEVEL of draws of noise alone. No test with this prior is right more often on what is drawn
 from it; on draws of one ratio it tells what not knowing it costs.
 """
 

@@ -1,4 +1,4 @@
-"""The page of random walks and laws, docs/walks.md."""
+"""The page of random walks, ramps, jumps and warm-ups, docs/walks.md."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -10,7 +10,7 @@ import chain
 import jinja2
 import numpy as np
 from hidden_plans import PLANS
-from walk_draws import KINDS, LAWS, RATIOS, WALKS
+from walk_draws import KINDS, LAWS, LEVEL, RATIOS, WALKS
 from walk_guess import SILENCE, WALK
 
 PAGE = chain.ROOT / "docs/walks.md"
@@ -29,6 +29,7 @@ def write(outcomes: Sequence[Outcome], page: Path = PAGE) -> str:
         "wanted": WANTED * len(KINDS) * len(RATIOS) * len(PLANS),
         "faint": _faint(),
         "margin": MAX_BEHIND,
+        "silent": f"{100 * (1 - LEVEL):g}",
         "pairs": list(_pairs(outcomes)),
         "said": list(_pairs([one for one in outcomes if one["walk"] or one["named"]])),
         "instead": list(_instead(outcomes)),
@@ -50,11 +51,11 @@ def _faint() -> int:
 
 
 def _pairs(outcomes: Sequence[Outcome]) -> Iterator[Row]:
-    """Of each walk and law the share right, and that of the test."""
-    for ratio, walk, law in product(RATIOS, WALKS, LAWS):
+    """Of each walk and effect the share right, and that of the test."""
+    for ratio, walk, effect in product(RATIOS, WALKS, LAWS):
         own = [
             [one for one in outcomes if (one["ratio"], one["kind"]) == (ratio, kind)]
-            for kind in (walk, law)
+            for kind in (walk, effect)
         ]
         if all(own):
             right = float(np.mean([np.mean([one["right"] for one in each]) for each in own]))
@@ -64,11 +65,12 @@ def _pairs(outcomes: Sequence[Outcome]) -> Iterator[Row]:
             guess = float(np.mean([np.mean([guessed_right(one) for one in each]) for each in own]))
             near = "yes" if right >= guess - MAX_BEHIND else "**no**"
             figures = (f"{value:.2f}" for value in (right, limit))
-            yield f"{ratio:.0f}", walk, law, count, *figures, met, f"{guess:.2f}", near
+            names = _in_words(walk), effect
+            yield f"{ratio:.0f}", *names, count, *figures, met, f"{guess:.2f}", near
 
 
 def guessed_right(one: Outcome) -> bool:
-    """Whether a walk is guessed to be one, and a law to be something else; silence is wrong."""
+    """Whether a walk is guessed to be one, an effect to be something else; silence is wrong."""
     return one["guess"] != SILENCE and (one["guess"] == WALK) == (one["kind"] in WALKS)
 
 
@@ -89,4 +91,8 @@ def _instead(outcomes: Sequence[Outcome]) -> Iterator[Row]:
         true = "gyro_random_walk" if kind in WALKS else kind
         held = str(sum(true in one["members"] for one in wrong))
         share = f"{len(own) - len(wrong)} of {len(own)}"
-        yield f"{ratio:.0f}", kind, share, silent, walk, told, held
+        yield f"{ratio:.0f}", _in_words(kind), share, silent, walk, told, held
+
+
+def _in_words(kind: str) -> str:
+    return f"random walk, {kind.removeprefix('walk of ')}" if kind in WALKS else kind

@@ -8,11 +8,12 @@ from typing import Literal
 
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, shortened, significant, whole, with_sigma
 from stages.report.results import Shift, quantity_of
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSORS, listed, with_mount
+from stages.report.words import SENSORS, with_mount
 
 Kind = Literal["found", "class", "law", "structure", "consistent", "walk", "unexplained"]
 # The clearest first, each with its words in a line.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, probability, shortened, whole
 from stages.report.declared import DECLARED
@@ -22,7 +23,7 @@ from stages.report.outline import (
 from stages.report.sections.evidence import evidence
 from stages.report.sizes import size_in_words
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, capital, listed
+from stages.report.words import SENSOR, capital
 
 FINDING_TABLES = (
     "quality_findings",
