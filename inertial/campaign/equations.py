@@ -6,7 +6,6 @@ from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial.campaign.equations_by_hand import (
     NO_TABLE,
@@ -34,8 +33,6 @@ from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined
 from inertial.text.messages import _
-
-Array = NDArray[np.float64]
 
 PRIOR_SIZE = 10.0  # prior sigma of an effect, in its typical sizes
 NOT_SIMULATED = _("Nothing is simulated, for the joint estimate determines no sensor wholly.")

@@ -7,7 +7,6 @@ from itertools import combinations
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
@@ -102,8 +101,6 @@ def _turned_over(m: Manoeuvre) -> Manoeuvre:
 
 
 # ---- The manoeuvre that best distinguishes the members of a class, by this campaign's noise.
-
-Array = NDArray[np.float64]
 
 MIN_MIMICRY = 0.9  # share of a signal that another effect can mimic, to compare manoeuvres
 

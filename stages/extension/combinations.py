@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from math import prod
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from inertial.campaign.effect_evidence import evidence
@@ -19,8 +18,6 @@ from inertial.model_selection.effect_classes import log_evidence
 from inertial.physics.effect import Effect
 from stages.extension.models import names_of
 from stages.extension.named_effects import Member, NamedClass
-
-Array = NDArray[np.float64]
 
 MAX_OTHERS = 7  # combinations besides that of the likeliest members
 
