@@ -1,7 +1,7 @@
 """The readings of both sensors of one recording in short means, and where they rest and move."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -64,14 +64,6 @@ class Series:
     def edges(self, values: Array) -> NDArray[np.int64]:
         """The rows of a sensor at which the bins begin and end, (k + 1,)."""
         return np.round(np.linspace(0, len(values), self.bins + 1)).astype(np.int64)
-
-    def part(self, first: float, after: float) -> "Series":
-        """From one share of its length to another."""
-
-        def cut(values: Array) -> Array:
-            return values[round(first * len(values)) : round(after * len(values))]
-
-        return replace(self, accel=cut(self.accel), gyro=cut(self.gyro))
 
 
 @dataclass(frozen=True)

@@ -40,12 +40,9 @@ NO_GYROS = _(
     "it changes no reading of the accelerometers, and the gyros are not simulated, for the joint "
     "estimate does not determine all of their parameters"
 )
-MIN_PIECE_S = 30.0  # s, duration of a piece of a static position
-MAX_PIECES = 100  # pieces of all static positions together
 SENSORS = ("gyro", "accel")
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
 MAX_KEPT = 4  # equations with different effects
-MERGED_BLOCKS = 5  # blocks of a rotation in one mean of the accelerometers, whose input is slow
 
 
 EffectKey = tuple[object, ...]
