@@ -16,7 +16,7 @@ from inertial.model_selection.splitting import MIN_SEPARATION, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
-from stages.criticism.selection import Selection, columns_of, evidence_of
+from stages.criticism.selection import Selection, evidence_of
 
 # ---- Manoeuvres that a laboratory might add: copies of those performed, to predict their value.
 #
@@ -164,7 +164,7 @@ class ExtendedCampaigns:
 def _mimicked(reduced: EffectInformation, effect: Effect, other: Effect) -> float | None:
     """Which share of an effect another can mimic; None where either is not observable."""
     own, others = (
-        [i for i, name in enumerate(reduced.names) if name in columns_of(candidate)]
+        [i for i, name in enumerate(reduced.names) if name in candidate.columns]
         for candidate in (effect, other)
     )
     total = float(np.trace(reduced.information[np.ix_(own, own)]))

@@ -16,7 +16,6 @@ from inertial.campaign.equations import Campaign
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.effect_classes import log_evidence
 from inertial.physics.effect import Effect
-from stages.extension.models import names_of
 from stages.extension.named_effects import Member, NamedClass
 
 MAX_OTHERS = 7  # combinations besides that of the likeliest members
@@ -144,4 +143,4 @@ def _odds(
 
 def _columns(information: EffectInformation, effects: Sequence[Effect]) -> list[int]:
     place = {name: i for i, name in enumerate(information.names)}
-    return [place[name] for effect in effects for name in names_of(effect)]
+    return [place[name] for effect in effects for name in effect.columns]
