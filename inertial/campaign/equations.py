@@ -449,7 +449,7 @@ class Campaign:
             return [
                 Sensitivities(values=np.zeros((part.stop - part.start, 3, 0))) for part in of_sensor
             ]
-        names = tuple(f"{e.label}.{parameter.name}" for e in effects for parameter in e.parameters)
+        names = tuple(name for effect in effects for name in effect.columns)
         stacked = np.concatenate([getattr(trace, sensor) for trace in responses], axis=2)
         return [Sensitivities(names, stacked[part]) for part in of_sensor]
 
