@@ -118,9 +118,7 @@ class Divided:
         yield from pairwise(self.rests)
 
 
-def divided(
-    series: Series, level: tuple[Array, float] | None = None, *, known_units: bool = True
-) -> Divided:
+def divided(series: Series, level: tuple[Array, float] | None, *, known_units: bool) -> Divided:
     """The recording in stretches; `level`: what gyros read at rest, and its scatter.
 
     Where units are not known, the share of the largest reading decides what is a motion.
