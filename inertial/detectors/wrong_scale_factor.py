@@ -32,7 +32,6 @@ class WrongScaleFactor(Detector):
     unit = "1"
     sensor = "accel"
     severity = 3
-    everywhere = True
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         radius = radius_at_rest(log)

@@ -41,8 +41,8 @@ SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 class Given:
     """What the campaign states of all its logs.
 
-    gravity, gravity_sigma: m/s²; normal_gravity: m/s², at its latitude and height, NaN where these
-    are not stated; refuted_gravity: m/s², where a stated one is not that of the place, else NaN.
+    gravity: m/s²; normal_gravity: m/s², at its latitude and height, NaN where these are not stated;
+    refuted_gravity: m/s², where a stated one is not that of the place, else NaN.
     interval: s, of the instrument, NaN where not stated. date: ISO, or unknown.
     usual_interval: s, the median of the mean intervals of its logs, and unlike: by how much these
     differ, 1; NaN where fewer than three logs have stamps.
@@ -52,7 +52,6 @@ class Given:
     """
 
     gravity: float
-    gravity_sigma: float
     normal_gravity: float
     interval: float
     instrument: str
