@@ -218,8 +218,9 @@ class Description:
 
 
 class Detector(ABC):
-    """One fault of a recording: its name, cause and source, its effect, and its detection.
+    """One fault of a recording: its name, source and detection.
 
+    The docstring of a class says what causes the fault, and what it costs the result.
     `unit` of the size, empty where it is that of the channel; `sensor`: accel or gyro, where all
     axes of one are concerned. `severity`: 3 spoils a result, 2 weakens it, 1 is good to know.
     `masks`: readings that it detects are not used by others; `repeats`: no time passes with the
@@ -228,9 +229,7 @@ class Detector(ABC):
     """
 
     name: ClassVar[str]
-    cause: ClassVar[str]
     source: ClassVar[str]
-    costs: ClassVar[str]
     unit: ClassVar[str] = ""
     sensor: ClassVar[str | None] = None
     severity: ClassVar[int] = 2
