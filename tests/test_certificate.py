@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from inertial.estimation.conformity import (
+from inertial.tables.errors import Refusal
+from inertial.tables.yaml_file import YamlFile
+from stages.diagnosis.conformity import (
     CONFORMS,
     DOES_NOT_CONFORM,
     GUARD_BAND,
     NOT_SHOWN,
     SIMPLE_ACCEPTANCE,
+    conformity_rows,
     decision,
 )
-from inertial.tables.errors import Refusal
-from inertial.tables.yaml_file import YamlFile
-from stages.diagnosis.conformity import conformity_rows
 from stages.plan.certificate import Statements
 from stages.report.sections.certificate import SECTION
 from tests.report.synthetic import campaign, section_on

@@ -242,7 +242,7 @@ def _campaign(data: CampaignData) -> Campaign:
 
 
 def _columns(effect: Effect, column: dict[str, int]) -> list[int]:
-    return [column[f"{effect.label}.{parameter.name}"] for parameter in effect.parameters]
+    return [column[name] for name in effect.columns]
 
 
 def _place(family: Sequence[Effect], at: float | None) -> int:

@@ -17,9 +17,8 @@ from inertial.physics.site import EARTH_RATE, earth_rate
 from inertial.tables.code import ROOT
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
-from inertial.text.campaign_units import ARC_SECOND, DEGREE, PER_ROOT_HOUR, in_si
 from inertial.text.messages import _
-from inertial.text.units import DEGREE_PER_HOUR, MICRO_G
+from inertial.text.units import ARC_SECOND, DEGREE, DEGREE_PER_HOUR, MICRO_G, PER_ROOT_HOUR, in_si
 
 Array = NDArray[np.float64]
 Entry = dict[str, Any]

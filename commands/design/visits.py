@@ -15,7 +15,7 @@ from commands.design.turntable import Turntable, direction
 from inertial.campaign.foreseen import Pace, session_seconds
 from inertial.campaign.records import Manoeuvre
 from inertial.physics.motion import Profile, level_axes
-from inertial.text.campaign_units import DEGREE
+from inertial.text.units import DEGREE
 
 Array = NDArray[np.float64]
 Item = dict[str, Any]

@@ -338,10 +338,10 @@ def _by_motion(
     return accel, gyro, pairs[accel]
 
 
-def short_means(values: Array, rows: int = BIN_ROWS) -> Array:
-    """Means of so many rows each, (k, 3)."""
-    k = len(values) // rows
-    return np.asarray(values[: k * rows].reshape(k, rows, 3).mean(axis=1))
+def short_means(values: Array) -> Array:
+    """Means of BIN_ROWS rows each, (k, 3)."""
+    k = len(values) // BIN_ROWS
+    return np.asarray(values[: k * BIN_ROWS].reshape(k, BIN_ROWS, 3).mean(axis=1))
 
 
 def explained_share(accel: Sequence[Array], gyro: Sequence[Array]) -> float:

@@ -1,7 +1,7 @@
 """The readings of both sensors of one recording in short means, and where they rest and move."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -65,14 +65,6 @@ class Series:
         """The rows of a sensor at which the bins begin and end, (k + 1,)."""
         return np.round(np.linspace(0, len(values), self.bins + 1)).astype(np.int64)
 
-    def part(self, first: float, after: float) -> "Series":
-        """From one share of its length to another."""
-
-        def cut(values: Array) -> Array:
-            return values[round(first * len(values)) : round(after * len(values))]
-
-        return replace(self, accel=cut(self.accel), gyro=cut(self.gyro))
-
 
 @dataclass(frozen=True)
 class Still:
@@ -126,9 +118,7 @@ class Divided:
         yield from pairwise(self.rests)
 
 
-def divided(
-    series: Series, level: tuple[Array, float] | None = None, *, known_units: bool = True
-) -> Divided:
+def divided(series: Series, level: tuple[Array, float] | None, *, known_units: bool) -> Divided:
     """The recording in stretches; `level`: what gyros read at rest, and its scatter.
 
     Where units are not known, the share of the largest reading decides what is a motion.

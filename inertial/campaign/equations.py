@@ -6,7 +6,6 @@ from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial.campaign.equations_by_hand import (
     NO_TABLE,
@@ -35,20 +34,15 @@ from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined
 from inertial.text.messages import _
 
-Array = NDArray[np.float64]
-
 PRIOR_SIZE = 10.0  # prior sigma of an effect, in its typical sizes
 NOT_SIMULATED = _("Nothing is simulated, for the joint estimate determines no sensor wholly.")
 NO_GYROS = _(
     "it changes no reading of the accelerometers, and the gyros are not simulated, for the joint "
     "estimate does not determine all of their parameters"
 )
-MIN_PIECE_S = 30.0  # s, duration of a piece of a static position
-MAX_PIECES = 100  # pieces of all static positions together
 SENSORS = ("gyro", "accel")
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
 MAX_KEPT = 4  # equations with different effects
-MERGED_BLOCKS = 5  # blocks of a rotation in one mean of the accelerometers, whose input is slow
 
 
 EffectKey = tuple[object, ...]
@@ -455,7 +449,7 @@ class Campaign:
             return [
                 Sensitivities(values=np.zeros((part.stop - part.start, 3, 0))) for part in of_sensor
             ]
-        names = tuple(f"{e.label}.{parameter.name}" for e in effects for parameter in e.parameters)
+        names = tuple(name for effect in effects for name in effect.columns)
         stacked = np.concatenate([getattr(trace, sensor) for trace in responses], axis=2)
         return [Sensitivities(names, stacked[part]) for part in of_sensor]
 

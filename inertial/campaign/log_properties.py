@@ -77,14 +77,12 @@ def given_by(
     """What the campaign states of all its logs, and which interval they have in common."""
     (facts,) = rows_of(campaign)
     quantities = known_of(known)
-    gravity = quantities["gravity"]
     sizes: dict[str, dict[str, float]] = {}
     for row in rows_of(count_sizes):
         sizes.setdefault(row["instrument"], {})[row["sensor"]] = row["count_size"]
     latitude = facts["latitude"]
     return Given(
-        gravity=gravity.number,
-        gravity_sigma=gravity.scatter,
+        gravity=quantities["gravity"].number,
         normal_gravity=np.nan
         if latitude is None
         else normal_gravity(latitude, facts["height"] or 0.0),

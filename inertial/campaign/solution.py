@@ -173,7 +173,7 @@ def triad_of(parameters: pd.DataFrame, mount: str = "") -> Triad | None:
     return _triad(values) if all(values.get(n) is not None for n in linear_names()) else None
 
 
-def free_triad_of(parameters: pd.DataFrame, mount: str = "") -> Triad | None:
+def free_triad_of(parameters: pd.DataFrame, mount: str) -> Triad | None:
     """The same of static positions of unknown attitude; M is that of ideal sensors where not known.
 
     None where a bias is not determined.

@@ -42,12 +42,13 @@ class BiasJump(Detector):
     differences have in this rest, so excess noise and an oscillation cost sensitivity but raise
     nothing; what drift, a random walk or settling explain as well is none. A jump of one channel
     that the other sensor shows as a turn of the case is a motion of the table.
+
+    Cause: a loose contact, a jump of temperature or supply, or the sensor itself. The mean of the
+    rest is wrong, hence bias and scale factor of the axis.
     """
 
     name = "bias_jump"
-    cause = _("a loose contact, a jump of temperature or supply, or the sensor itself")
     source = "design study, 0: a jump at any time must be sought at every time"
-    costs = _("the mean of this rest, hence bias and scale factor of the axis")
     severity = 2
     alike = "event"
 

@@ -45,12 +45,13 @@ class ClockJitter(Detector):
 
     In stretches of 32 stamps a straight line is fitted to stamp against number of the sample;
     gaps count as the samples that they lack.
+
+    Cause: stamps are given when a record is written, not when it is sampled, or are rounded. A rate
+    made from stamp to stamp scatters, and the time of an event is less sure.
     """
 
     name = "clock_jitter"
-    cause = _("stamps are given when a record is written, not when it is sampled, or are rounded")
     source = "design study, 41c; rounding to u scatters by u/√12"
-    costs = _("a rate made from stamp to stamp scatters; when something happens is less sure")
     unit = "s"
     severity = 1
 

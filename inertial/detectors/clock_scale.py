@@ -78,12 +78,13 @@ class ClockScale(Detector):
     logs of the campaign have in common; where they have nothing, with what most of the log has near
     the stated rate, and a whole log with the stated rate. Increments show whether the stamps are
     off or the sampling: at rest each is gravity times the true interval.
+
+    Cause: the clock that gives the stamps runs fast or slow, or that which takes the samples. Rates
+    by the stamps, and with them all scale factors, are off by as much.
     """
 
     name = "clock_scale"
-    cause = _("the clock that gives the stamps runs fast or slow, or that which takes the samples")
     source = "design study, 41b"
-    costs = _("rates by the stamps, and with them all scale factors, are off by as much")
     unit = "ppm"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:

@@ -55,12 +55,13 @@ class DeadAxis(Detector):
     Where the noise is less than 0.6 counts an axis may well stand still: that is `quantisation`,
     and nothing is said here, unless it is a gyro that does so while the other two are turned about
     a changing axis, see `FreeRotation`. Nothing is said of a sensor none of whose axes changes.
+
+    Cause: a sensor, its wire or its converter failed, or the driver writes an old value. Bias and
+    scale factor of the axis are wrong, and every cross term with it.
     """
 
     name = "dead_axis"
-    cause = _("a sensor, its wire or its converter failed, or the driver writes an old value")
     source = "the chance that two Gaussian readings fall into one count"
-    costs = _("bias and scale factor of the axis, and every cross term with it")
     unit = "samples"
     severity = 3
     masks = True

@@ -37,12 +37,14 @@ class Lost:
 
 
 class Gap(Detector):
-    """An interval between two records in which at least one sample is missing."""
+    """An interval between two records in which at least one sample is missing.
+
+    Cause: the logger lost samples, or the file was not written whole. A sum over the gap lacks what
+    was not recorded, so the scale factor of a turn is wrong.
+    """
 
     name = "gap"
-    cause = _("the logger lost samples, or the file was not written whole")
     source = "S0, lines 2192 and 2193 of its z counter-clockwise log: 11.98 s are missing"
-    costs = _("a sum over it lacks what was not recorded: the scale factor of a turn")
     unit = "samples"
     severity = 1
 

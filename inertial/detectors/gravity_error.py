@@ -19,12 +19,13 @@ class GravityError(Detector):
 
     Sigma is that of the stated value and the anomalies of the earth's field together. The plan
     decides it, for all stages alike.
+
+    Cause: gravity of another place, the unit g in its stead, or a slip of the pen. The scale
+    factors of all accelerometers are off by as much as gravity.
     """
 
     name = "gravity_error"
-    cause = _("gravity of another place, the unit g in its stead, or a slip of the pen")
     source = "normal gravity: WGS 84; anomalies: Tscherning & Rapp, OSU Report 208, 1974"
-    costs = _("the scale factors of all accelerometers are off by as much as gravity")
     unit = "m/s²"
     sensor = "accel"
 

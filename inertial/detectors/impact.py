@@ -54,12 +54,13 @@ class Impact(Detector):
     noise they have √6 σ. In a burst most channels exceed it by far, for more records than a spoilt
     one has, and the magnitude of the specific force changes; before it and after it they do not,
     and what they read then is the same. So it is no spike, no motion, and no oscillation.
+
+    Cause: something struck the case or the table, or a switch or a brake did. The mean of a short
+    rest is wrong, and its noise too large.
     """
 
     name = "impact"
-    cause = _("something struck the case or the table, or a switch or a brake did")
     source = "mikoff, IMU 4: a knock in a rest, which rings for some tenths of a second"
-    costs = _("the mean of a short rest, and its noise")
     unit = "m/s²"
     severity = 1
     masks = True

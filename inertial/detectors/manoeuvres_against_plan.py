@@ -21,12 +21,14 @@ MIN_SAME_COSINE = float(np.cos(np.radians(25)))  # directions that are the same
 
 
 class ManoeuvreMissing(PlanDetector):
-    """A planned rest or turn of which the log has nothing, and nothing explains why."""
+    """A planned rest or turn of which the log has nothing, and nothing explains why.
+
+    Cause: it was not done, not recorded, or the plan has it in the wrong place. Nothing determines
+    what it alone would determine.
+    """
 
     name = "manoeuvre_missing"
-    cause = _("it was not done, not recorded, or the plan has it in the wrong place")
     source = "S0: a log that was not written whole"
-    costs = _("what it alone would determine")
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, name in enumerate(recorded.name):
@@ -116,12 +118,13 @@ class ManoeuvreSwapped(PlanDetector):
     """Two logs under each other's names, or two manoeuvres of a log in each other's place.
 
     Each agrees with the plan of the other, and not with its own.
+
+    Cause: two files were handed over under each other's names, or the order was another. Used as
+    planned they would reverse the sign of a bias or scale factor.
     """
 
     name = "manoeuvre_swapped"
-    cause = _("two files were handed over under each other's names, or the order was another")
     source = "S0 took another group's log in place of a broken one: names are given by hand"
-    costs = _("the sign of a bias or scale factor, were they used")
     unit = "manoeuvres"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
@@ -223,12 +226,13 @@ MIN_DURATION_SHARE = 1 / 3  # of the planned time
 
 
 class ShortRest(PlanDetector):
-    """A rest that lasts less than a third of what was planned."""
+    """A rest that lasts less than a third of what was planned.
+
+    Cause: the log was cut off, or is an excerpt. The sigma of the mean of the rest is larger.
+    """
 
     name = "short_rest"
-    cause = _("the log was cut off, or is an excerpt")
     source = "S0: white noise averages out with the root of the time at rest"
-    costs = _("the sigma of its mean")
     unit = "s"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:

@@ -7,7 +7,6 @@ from inertial.signal.axis_permutations import describe_exchange, exchanges_of
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.misread_axes import describe_misread, deviation
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
-from inertial.text.messages import _
 
 
 class AxisSwap(Detector):
@@ -18,12 +17,13 @@ class AxisSwap(Detector):
     in any attitude in which the two do not read the same. Of the gyros it is seen while the table
     turns; at rest only if their biases are clear of the noise. What was exchanged before the log
     began shows against the plan alone.
+
+    Cause: the driver or the logger wrote the fields in another order. Scale factors and biases of
+    both axes are wrong.
     """
 
     name = "axis_swap"
-    cause = _("the driver or the logger wrote the fields in another order")
     source = "RAWIMUS writes z, −y, x: a reader that mixes orders does this"
-    costs = _("scale factors and biases of both axes")
     unit = "samples"
     severity = 3
     masks = True
@@ -51,12 +51,13 @@ class SignFlip(AxisSwap):
     As with two axes exchanged, no motion does that between two records. It is seen where the axis
     reads something clear of its noise: of the gyros while the table turns, at rest only if the
     bias is clear. A sign that was wrong before the log began shows against the plan alone.
+
+    Cause: the driver or the logger changed the convention of an axis. Its scale factor and bias are
+    wrong.
     """
 
     name = "sign_flip"
-    cause = _("the driver or the logger changed the convention of an axis")
     source = "RAWIMUS writes −y: a reader that forgets this, or does it twice"
-    costs = _("scale factor and bias of the axis")
     in_place = True
 
 
@@ -72,12 +73,13 @@ class AxisSwapAgainstPlan(PlanDetector):
     The directions of gravity at the rests, and the axes of the turns, must be a signed permutation
     of the planned ones; where it is not the unit matrix, axes are exchanged. An IMU that is
     mounted askew by less than 25° is none of that.
+
+    Cause: the axes of the instrument, or the columns, are named in another order. Scale factors,
+    cross terms and biases of these axes are wrong.
     """
 
     name = "axis_swap"
-    cause = _("the axes of the instrument, or the columns, are named in another order")
     source = "design study, 41d: the tables of gravity and of turns must be a signed permutation"
-    costs = _("scale factors, cross terms and biases of these axes")
     unit = "manoeuvres"
     severity = 3
     in_place: ClassVar[bool] = False
@@ -92,10 +94,12 @@ class AxisSwapAgainstPlan(PlanDetector):
 
 
 class SignFlipAgainstPlan(AxisSwapAgainstPlan):
-    """Rests, or turns, that fit the plan only if an axis of a sensor reads its negative."""
+    """Rests, or turns, that fit the plan only if an axis of a sensor reads its negative.
+
+    Cause: a sign of the raw fields is forgotten, or taken twice. Scale factor and bias of the axis
+    are wrong.
+    """
 
     name = "sign_flip"
-    cause = _("a sign of the raw fields is forgotten, or taken twice")
     source = "design study, 41d: RAWIMUS −y; two wrong flips cancel, so the determinant is given"
-    costs = _("scale factor and bias of the axis")
     in_place = True

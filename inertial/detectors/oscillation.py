@@ -51,12 +51,13 @@ class Oscillation(Detector):
     the sensor with the best signal-to-noise ratio; coherent lines of others may be coupling.
     Motion by hand, ramps and coloured noise rise above their own spectrum on one side only, or
     keep no phase.
+
+    Cause: the case, a loose screw, the drive of the table or the electronics ring. Angles and means
+    over part of a turn are off, and the noise level, if it counts as noise.
     """
 
     name = "oscillation"
-    cause = _("the case, a loose screw, the drive of the table or the electronics ring")
     source = "S0, figures 5-14 to 5-16: 20 Hz, 0.01 rad/s about x while the table turns"
-    costs = _("angles and means over part of a turn; the noise level, if it counts as noise")
     severity = 1
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:

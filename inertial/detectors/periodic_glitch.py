@@ -42,12 +42,13 @@ class PeriodicGlitch(Detector):
     a channel that is off by a constant, or a sensor by a share of what it reads, as where the
     interval of that sample is another one. Where most phases are off it is an oscillation. One
     clean campaign in 10,000 shows one.
+
+    Cause: the logger or the clock of the IMU does something else once in every period. The mean of
+    every channel concerned, or a scale factor, is off by its share of the samples.
     """
 
     name = "periodic_glitch"
-    cause = _("the logger or the clock of the IMU does something else once in every period")
     source = "WHU, XW-GI7681: stamped .010 of a GPS second, the gyro that turns reads 0.15 % more"
-    costs = _("the mean of every channel concerned, or a scale factor, by its share of the samples")
     alike = "sensor"
     severity = 1
     masks = True

@@ -54,12 +54,12 @@ class Quantisation(Detector):
     Then many readings are no better than one: their mean is off by up to (q/π) exp(−2π² σ²/q²),
     0.02 q for σ = 0.37 q, 0.14 q for 0.2 q. Increments that carry over what a count leaves lose
     nothing: a sum of them is good to one count.
+
+    Cause: the converter, its range, or the format of the log has fewer digits than needed.
     """
 
     name = "quantisation"
-    cause = _("the converter, its range, or the format of the log has fewer digits than needed")
     source = "Widrow & Kollár, Quantization Noise, 2008: the mean of a rounded Gaussian"
-    costs = _("means do not become better with time: bias")
     severity = 1
     alike = "sensor"
 

@@ -31,12 +31,12 @@ class Duplicate(Detector):
 
     Right before, where a line was written twice; or farther back, where logs were joined that
     overlap. What lies farther back than the piece shows is not seen.
+
+    A sum counts it twice: at 10 °/s and 100 Hz a turn gains 0.1° with each.
     """
 
     name = "duplicate"
-    cause = _("a record was written twice, or logs were joined that overlap")
     source = "design study, 41c: by chance six readings are equal once in 10⁷ pairs or less"
-    costs = _("a sum counts it twice: at 10 °/s and 100 Hz a turn gains 0.1° with each")
     unit = "records"
     severity = 1
     masks = True
@@ -152,12 +152,13 @@ class HeldRecord(Detector):
 
     Or records whose readings are, in their order, those of a stretch before, where there are no
     stamps that would be repeated too: see `_copied`.
+
+    Cause: the logger wrote the last record again where it had no new one. A sum over time takes old
+    readings for new ones, so the scale factor of a turn is wrong.
     """
 
     name = "held_record"
-    cause = _("the logger wrote the last record again where it had no new one")
     source = "design study, 41c: identical consecutive readings of all six channels"
-    costs = _("a sum over time takes old readings for new ones: the scale factor of a turn")
     unit = "records"
     severity = 1
     alike = "sensor"

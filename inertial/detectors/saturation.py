@@ -226,12 +226,13 @@ class Saturation(Detector):
 
     What is cut off is the upper part of the noise, so the mean of the readings left beside it is
     too small: of Gaussian noise σ whose upper half is masked, by σ √(2/π).
+
+    Cause: the motion went beyond the range of the sensor or of its converter. The angle of a turn
+    is too small, and with it the scale factor.
     """
 
     name = "saturation"
-    cause = _("the motion went beyond the range of the sensor or of its converter")
     source = "MPU-6050 of the Universidad Nacional de Cuyo: gyros at ±32768 counts"
-    costs = _("a turn's angle is too small, and with it the scale factor")
     unit = "samples"
     severity = 3
     alike = "sensor"

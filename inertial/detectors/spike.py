@@ -65,12 +65,13 @@ class Spikes(Detector):
     either. Where the IMU is moved by hand, or rings, a spike must be a gross one of one reading; in
     a log of which a tenth is so, everywhere. The first and the last reading are not judged, nor
     those beside readings that are masked.
+
+    Cause: a reading was spoilt on its way, or the clock of the IMU was set while it turned. It
+    moves the mean of its block, and inflates the noise.
     """
 
     name = "spike"
-    cause = _("a reading was spoilt on its way, or the clock of the IMU was set while it turned")
     source = "robust z: Iglewicz & Hoaglin, How to Detect and Handle Outliers, 1993"
-    costs = _("it moves the mean of its block, and inflates the noise")
     severity = 1
     alike = "sensor"
     masks = True

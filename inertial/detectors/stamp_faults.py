@@ -14,12 +14,14 @@ from inertial.text.numbers import counted, fixed, significant
 
 
 class ArrivalStamps(Detector):
-    """A log whose samples got the times of a regular clock, because their stamps are uneven."""
+    """A log whose samples got the times of a regular clock, because their stamps are uneven.
+
+    Cause: a host stamps samples when they arrive, one by one or many at once, or coarsely. A rate
+    made from stamp to stamp is nonsense, and short gaps are not seen.
+    """
 
     name = "arrival_stamps"
-    cause = _("a host stamps samples when they arrive, one by one or many at once, or coarsely")
     source = "recordings of hobby IMUs by USB: four samples share a packet, stamps 2 ms apart"
-    costs = _("a rate made from stamp to stamp is nonsense; short gaps are not seen")
     unit = "s"
     severity = 1
 
@@ -67,12 +69,13 @@ class TimeBackwards(Detector):
     Where stamps jump ahead first and come back after fewer records than that, these are the
     stretch. `from_s` and `to_s` are both the stamp behind the step, for which time it was in
     between is unknown; the records give its duration.
+
+    Cause: logs were joined, the clock was set, or a stamp was spoilt. When these records were taken
+    is not known.
     """
 
     name = "time_backwards"
-    cause = _("logs were joined, the clock was set, or a stamp was spoilt")
     source = "design study, 41c"
-    costs = _("when these records were taken is not known")
     unit = "s"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
@@ -134,12 +137,14 @@ class TimeBackwards(Detector):
 
 
 class TimeStandsStill(Detector):
-    """A record with the stamp of the one before, and other readings."""
+    """A record with the stamp of the one before, and other readings.
+
+    Cause: the clock of the logger hung, or counts in steps longer than a sample. When the record
+    was taken is not known, nor whether time passed with it.
+    """
 
     name = "time_stands_still"
-    cause = _("the clock of the logger hung, or counts in steps longer than a sample")
     source = "design study, 41c"
-    costs = _("when it was taken is not known, nor whether time passed with it")
     unit = "records"
     masks = True
 
@@ -185,12 +190,13 @@ class ClockStep(Detector):
 
     A stamp that is late by itself is made good by the next one; what is longer by a whole interval
     is a gap, and what goes back is time that goes back.
+
+    Cause: the clock of the receiver or logger was set, or it began to follow another clock. Times
+    are off by the step; angles and means are sums of samples and stay.
     """
 
     name = "clock_step"
-    cause = _("the clock of the receiver or logger was set, or it began to follow another clock")
     source = "design study, 5: a clock step is in no catalogue of effects, and must not be silent"
-    costs = _("when things happened, by the step; angles and means are sums of samples and stay")
     unit = "s"
     severity = 1
 
@@ -255,12 +261,14 @@ FACTORS = (2, 4, 5, 10)  # of rates that instruments offer
 
 
 class RateOff(Detector):
-    """The mean interval of a log, gaps left out, is not one over the stated rate."""
+    """The mean interval of a log, gaps left out, is not one over the stated rate.
+
+    Cause: the rate was set otherwise, records are left out, or another instrument is named. Where
+    stamps are recorded nothing is wrong; where they are counted, rates are off by this factor.
+    """
 
     name = "rate_off"
-    cause = _("the rate was set otherwise, records are left out, or another instrument is named")
     source = "design study, 41e: 200 against 100 Hz"
-    costs = _("nothing where stamps are recorded; where they are counted, rates by this factor")
     unit = "1"
     severity = 1
 
@@ -308,12 +316,14 @@ ROLLOVER_DAYS = 1024 * 7  # days after which a receiver counts the GPS weeks fro
 
 
 class WrongDay(Detector):
-    """The UTC date of the first stamp is not the stated date, by more than a time zone makes."""
+    """The UTC date of the first stamp is not the stated date, by more than a time zone makes.
+
+    Cause: the log belongs to another session, or the date was written down wrong. If the log does,
+    all results are those of another campaign.
+    """
 
     name = "wrong_day"
-    cause = _("the log belongs to another session, or the date was written down wrong")
     source = "S0: GPS week 2283 is 8 October 2023, where 18 October is stated; design study, 41h"
-    costs = _("all results are those of another campaign, if the log is")
     unit = "days"
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:

@@ -11,12 +11,14 @@ from inertial.text.numbers import counted, fixed
 
 
 class StatusInvalid(Detector):
-    """A record whose status lacks a bit that must be set, or has one that must be clear."""
+    """A record whose status lacks a bit that must be set, or has one that must be clear.
+
+    Cause: the instrument found a fault in itself: a sensor, its temperature, a start-up. What it
+    reads then is not to be trusted.
+    """
 
     name = "status_invalid"
-    cause = _("the instrument found a fault in itself: a sensor, its temperature, a start-up")
     source = "the status word in the instrument's manual, as data/instruments.yaml quotes it"
-    costs = _("what it reads then is not to be trusted")
     unit = "records"
     masks = True
 

@@ -80,12 +80,13 @@ class TableMoving(Detector):
     larger than the position's own uncertainty. One that is too slow for the gyros must be larger
     than what an accelerometer's bias does by itself, and larger than what the upright
     accelerometer shows. About the vertical nothing is seen.
+
+    Cause: the table creeps, a brake slips, or somebody touches it. The attitude of the rest is
+    wrong, hence biases and cross-axis terms.
     """
 
     name = "table_moving"
-    cause = _("the table creeps, a brake slips, or somebody touches it")
     source = "design study, 2b; S1: at rest an accelerometer reads gravity alone"
-    costs = _("the attitude of this rest, hence biases and cross-axis terms")
     unit = "″"
     severity = 2
     alike = "event"

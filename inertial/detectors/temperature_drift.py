@@ -49,15 +49,16 @@ class TemperatureDrift(Detector):
 
     Where a log keeps one attitude, the mean readings of its warmest third are compared with those
     of its coldest.
+
+    Cause: the IMU warms up after it is switched on, or its surroundings change. Bias and scale
+    factors are means over temperatures, and sure at none of them.
     """
 
     name = "temperature_drift"
-    cause = _("the IMU warms up after it is switched on, or its surroundings change")
     source = (
         "design study 9, 22, 23: consumer MEMS 0.1 to 1 mg, 0.005 to 0.08 °/s, 0.02 % per K by data"
         " sheets; tactical some 0.1 mg and 1 °/h per K, judged"
     )
-    costs = _("bias and scale factors are means over temperatures, and sure of none of them")
     unit = "K"
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:

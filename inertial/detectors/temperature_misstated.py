@@ -15,12 +15,14 @@ MAX_SIGMA = 3.0  # of the stated temperature
 
 
 class TemperatureMisstated(PlanDetector):
-    """The stated temperature of a manoeuvre is more than three sigma off the recorded one."""
+    """The stated temperature of a manoeuvre is more than three sigma off the recorded one.
+
+    Cause: a wrong temperature in the plan, or a thermometer that is not where the sensors are. If
+    the stated one is right, the temperature at which each parameter is valid is off as much.
+    """
 
     name = "temperature_misstated"
-    cause = _("a wrong temperature in the plan, or a thermometer that is not where the sensors are")
     source = "IEEE Std 1554-2005: temperature of the chamber and of the instrument differ"
-    costs = _("where the stated one is right, the temperature at which each parameter is valid")
     unit = "K"
     severity = 1
 

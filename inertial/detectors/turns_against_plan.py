@@ -15,12 +15,13 @@ class IncompleteTurn(PlanDetector):
     """A turn that was not recorded from rest to rest, or not to the planned angle.
 
     What a gap or masked records lack of it is told with these: they are the cause.
+
+    Cause: the log begins or ends while the table turns, or it turned by another angle. If the
+    planned angle or a rounded one is taken, a scale factor is wrong.
     """
 
     name = "incomplete_turn"
-    cause = _("the log begins or ends while the table turns, or it turned by another angle")
     source = "S0, figure 5-9: 11.98 s are missing of a turn, so 240° of 360° are recorded"
-    costs = _("its angle, and with it a scale factor, if the planned or a rounded one is taken")
     unit = "°"
     sensor = "gyro"
 
@@ -104,12 +105,14 @@ def _wrong_by(error: float) -> str:
 
 
 class WrongDirection(PlanDetector):
-    """A turn that is opposite to the planned direction by its gyro."""
+    """A turn that is opposite to the planned direction by its gyro.
+
+    Cause: the sign of the planned angle, or the table turned the other way. A scale factor would
+    have the wrong sign.
+    """
 
     name = "wrong_direction"
-    cause = _("the sign of the planned angle, or the table turned the other way")
     source = "S0: shun and ni; judge a turn by the sign on the gyro, not by the word"
-    costs = _("the sign of a scale factor")
     severity = 3
     sensor = "gyro"
 
@@ -179,12 +182,14 @@ def _all_the_other_way(deviation: Deviation, recorded: Recorded) -> Description:
 
 
 class WrongRate(PlanDetector):
-    """A turn whose rate is not the planned one, where no ratio explains all of them."""
+    """A turn whose rate is not the planned one, where no ratio explains all of them.
+
+    Cause: the rate of the plan, or of the table. Where the rate is the reference, a scale factor is
+    wrong.
+    """
 
     name = "wrong_rate"
-    cause = _("the rate of the plan, or of the table")
     source = "S0, table 5-6: the rate in the steady part"
-    costs = _("a scale factor, where the rate is the reference")
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:

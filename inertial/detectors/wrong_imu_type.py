@@ -75,12 +75,14 @@ MAX_COUNT_DIFFERENCE = 1e-3  # by which the stated sizes of a count may differ: 
 
 
 class WrongImuType(Detector):
-    """The type in the messages has counts of another size than the campaign's instrument."""
+    """The type in the messages has counts of another size than the campaign's instrument.
+
+    Cause: the campaign names another instrument, or the receiver was set up for another IMU. All
+    readings, and with them biases and scale factors, are wrong by the ratio of the counts.
+    """
 
     name = "wrong_imu_type"
-    cause = _("the campaign names another instrument, or the receiver was set up for another IMU")
     source = "NovAtel OEM7 manual, RAWIMUSX and Table: Raw IMU Scale Factors"
-    costs = _("all readings and with them biases and scale factors, by the ratio of the counts")
     unit = "1"
     severity = 3
 

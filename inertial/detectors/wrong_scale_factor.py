@@ -23,16 +23,17 @@ UNKNOWN_CAUSE = _("no known unit explains it; the bias may be large, or the IMU 
 
 
 class WrongScaleFactor(Detector):
-    """The specific force at rest is not gravity, by more than any bias explains."""
+    """The specific force at rest is not gravity, by more than any bias explains.
+
+    Cause: another unit, another full scale, or the counts of another instrument. Every parameter is
+    wrong by this factor.
+    """
 
     name = "wrong_scale_factor"
-    cause = _("another unit, another full scale, or the counts of another instrument")
     source = "design study 41e; S0 names the iMAR-FSAS, but its gyro counts are 57.3 times as large"
-    costs = _("every parameter is wrong by this factor")
     unit = "1"
     sensor = "accel"
     severity = 3
-    everywhere = True
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         radius = radius_at_rest(log)
@@ -94,12 +95,14 @@ def unsigned_zero(log: Log) -> float:
 
 
 class WrongScaleOfTurns(PlanDetector):
-    """All turns are off by one ratio, in rate and in angle."""
+    """All turns are off by one ratio, in rate and in angle.
+
+    Cause: another unit, another full scale, or the counts of another instrument. Every parameter of
+    the gyros is wrong by this ratio.
+    """
 
     name = "wrong_scale_factor"
-    cause = _("another unit, another full scale, or the counts of another instrument")
     source = "design study, 0: S0's log, read by the count of the iMAR-FSAS, turns at 0.17 °/s"
-    costs = _("every parameter of the gyros is wrong by this ratio")
     severity = 3
     sensor = "gyro"
 

@@ -157,20 +157,6 @@ class AllanSums:
         )
 
 
-def allan(
-    stretches: Sequence[Array],
-    interval: float,
-    factors: Integers | None = None,
-    models: Sequence[NoiseModel] | None = None,
-) -> Allan:
-    """The overlapping Allan deviation of stretches (n, c) that are in memory; see `AllanSums`."""
-    sums = AllanSums(stretches[0].shape[1], factors)
-    for stretch in stretches:
-        sums.add(stretch)
-        sums.end()
-    return sums.result(interval, models)
-
-
 @dataclass
 class _Differences:
     """Sums of squared second differences of the running sum of one stretch, any number of pieces.

@@ -49,8 +49,8 @@ class AgainstEncoder:
 
     `scale`: 1; `bias`: rad/s, the earth's rate in it; `delay`: s, by which the gyro is later;
     `spread`: s², κ, the variance of this delay; `harmonics`: rad, by order, sine and cosine; empty
-    for less than three quarters of a turn.
-    `excess`: chi-squared per degree of freedom; where above 1 the sigmas are enlarged.
+    for less than three quarters of a turn. Where chi-squared is above its degrees of freedom, the
+    sigmas are enlarged.
     """
 
     scale: Valued
@@ -58,7 +58,6 @@ class AgainstEncoder:
     delay: Valued
     spread: Valued
     harmonics: dict[int, tuple[Valued, Valued]]
-    excess: float
 
 
 def against_encoder(rates: Array, angle: Array, step: float, density: float) -> AgainstEncoder:
@@ -115,7 +114,6 @@ def _compared(
         Valued(delay, found[2].sigma),
         found[3],
         {n: (found[4 + 2 * i], found[5 + 2 * i]) for i, n in enumerate(orders)},
-        excess,
     )
 
 

@@ -12,7 +12,6 @@ of other methods, with P symmetric.
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial.estimation import accelerometers, multi_position
 from inertial.estimation.accelerometers import StaticForce
@@ -21,8 +20,6 @@ from inertial.estimation.elimination import whitened
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Triad
-
-Array = NDArray[np.float64]
 
 SYMMETRY_SIGMA = 1e-8  # of M_xy − M_yx
 CROSS_SIGMA = multi_position.PRIOR_SIGMA[3] * np.sqrt(2)  # before both cross terms are alike

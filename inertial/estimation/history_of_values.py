@@ -26,9 +26,11 @@ Array = NDArray[np.float64]
 POINTS = 10  # of the grid, for each of τ, K and s
 ABSENT = {"day": 0.5, "walk": 0.7, "slope": 0.7}  # probability that there is none
 LARGEST = 5.0  # size up to which they are sought, in spreads of the values
+PROBABILITY = 0.95  # of the interval of a prediction
 MIN_VALUES = 3  # calibrations, for a prediction
 MIN_FOR_JUMP = 5  # calibrations, for a jump
 MIN_TIMES = 3  # different ones, for a jump: of two a jump and a drift are one
+MIN_DROP = 6.0  # of the deviance, for a jump: of a smaller one no chance is drawn
 BISECTIONS = 60
 LEAST_WEIGHT = 1e-12  # of a point of the grid, of that of all
 BOOTSTRAP = 2000  # histories without a jump
@@ -132,9 +134,7 @@ def _weights(absent: float) -> Array:
     return own
 
 
-def predicted(
-    history: History, times: Array, sigma: float, probability: float = 0.95
-) -> Prediction:
+def predicted(history: History, times: Array, sigma: float) -> Prediction:
     """The next calibration at one of these times, (m,), its own sigma that of its noise.
 
     With the covariance A of all but the days, A = Q diag(λ) Qᵀ, that of the values is
@@ -177,7 +177,7 @@ def predicted(
     shown = weights > LEAST_WEIGHT * weights.sum()
     weights = weights[shown] / weights[shown].sum()
     mean, spread = mean[shown], np.sqrt(variance[shown])
-    tail = (1 - probability) / 2
+    tail = (1 - PROBABILITY) / 2
     quantiles = [_quantile(q, weights, mean, spread) for q in (0.5, tail, 1 - tail)]
     return Prediction(*quantiles)
 
@@ -293,9 +293,7 @@ def _projection(inverse: Array, design: Array) -> Array:
     return np.asarray(inverse - weighted @ between @ weighted.transpose(0, 2, 1))
 
 
-def jump(
-    history: History, generator: np.random.Generator, worth_a_look: float = 6.0
-) -> Jump | None:
+def jump(history: History, generator: np.random.Generator) -> Jump | None:
     """The likeliest step; none where there are too few values, or no step improves anything.
 
     Its chance is that of the largest at any place, by histories drawn from what these may be from
@@ -309,7 +307,7 @@ def jump(
     deviances = steps.deviances(centred[None])[0]
     before = int(np.argmin(deviances[1:]))
     drop = float(deviances[0] - deviances[1 + before])
-    if drop < worth_a_look:
+    if drop < MIN_DROP:
         return None
     draws = steps.without_a_step(centred, generator)
     drawn = steps.deviances(draws)

@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import qr, rq
+from scipy.linalg import qr
 
 from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate, System, solve_iterated
 from inertial.physics.motion import level_axes
@@ -85,8 +85,8 @@ def free_positions(
 
     Of M = P R they determine P and nothing of R, for a rotation of the triad against the case
     rotates all v alike. The convention is R = I: the axes are the orthogonal ones nearest to the
-    sensors', and M = P is symmetric. That of imu_tk is M upper triangular, with the same P; see
-    `upper_triangular`.
+    sensors', and M = P is symmetric. That of imu_tk is M = P R upper triangular, with the same P:
+    its inverse is T K of Tedaldi et al., with K diagonal and T = [1 −α_yz α_zy; 0 1 −α_zx; 0 0 1].
 
     Noise across gravity lengthens a reading, |f|² = g² + …: this bias, σ²/g for equal channels, is
     subtracted, see `lengthened`. `scatter`, m/s²: between rests, beyond noise.
@@ -163,16 +163,6 @@ def lengthened(matrix: Array, up: Array, sigma: Array, gravity: float) -> Array:
     across = np.einsum("nij,nj->ni", covariance, up)
     along_direction = np.sum(across**2, axis=1) / np.sum(across * up, axis=1)
     return np.asarray((np.trace(covariance, axis1=1, axis2=2) - along_direction) / (2 * gravity))
-
-
-def upper_triangular(symmetric: Array) -> Array:
-    """The same triad in the convention of imu_tk: M = P R upper triangular, (3, 3).
-
-    Its inverse is T K of Tedaldi et al., truth = T K (reading − bias) with K diagonal and
-    T = [1 −α_yz α_zy; 0 1 −α_zx; 0 0 1].
-    """
-    upper = np.asarray(rq(symmetric, mode="r"))
-    return np.asarray(upper * np.sign(np.diag(upper)))
 
 
 # Faces, edges and corners of the case that point up: the simplest first.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from inertial.estimation.accelerometers import Reference, StaticForce, equations
 from inertial.estimation.probability import chi2_sf
-from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
+from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Triad
 from inertial.physics.motion import cross, level_axes
@@ -47,8 +47,8 @@ def off_position(
     statics: Sequence[StaticForce],
     reference: Reference,
     about: Triad,
-    effect_sigma: Mapping[str, float] | None = None,
-    measured: MeasuredDrift = NO_DRIFT,
+    effect_sigma: Mapping[str, float] | None,
+    measured: MeasuredDrift,
 ) -> OffPosition | None:
     """The position in error, if there is one; `about`: M and bias of the estimate.
 

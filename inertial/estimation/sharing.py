@@ -21,7 +21,6 @@ from inertial.estimation.type_mean import Mixture, TableMeans
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
-Integers = NDArray[np.int64]
 
 LEVELS = ("type", "table", "imu", "campaign")
 FLAT = 1e8  # variance of the mean of a type that is free, in variances of the values

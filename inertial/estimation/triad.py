@@ -45,9 +45,9 @@ def mounting_and_symmetric(matrix: Array) -> Array:
     return np.concatenate([mounting, np.diag(error), error[[0, 0, 1], [1, 2, 2]]])
 
 
-def jacobian_of_mounting(matrix: Array, step: float = 1e-6) -> Array:
+def jacobian_of_mounting(matrix: Array) -> Array:
     """Derivative of `mounting_and_symmetric` with respect to M by rows, (9, 9)."""
-    columns = []
+    columns, step = [], 1e-6
     for unit in np.eye(9):
         change = step * unit.reshape(3, 3)
         difference = mounting_and_symmetric(matrix + change) - mounting_and_symmetric(
@@ -57,6 +57,6 @@ def jacobian_of_mounting(matrix: Array, step: float = 1e-6) -> Array:
     return np.column_stack(columns)
 
 
-def design_of(truth: Array, weight: float = 1.0) -> Array:
-    """Rows of the reading of three sensors, (3, 12), for a truth (3,) and `weight` of the bias."""
-    return np.hstack([np.kron(np.eye(3), truth), weight * np.eye(3)])
+def design_of(truth: Array) -> Array:
+    """Rows of the reading of three sensors, (3, 12), for a truth (3,)."""
+    return np.hstack([np.kron(np.eye(3), truth), np.eye(3)])

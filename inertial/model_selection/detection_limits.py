@@ -4,12 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial.estimation.least_squares import MIN_INFORMATION_SHARE
 from inertial.model_selection.evidence import Evidence, SearchedEffect
-
-Array = NDArray[np.float64]
 
 DETECTION_SIGMAS = 5.0  # size that a campaign detects
 

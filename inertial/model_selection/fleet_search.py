@@ -259,7 +259,7 @@ def _shown(evidence: FleetEvidence, effect: int, level: str, group: int) -> bool
     return bool(shown.sum() > 1 if group == EVERY else shown.any())
 
 
-def fleet_law(evidence: FleetEvidence, level: float, draws: int = DRAWS, seed: int = 0) -> FleetLaw:
+def fleet_law(evidence: FleetEvidence, level: float) -> FleetLaw:
     """The null distribution of the search.
 
     Parameters
@@ -268,13 +268,13 @@ def fleet_law(evidence: FleetEvidence, level: float, draws: int = DRAWS, seed: i
         among all findings
     """
     every = hypotheses(evidence)
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     roots = _roots(evidence.information)
     pairs = list(dict.fromkeys((one.effect, one.level) for one in every))
-    batch = max(min(BATCH_VALUES // max(evidence.right.size, 1), draws), 1)
+    batch = max(min(BATCH_VALUES // max(evidence.right.size, 1), DRAWS), 1)
     smallest = []
-    for start in range(0, draws, batch):
-        count = min(batch, draws - start)
+    for start in range(0, DRAWS, batch):
+        count = min(batch, DRAWS - start)
         noise = random.standard_normal((*evidence.right.shape, count))
         smallest.append(_smallest(evidence, roots @ noise, every, pairs))
     share = float(np.quantile(np.concatenate(smallest), level)) if every else level

@@ -25,15 +25,11 @@ MIN_FREE_ADVANTAGE = 12.0  # of chi-squared, of a drift without a law over the c
 MAX_ROUNDS = 3  # of the excess of the residuals and the selection in turn
 
 
-def law_of(
-    evidence: Evidence, effects: Sequence[SearchedEffect], level: float, seed: int = 0
-) -> Chance | None:
+def law_of(evidence: Evidence, effects: Sequence[SearchedEffect], level: float) -> Chance | None:
     """The null distributions of this campaign; None where it has no equations."""
     if not evidence.sensors:
         return None
-    return null_simulation.chance(
-        evidence.observable().total.information, effects, level, seed=seed
-    )
+    return null_simulation.chance(evidence.observable().total.information, effects, level)
 
 
 def causes(evidence: Evidence, effects: Sequence[SearchedEffect], law: Chance | None) -> Named:

@@ -122,9 +122,9 @@ def residual_columns(sensor: EffectInformation, raw: Array) -> tuple[Array, Arra
     return root * size[:, None], along
 
 
-def named_share(tests: Sequence[ScatterTests], level: float, seed: int = 0) -> float:
+def named_share(tests: Sequence[ScatterTests], level: float) -> float:
     """The p-value that the smallest of all falls below with the probability `level`."""
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     smallest = [one.smallest_by_chance(DRAWS, random) for one in tests]
     return share_of_level(np.sort(np.min(smallest, axis=0)), level)
 

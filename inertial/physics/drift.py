@@ -87,7 +87,7 @@ def decayed(motion: Motion, constant: float) -> Array:
     return np.asarray(np.exp(-motion.time / constant) * np.sinh(half) / half)
 
 
-def mean_temperature(motion: Motion, reference: float | None = None) -> Constant:
+def mean_temperature(motion: Motion, reference: float | None) -> Constant:
     """The temperature that others are relative to: the mean of the campaign, K."""
     mean = reference
     if mean is None:

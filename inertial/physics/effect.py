@@ -262,6 +262,11 @@ class Effect(ABC):
         """Its name, and the value of the nonlinear parameter where it has one."""
         return self.name if self.at is None else f"{self.name}@{self.at:.6g}"
 
+    @property
+    def columns(self) -> list[str]:
+        """The names of its parameters in the equations and the evidence."""
+        return [f"{self.label}.{parameter.name}" for parameter in self.parameters]
+
 
 def known_earth(truth: Truth, motion: Motion) -> tuple[Array, Array]:
     """Upward and horizontal component of the earth's rate, body axes, (n, 3) each, rad/s.

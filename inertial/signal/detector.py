@@ -41,8 +41,8 @@ SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 class Given:
     """What the campaign states of all its logs.
 
-    gravity, gravity_sigma: m/s²; normal_gravity: m/s², at its latitude and height, NaN where these
-    are not stated; refuted_gravity: m/s², where a stated one is not that of the place, else NaN.
+    gravity: m/s²; normal_gravity: m/s², at its latitude and height, NaN where these are not stated;
+    refuted_gravity: m/s², where a stated one is not that of the place, else NaN.
     interval: s, of the instrument, NaN where not stated. date: ISO, or unknown.
     usual_interval: s, the median of the mean intervals of its logs, and unlike: by how much these
     differ, 1; NaN where fewer than three logs have stamps.
@@ -52,7 +52,6 @@ class Given:
     """
 
     gravity: float
-    gravity_sigma: float
     normal_gravity: float
     interval: float
     instrument: str
@@ -219,8 +218,9 @@ class Description:
 
 
 class Detector(ABC):
-    """One fault of a recording: its name, cause and source, its effect, and its detection.
+    """One fault of a recording: its name, source and detection.
 
+    The docstring of a class says what causes the fault, and what it costs the result.
     `unit` of the size, empty where it is that of the channel; `sensor`: accel or gyro, where all
     axes of one are concerned. `severity`: 3 spoils a result, 2 weakens it, 1 is good to know.
     `masks`: readings that it detects are not used by others; `repeats`: no time passes with the
@@ -229,9 +229,7 @@ class Detector(ABC):
     """
 
     name: ClassVar[str]
-    cause: ClassVar[str]
     source: ClassVar[str]
-    costs: ClassVar[str]
     unit: ClassVar[str] = ""
     sensor: ClassVar[str | None] = None
     severity: ClassVar[int] = 2

@@ -42,9 +42,9 @@ class Glitch:
 
     channel: that reads `size` more, m/s² or rad/s; where it is None all of `sensor` read
     (1 + size) times what they should. period: s, the longest that fits; others: s, which fit
-    as well. phase, width: s, of stamps modulo the period, where the records are. occurrences: how
-    many records show it, as many as if all were equally sure; p_value: the search paid for.
-    places: how many phases the longest period is divided into; origin: s, added to the stamps.
+    as well. phase, width: s, of stamps modulo the period, where the records are. p_value: the
+    search paid for. places: how many phases the longest period is divided into; origin: s, added to
+    the stamps.
     """
 
     sensor: str
@@ -54,7 +54,6 @@ class Glitch:
     phase: float
     width: float
     size: float
-    occurrences: float
     p_value: float
     places: int
     origin: float
@@ -229,7 +228,6 @@ def _of_clock(folded: Folded, scans: list[_Scan], tests: int) -> Iterator[Glitch
                 k * step,
                 scan.width * step,
                 float(longest.size[k, number]),
-                float(longest.occurrences[k, number]),
                 float(min(2 * norm.sf(abs(scan.sigmas[peak, number])) * tests, 1.0)),
                 folded.places,
                 folded.origin,

@@ -179,13 +179,11 @@ class Deviation:
 class PlanDetector(ABC):
     """One way in which a recording and its plan disagree; `severity` and `unit` as of a Detector.
 
-    A class states its name, cause and source, and its effect.
+    A class states its name and source, and in its docstring the cause and what it costs the result.
     """
 
     name: ClassVar[str]
-    cause: ClassVar[str]
     source: ClassVar[str]
-    costs: ClassVar[str]
     unit: ClassVar[str] = "1"
     severity: ClassVar[int] = 2
     sensor: ClassVar[str | None] = None

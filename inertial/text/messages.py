@@ -10,7 +10,8 @@ has sentences in it; then the sentences of the tables that it reads are in that 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+from collections.abc import Mapping, Sequence
 from gettext import GNUTranslations, NullTranslations
 from io import BytesIO
 from pathlib import Path
@@ -62,6 +63,13 @@ def speak(language: str) -> None:
     """What follows in this process is said in a language of `LOCALES`."""
     global _language, _chosen
     _language, _chosen = language, translations(language)
+
+
+def speak_as_set(arguments: Sequence[str]) -> None:
+    """Speak the `language` of `--settings JSON` among the arguments; English where it has none."""
+    if "--settings" in arguments[:-1]:
+        settings = json.loads(arguments[arguments.index("--settings") + 1])
+        speak(settings.get("language", ENGLISH))
 
 
 def language() -> str:

@@ -1,4 +1,4 @@
-"""The units of the laboratory beside those of the SI."""
+"""The units of the laboratory and of the campaign file, beside those of the SI."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ ARC_SECOND = DEGREE / 3600
 DEGREE_PER_HOUR = DEGREE / HOUR
 DEGREE_PER_SQRT_HOUR = DEGREE / 60  # rad/√s
 METRE_PER_SECOND_PER_SQRT_HOUR = 1 / 60  # m/s/√s
+PER_ROOT_HOUR = 1 / 60  # a random walk per √h, per √s
+CHANNEL_UNITS = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": DEGREE}  # of a reading
 
 
 _SYSTEM = ContextVar("_SYSTEM", default="laboratory")
@@ -124,6 +126,11 @@ _DIMENSIONLESS = {
     "symmetric": _ANGLE,
     "mounting": _ANGLE,
 }
+
+
+def in_si(value: float | None, unit: float) -> float | None:
+    """A value in a unit; none where it is not stated."""
+    return None if value is None else value * unit
 
 
 def in_degrees(value: float, unit: str) -> tuple[float, str]:

@@ -76,7 +76,7 @@ def _section(
     title: str,
     shows: str,
     reading: str,
-    parts: Callable[[Tables], Iterator[outline.Part]],
+    parts: Parts,
 ) -> outline.Section:
     return outline.Section(key, title, shows, reading, (), parts)
 

@@ -5,7 +5,7 @@ import json
 import sys
 from pathlib import Path
 
-from inertial.text.spoken import speak_as_set
+from inertial.text.messages import speak_as_set
 
 if __name__ == "__main__":
     speak_as_set(sys.argv)

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial.campaign.estimates import NAMES, Estimates, Wanted
 from inertial.campaign.static_positions import StaticPosition
@@ -17,8 +16,6 @@ from inertial.estimation.accelerometer_formulas import Upright, pooled_positions
 from inertial.estimation.accelerometers import Reference, StaticForce, six_position_formula
 from inertial.estimation.triad import UNKNOWNS, errors_of
 from inertial.tables import AXES
-
-Array = NDArray[np.float64]
 
 
 def add_six_positions(

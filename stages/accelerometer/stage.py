@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
@@ -23,8 +22,6 @@ from inertial.text.messages import _
 from stages.accelerometer.declared import DECLARED
 from stages.accelerometer.position_findings import findings
 from stages.accelerometer.source_formulas import add_pooled_positions, add_six_positions
-
-Array = NDArray[np.float64]
 
 CURES = {
     "bias": _(

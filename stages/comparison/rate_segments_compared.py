@@ -15,7 +15,7 @@ from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.estimation.rate_table import columns_of, nonlinearities, own_axis
 from inertial.tables import AXES
 from inertial.text.messages import _
-from stages.comparison.results import Results
+from stages.comparison.methods_compared import Results
 
 # ---- Gyros in static positions against rate segments, forward against backward.
 

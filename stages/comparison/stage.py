@@ -9,13 +9,12 @@ from inertial.campaign.differences import Difference, table_of
 from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.stage import Stage, Tables
 from stages.comparison.declared import DECLARED
-from stages.comparison.methods_compared import method_against_method
+from stages.comparison.methods_compared import Results, method_against_method
 from stages.comparison.rate_segments_compared import (
     forward_against_backward,
     static_against_turns,
     straight_line,
 )
-from stages.comparison.results import Results
 
 
 def comparison(

@@ -21,7 +21,6 @@ from inertial.tables.parquet import Stream
 # ---- Which result applies to which records, and how the errors are taken out of a reading.
 
 Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 ALL = np.iinfo(np.int64).max  # a record number that no log reaches
 UNKNOWN = np.full(3, np.nan)

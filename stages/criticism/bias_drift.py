@@ -70,7 +70,7 @@ def walk_evidence(campaign: Campaign, sensor: str, effects: Sequence[Effect]) ->
     waves = list(half_waves(sensor, WALK_WAVES))
     total = evidence(campaign, [*effects, *waves]).total
     place = {name: i for i, name in enumerate(total.names)}
-    known = [place[f"{e.label}.{parameter.name}"] for e in effects for parameter in e.parameters]
+    known = [place[name] for effect in effects for name in effect.columns]
     equations = Equations(total.information, total.right).given(known)
     axes = [[place[f"{wave.label}.c_{axis}"] for wave in waves] for axis in "xyz"]
     return walk(equations, axes).log_evidence

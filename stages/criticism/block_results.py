@@ -254,7 +254,7 @@ class BlockResults:
         if not evidence.sensors:
             return [Estimated(p.name, p.unit, p.meaning) for p in effect.parameters]
         place = {name: i for i, name in enumerate(evidence.names)}
-        own = [place[f"{effect.label}.{parameter.name}"] for parameter in effect.parameters]
+        own = [place[name] for name in effect.columns]
         others = [c.columns for c in self.selection.named.causes if c.effect != effect.name]
         chosen = list(dict.fromkeys([*own, *(i for columns in others for i in columns)]))
         plain, of_plain = evidence.total.estimate(chosen)

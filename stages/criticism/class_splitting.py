@@ -7,7 +7,6 @@ from itertools import combinations
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
@@ -17,7 +16,7 @@ from inertial.model_selection.splitting import MIN_SEPARATION, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
-from stages.criticism.selection import Selection, columns_of, evidence_of
+from stages.criticism.selection import Selection, evidence_of
 
 # ---- Manoeuvres that a laboratory might add: copies of those performed, to predict their value.
 #
@@ -103,8 +102,6 @@ def _turned_over(m: Manoeuvre) -> Manoeuvre:
 
 # ---- The manoeuvre that best distinguishes the members of a class, by this campaign's noise.
 
-Array = NDArray[np.float64]
-
 MIN_MIMICRY = 0.9  # share of a signal that another effect can mimic, to compare manoeuvres
 
 
@@ -167,7 +164,7 @@ class ExtendedCampaigns:
 def _mimicked(reduced: EffectInformation, effect: Effect, other: Effect) -> float | None:
     """Which share of an effect another can mimic; None where either is not observable."""
     own, others = (
-        [i for i, name in enumerate(reduced.names) if name in columns_of(candidate)]
+        [i for i, name in enumerate(reduced.names) if name in candidate.columns]
         for candidate in (effect, other)
     )
     total = float(np.trace(reduced.information[np.ix_(own, own)]))

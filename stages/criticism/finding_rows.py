@@ -1,4 +1,4 @@
-"""Common rows of all findings: identifiers, the members of a class, and parameters."""
+"""What all findings have in common: identifiers, the members of a class, and parameters."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -7,11 +7,13 @@ import numpy as np
 
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.records import with_mount
+from inertial.text.messages import _
 
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a row of it
 
 SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
+ONLY_CONSISTENT = _("The data are no more than consistent with {effects}.")
 
 
 def finding_id(cause: str, mount: str, *places: str) -> str:

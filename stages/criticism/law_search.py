@@ -33,7 +33,6 @@ from stages.criticism.selection import (
     MAX_LOG_ODDS,
     SENSORS,
     Selection,
-    columns_of,
     walk_name,
 )
 
@@ -81,7 +80,7 @@ class Columns:
 
     def given(self, effects: Sequence[Effect]) -> Equations:
         """The equations given some effects, without what these contain."""
-        own = [self.place[name] for effect in effects for name in columns_of(effect)]
+        own = [self.place[name] for effect in effects for name in effect.columns]
         return without(self.equations, own)
 
 
@@ -167,7 +166,7 @@ def columns_with(
         for axis, candidates in (axes | together).items():
             made.append(searched_effect(law_name(sensor, axis, *law), *candidates))
             of_each.append(shapes[law])
-    known = [place[name] for effect in others for name in columns_of(effect)]
+    known = [place[name] for effect in others for name in effect.columns]
     return Columns(
         without(equations, known),
         place,
@@ -272,7 +271,7 @@ def _catalogue(columns: Columns, kept: Sequence[Effect], prior: Mapping[str, flo
     """The log evidence of some of the named effects."""
     total, rest = 0.0, columns.equations
     for effect in kept:
-        own = [columns.place[name] for name in columns_of(effect)]
+        own = [columns.place[name] for name in effect.columns]
         odds = walk_odds.law(rest, [own], np.ones(1))
         total, rest = total + odds.log_evidence + prior[effect.name], odds.rest
     return total
@@ -328,7 +327,7 @@ def _best(
             first += one.shape[1]
         found.append(_functions(tried[0].sensor, axis, values, part))
     equations, place = _equations(campaign, tried[0].sensor, [*beside, *found])
-    equations = without(equations, [place[n] for e in beside for n in columns_of(e)])
+    equations = without(equations, [place[n] for e in beside for n in e.columns])
     candidates = law_odds(
         equations, [searched_effect("", own) for own in columns], np.zeros(len(tried))
     )

@@ -7,7 +7,7 @@ import numpy as np
 from inertial.effects import CATALOGUE
 from inertial.estimation.least_squares import MIN_INFORMATION_SHARE as MIN_SHARE
 from stages.criticism.finding_rows import TableRow
-from stages.criticism.selection import Selection, columns_of
+from stages.criticism.selection import Selection
 
 # Those without a scan mean the same in every campaign; one that has a single size, or is absent,
 # is a mistake in a statement.
@@ -32,7 +32,7 @@ def pooled_evidence_rows(selection: Selection, mount: str) -> Iterator[TableRow]
     own = {
         name: (effect, parameter)
         for effect in POOLED
-        for name, parameter in zip(columns_of(effect), effect.parameters, strict=True)
+        for name, parameter in zip(effect.columns, effect.parameters, strict=True)
         if name in place
     }
     pooled = [place[name] for name in own]

@@ -25,7 +25,14 @@ from inertial.physics.motion import Motion
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant
-from stages.criticism.finding_rows import SENSORS, TableRow, finding_id, member_rows, snr_of
+from stages.criticism.finding_rows import (
+    ONLY_CONSISTENT,
+    SENSORS,
+    TableRow,
+    finding_id,
+    member_rows,
+    snr_of,
+)
 
 Integers = NDArray[np.int64]
 
@@ -225,7 +232,6 @@ SCAN_UNITS = {"time": "Hz", "change": "s", "angle": "cycles per revolution"}
 
 NOT_NOISE = _("The residuals of the {sensors} are not noise: {description} ({p_value}).")
 ALSO = _("The structure shows in {others} too.")
-ONLY_CONSISTENT = _("The data are no more than consistent with {effects}.")
 CONSEQUENCE = _(
     "The joint result stands as it is: no effect by name is added to it for this "
     "sensor, and its sigmas do not allow for the structure."

@@ -357,7 +357,7 @@ def _resembling_walks(with_walk: Campaign, selection: Selection) -> list[bool]:
     column = {name: i for i, name in enumerate(totals[0].names)}
     result = []
     for place, effect in zip(_effects(selection), named, strict=True):
-        own = [column[name] for name in columns_of(effect) if name in column]
+        own = [column[name] for name in effect.columns if name in column]
         values = np.nan_to_num(selection.named.causes[place].values)
         remaining, whole = (
             values @ total.information[np.ix_(own, own)] @ values for total in totals
@@ -391,7 +391,7 @@ def _select(
     if given and equations.sensors:
         column = {name: i for i, name in enumerate(equations.names)}
         before = [
-            searched_effect(effect.name, [column[name] for name in columns_of(effect)])
+            searched_effect(effect.name, [column[name] for name in effect.columns])
             for effect in given
         ]
         named, searched = with_given(equations, named, before), [*searched, *before]
@@ -408,18 +408,13 @@ def _evidence_given(
     """The evidence on all candidates and on effects that are given; and that given these."""
     equations, searched = evidence_of(campaign, families, noise_degrees, given)
     column = {name: i for i, name in enumerate(equations.names)}
-    own = [column[name] for effect in given for name in columns_of(effect) if name in column]
+    own = [column[name] for effect in given for name in effect.columns if name in column]
     return equations, equations.given(own), searched
 
 
 def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...]:
     values = np.array([effect.at for effect in family], np.float64)
     return tuple(family[0].fixed(float(at)) for at in finer(values, places, FINER_STEPS))
-
-
-def columns_of(effect: Effect) -> list[str]:
-    """The names of the columns of an effect in the evidence."""
-    return [f"{effect.label}.{parameter.name}" for parameter in effect.parameters]
 
 
 def evidence_of(
@@ -450,7 +445,7 @@ def evidence_of(
     column = {name: i for i, name in enumerate(equations.names)}
 
     def columns(effect: Effect) -> list[int]:
-        return [column[name] for name in columns_of(effect)]
+        return [column[name] for name in effect.columns]
 
     searched = []
     for name, family in families.items():

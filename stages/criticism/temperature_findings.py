@@ -22,6 +22,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import counted, decimals_of, fixed, p_is, significant, with_sigma
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 from stages.criticism.finding_rows import (
+    ONLY_CONSISTENT,
     TableRow,
     finding_id,
     member_rows,
@@ -59,7 +60,6 @@ SLOPES = _(
     "The slope goes from {cold} in the cold to {warm} in the warm; a straight line "
     "would leave {residual}, neighbours scatter by {noise}."
 )
-ONLY_CONSISTENT = _("The data are no more than consistent with {effects}.")
 IDENTIFIED = _("The cause is {effects}.")
 AMBIGUOUS = _("The cause is {effects}: this campaign cannot distinguish them.")
 OMITTED = _("Omitted: {means} of fewer than {least:.0f} samples.")

@@ -32,7 +32,6 @@ from inertial.estimation.temperature import Columns, SensorEquations, best_knots
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect
-from stages.criticism.selection import columns_of
 
 MAX_ROUNDS = 4  # of degrees and knots in turn
 KNOTS = 24  # tried at first
@@ -123,7 +122,7 @@ class _Search:
 
         full = with_shifts(found.knots)
         tested, column = self._tested([full])
-        own = [column[name] for name in columns_of(full)]
+        own = [column[name] for name in full.columns]
         values, covariance = tested.equations.estimate([*own, *tested.given])
         place = {piece: i for i, piece in enumerate(full.pieces)}
         span = float(np.ptp(self.campaign.motion.temperature))
@@ -225,7 +224,7 @@ class _Search:
         """The reduction of chi-squared by each of a family, and that which noise exceeds."""
         labelled = [one.fixed(float(number)) for number, one in enumerate(family)]
         tested, column = self._tested(labelled)
-        drops = [tested.drop([column[name] for name in columns_of(one)])[0] for one in labelled]
+        drops = [tested.drop([column[name] for name in one.columns])[0] for one in labelled]
         # Against what the best of them leaves, not the first.
         tested, _column = self._tested([labelled[int(np.argmax(drops))]])
         return np.array(drops), tested.threshold(1, len(family))
@@ -242,8 +241,8 @@ class _Search:
         equations = Evidence(whole, (self.sensor,), (degrees,), raw[None]).observable()
         own = equations.sensors[0]
         column = {name: i for i, name in enumerate(own.names)}
-        given = tuple(column[name] for effect in self.others for name in columns_of(effect))
-        fitted = [column[name] for model in models[:first] for name in columns_of(model)]
+        given = tuple(column[name] for effect in self.others for name in effect.columns)
+        fitted = [column[name] for model in models[:first] for name in model.columns]
         ((excess, noise_degrees),) = equations.excesses([*fitted, *given])
         return SensorEquations(own, raw, excess, noise_degrees, self.level, given), column
 

@@ -15,7 +15,6 @@ from inertial.text.units import STANDARD_GRAVITY
 # ---- Means at temperatures, without time: readings at rest, and scale factors of turns.
 
 Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 ACCELEROMETERS, GYROS, SCALE = "accel", "gyro", "scale"
 MIN_SPAN = 5.0  # K, of a sweep of temperatures

@@ -10,8 +10,7 @@ from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.signal.signed_counts import signed
 from inertial.tables import AXES
-from inertial.text.campaign_units import CHANNEL_UNITS
-from inertial.text.units import ICE_POINT
+from inertial.text.units import CHANNEL_UNITS, ICE_POINT
 from stages.decode.arrival_times import ArrivalTimes, Stamped, arrival_times
 from stages.decode.decoded import Decoded, Reals, first_of, intervals_of, on_axis
 from stages.decode.table_angle import ANGLE_UNITS, Continuous

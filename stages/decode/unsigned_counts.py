@@ -7,9 +7,8 @@ import numpy as np
 
 from inertial.signal.signed_counts import bits_without_sign
 from inertial.tables.errors import Refusal
-from inertial.text.campaign_units import CHANNEL_UNITS
 from inertial.text.messages import _
-from inertial.text.units import STANDARD_GRAVITY
+from inertial.text.units import CHANNEL_UNITS, STANDARD_GRAVITY
 from stages.decode.decoded import Reals
 
 ZEROS = {1 << (bits - 1): bits for bits in (16, 12, 24)}  # middle of the counts of converters

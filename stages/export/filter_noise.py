@@ -112,7 +112,7 @@ def _of_channel(
 
 
 def calibration_errors(
-    triad: Triad, use: Use, left: tuple[Array, Array] | None = None
+    triad: Triad, use: Use, left: tuple[Array, Array] | None
 ) -> dict[str, tuple[float, float]]:
     """Axis → mean squares (c², m²) of the errors of corrected readings, (rad/s)² or (m/s²)².
 

@@ -7,7 +7,6 @@ from inertial.physics.effect import Effect
 from inertial.text.parameters import EXTENDED, JOINT
 from stages.extension.combinations import Combination
 from stages.extension.cross_validation import Trainings, carrier
-from stages.extension.models import names_of
 
 
 @dataclass(frozen=True)
@@ -45,7 +44,7 @@ def candidates_of(
     }
     for number, combination in enumerate(combinations):
         own = shown | absorbed
-        effects = tuple(e for e in combination.effects if own.intersection(names_of(e)))
+        effects = tuple(e for e in combination.effects if own.intersection(e.columns))
         if effects and any(e.sought_in != "blocks" for e in combination.effects):
             continue
         key = tuple(sorted(effect.label for effect in effects))
@@ -55,7 +54,7 @@ def candidates_of(
                 for effect, finding in zip(combination.effects, combination.findings, strict=True)
                 if effect in effects
             }
-            every = [name for effect in effects for name in names_of(effect)]
+            every = [name for effect in effects for name in effect.columns]
             columns = tuple(name for name in every if name in shown)
             taken = tuple(name for name in every if name in absorbed)
             method = f"member_{number}" if number else EXTENDED
@@ -78,7 +77,7 @@ def carriers_of(trainings: Trainings, sensor: str, candidate: Candidate) -> dict
     columns = candidate.columns
     return {
         effect.name: carrier(
-            trainings, sensor, columns, [name for name in columns if name in names_of(effect)]
+            trainings, sensor, columns, [name for name in columns if name in effect.columns]
         )
         for effect in candidate.effects
     }

@@ -66,7 +66,7 @@ class Channels:
     @property
     def names(self) -> list[str]:
         """The parameters of the effects, in the order of the traces."""
-        return [f"{e.label}.{parameter.name}" for e in self.effects for parameter in e.parameters]
+        return [name for effect in self.effects for name in effect.columns]
 
     @cached_property
     def _traces(self) -> list[tuple[Motion, Truth, Array, Array]]:

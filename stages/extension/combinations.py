@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from math import prod
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from inertial.campaign.effect_evidence import evidence
@@ -17,10 +16,7 @@ from inertial.campaign.equations import Campaign
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.effect_classes import log_evidence
 from inertial.physics.effect import Effect
-from stages.extension.models import names_of
 from stages.extension.named_effects import Member, NamedClass
-
-Array = NDArray[np.float64]
 
 MAX_OTHERS = 7  # combinations besides that of the likeliest members
 
@@ -147,4 +143,4 @@ def _odds(
 
 def _columns(information: EffectInformation, effects: Sequence[Effect]) -> list[int]:
     place = {name: i for i, name in enumerate(information.names)}
-    return [place[name] for effect in effects for name in names_of(effect)]
+    return [place[name] for effect in effects for name in effect.columns]

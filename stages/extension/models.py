@@ -23,11 +23,6 @@ PRIOR_SIGMA = 1e4  # of an effect's parameters, in their typical sizes
 SENSORS = ("gyro", "accel")
 
 
-def names_of(effect: Effect) -> list[str]:
-    """The parameters of an effect, as the equations name them."""
-    return [f"{effect.label}.{parameter.name}" for parameter in effect.parameters]
-
-
 @dataclass(frozen=True)
 class SensorEvidence:
     """The information of the equations of a sensor, of all manoeuvres or of some.
@@ -75,7 +70,7 @@ class Models:
     def absorbed(self) -> tuple[frozenset[str], frozenset[str]]:
         """The columns that the parameters of a sensor absorb, and that the other sensor shows."""
         gyro, accel = self.shown
-        some = {name for e in self.effects if e.absorbed_by for name in names_of(e)}
+        some = {name for e in self.effects if e.absorbed_by for name in e.columns}
         return frozenset(some & (accel - gyro)), frozenset(some & (gyro - accel))
 
     def complete(self) -> list[System | None]:

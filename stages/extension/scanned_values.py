@@ -15,7 +15,7 @@ from inertial.estimation.least_squares import System
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Solved
-from stages.extension.models import PRIOR_SIGMA, names_of
+from stages.extension.models import PRIOR_SIGMA
 
 STEP = 0.05  # of the scanned value, of the derivative
 
@@ -70,9 +70,9 @@ def with_scanned_values(
         return solution
     system = system_of(uncertain)
     covariance = system.solve_shared().covariance
-    by_label = dict(pair for e in effects for pair in zip(names_of(e), of_effect(e), strict=True))
+    by_label = dict(pair for e in effects for pair in zip(e.columns, of_effect(e), strict=True))
     place = {by_label.get(name, name): i for i, (_kind, name) in enumerate(system.names)}
-    scanned = [place[name] for effect in uncertain for name in names_of(effect)]
+    scanned = [place[name] for effect in uncertain for name in effect.columns]
     own = [*range(len(solution.of_sensor)), *(place[r["parameter"]] for r in solution.of_effects)]
     shared = covariance[np.ix_(own, scanned)]
     added = shared @ np.linalg.solve(covariance[np.ix_(scanned, scanned)], shared.T)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from inertial.estimation.least_squares import EffectInformation, Estimate, System
 from inertial.model_selection.size_after_selection import corrected, regressed
 from stages.extension.cross_validation import basis_of
-from stages.extension.models import SensorEvidence, names_of
+from stages.extension.models import SensorEvidence
 from stages.extension.named_effects import NamedClass
 
 Array = NDArray[np.float64]
@@ -65,7 +65,7 @@ def selected_sizes(
     evidence: Mapping[str, SensorEvidence | None], classes: Sequence[NamedClass]
 ) -> SelectedSizes:
     """The correction of the first members of the classes, fitted together to both sensors."""
-    columns = [names_of(each.members[0].effect) for each in classes]
+    columns = [each.members[0].effect.columns for each in classes]
     names = tuple(name for own in columns for name in own)
     known = [_of(each.effects, names) for each in evidence.values() if each is not None]
     if not known:

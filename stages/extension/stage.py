@@ -34,7 +34,6 @@ from stages.extension.models import (
     Models,
     given,
     models_of,
-    names_of,
     with_columns,
 )
 from stages.extension.named_effects import Named, named_of
@@ -264,7 +263,7 @@ class Extension:
         def system_of(further: Sequence[Effect]) -> System:
             every = models.extended.system(sensor, [*candidate.effects, *further], PRIOR_SIGMA)
             assert every is not None  # there is one without them
-            names = {name for effect in further for name in names_of(effect)}
+            names = {name for effect in further for name in effect.columns}
             return given(with_columns(every, columns | names), sized)
 
         if not solution.effects:

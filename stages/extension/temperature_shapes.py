@@ -34,7 +34,7 @@ from inertial.model_selection.effect_classes import log_evidence
 from inertial.physics.effect import Array, Effect
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Row, Solved
-from stages.extension.models import names_of, with_columns
+from stages.extension.models import with_columns
 
 GRID = 25  # knots over the range
 FINE, FINE_SIGMAS = 17, 4.0  # about the knot that was named, to so many of its sigma
@@ -149,7 +149,7 @@ class _Equations:
         }
         self.system = _compressed(system_of([self.smooth, *self.bends.values()]))
         self.named = {p: f"{model.label}.{p.name}" for p in model.pieces if p.function in knots}
-        own = {name for effect in (self.smooth, *self.bends.values()) for name in names_of(effect)}
+        own = {name for effect in (self.smooth, *self.bends.values()) for name in effect.columns}
         self.others = [
             name
             for kind, name in self.system.names

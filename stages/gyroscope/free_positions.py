@@ -3,6 +3,7 @@
 The method is `free_positions`, as that of the accelerometers, in whose axes its result is.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -11,12 +12,15 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.findings import Finding
 from inertial.campaign.passages import passages_of
-from inertial.campaign.records import omissions
+from inertial.campaign.records import omissions, with_mount
 from inertial.campaign.unknown_attitude import fitted_to, free_static_positions
 from inertial.estimation.between_positions import Prior, fit
+from inertial.estimation.least_squares import Estimate
+from inertial.signal.scale_factor import MAX_SCALE_ERROR
+from inertial.tables import AXES
 from inertial.text.messages import _
+from inertial.text.numbers import significant
 from inertial.text.parameters import FREE
-from stages.gyroscope.count_size import findings
 
 NOT_AT_REST = _("its gyros read otherwise than in all other rests: it moved, or it was shaken")
 SLIPPED = _(
@@ -29,6 +33,8 @@ CURES = {
         "add turns of 90° or more about {axis}, there and back"
     ),
 }
+CAUSE = "gyro_count_size"
+MIN_SIGMAS = 5.0  # by which a scale factor is further off than that of any gyro
 
 
 def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
@@ -52,4 +58,41 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     broken += [replace(parts[i], reason=reason[i]) for i in off]
     used = [part for i, part in enumerate(parts) if i not in off]
     estimates.add_fit(FREE, fitted, used, left_out + broken)
-    return list(findings(fitted.estimate, data.mount))
+    return list(_count_size(fitted.estimate, data.mount))
+
+
+def _count_size(estimate: Estimate, mount: str) -> Iterator[Finding]:
+    """The gyros whose counts are of another size than stated, as the motions by hand show it.
+
+    One finding for all axes; M holds it, so the result stays right for readings as they are.
+    """
+    places = [0, 4, 8]
+    ratios, sigmas = estimate.values[places], estimate.sigma[places]
+    beyond = np.abs(ratios - 1) - MAX_SCALE_ERROR["gyro"] > MIN_SIGMAS * sigmas
+    off = [i for i in range(3) if beyond[i] and estimate.determined[places[i]]]
+    if not off:
+        return
+    listed = ", ".join(f"{AXES[i]} {significant(ratios[i], 4)}" for i in off)
+    mean = float(np.mean(ratios[off]))
+    yield Finding(
+        id="/".join(("gyroscope", with_mount(CAUSE, mount), "all")),
+        cause=CAUSE,
+        mount=mount,
+        sensor="gyro",
+        axis=AXES[off[0]] if len(off) == 1 else None,
+        count=len(off),
+        size=mean,
+        severity=2,
+        sentence=_(
+            "Between the positions the gyros turned by other angles than they read: they read "
+            "{listed} times what they should. The stated count size is not that of the log.",
+            listed=listed,
+        ),
+        consequence=_(
+            "The scale factors of the result hold it, so the result is right for these readings."
+        ),
+        action=_(
+            "Multiply the counts_per_unit of the gyros by {factor}, or state the right unit.",
+            factor=significant(mean, 4),
+        ),
+    )

@@ -9,9 +9,8 @@ from typing import Any
 
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
-from inertial.text.campaign_units import ARC_SECOND, DEGREE
 from inertial.text.messages import _
-from inertial.text.units import STANDARD_GRAVITY
+from inertial.text.units import ARC_SECOND, DEGREE, STANDARD_GRAVITY
 
 Row = dict[str, Any]
 

@@ -9,9 +9,8 @@ import numpy as np
 from inertial import tables
 from inertial.physics.motion import Array, Profile, turned
 from inertial.tables.yaml_file import Key, YamlFile
-from inertial.text.campaign_units import ARC_SECOND, DEGREE, in_si
 from inertial.text.messages import _
-from inertial.text.units import ICE_POINT
+from inertial.text.units import ARC_SECOND, DEGREE, ICE_POINT, in_si
 from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 
 AXES = np.eye(3)

@@ -4,9 +4,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from inertial.tables.yaml_file import YamlFile
-from inertial.text.campaign_units import ARC_SECOND, DEGREE
 from inertial.text.parameters import PARTS, SCALE
-from inertial.text.units import STANDARD_GRAVITY
+from inertial.text.units import ARC_SECOND, DEGREE, STANDARD_GRAVITY
 
 Row = dict[str, Any]
 

@@ -10,9 +10,15 @@ import numpy as np
 from inertial import tables
 from inertial.formats.columns import vectornav_lines
 from inertial.tables.yaml_file import Key, YamlFile
-from inertial.text.campaign_units import CHANNEL_UNITS, DEGREE, PER_ROOT_HOUR, in_si
 from inertial.text.messages import _
-from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
+from inertial.text.units import (
+    CHANNEL_UNITS,
+    DEGREE,
+    DEGREE_PER_HOUR,
+    PER_ROOT_HOUR,
+    STANDARD_GRAVITY,
+    in_si,
+)
 from stages.plan.sampling import MeanSigmas, StatedRate, each, refuse_without_time, with_rate
 
 KEY = "encoder"

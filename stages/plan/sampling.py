@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from inertial.tables.yaml_file import Key, YamlFile
-from inertial.text.campaign_units import CHANNEL_UNITS
 from inertial.text.messages import _
+from inertial.text.units import CHANNEL_UNITS
 
 SAMPLE_RATE = "rate_hz"
 

@@ -7,8 +7,8 @@ from typing import Any
 from inertial.physics.gravity_anomalies import ANOMALY_SIGMA, is_refuted, latitude_of
 from inertial.physics.site import EARTH_RATE, earth_rate, normal_gravity
 from inertial.tables.yaml_file import YamlFile
-from inertial.text.campaign_units import ARC_SECOND
 from inertial.text.messages import _
+from inertial.text.units import ARC_SECOND
 
 # Where a campaign states no sigma, these are assumed, and the report states that.
 ASSUMED_POSITION = 30 * ARC_SECOND

@@ -2,7 +2,7 @@
 
 import sys
 
-from inertial.text.spoken import speak_as_set
+from inertial.text.messages import speak_as_set
 
 if __name__ == "__main__":
     speak_as_set(sys.argv)

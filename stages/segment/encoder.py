@@ -6,15 +6,12 @@ from math import degrees
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import ENCODER
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

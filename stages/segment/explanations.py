@@ -143,9 +143,9 @@ class _Case:
 def explain(
     windows: Sequence[Division],
     earth_rate: float,
-    accepted: Collection[str] = (),
+    accepted: Collection[str],
     *,
-    with_sense: bool = False,
+    with_sense: bool,
 ) -> Explained:
     """Find every manoeuvre; where the plan is not found, by what explains clearly more of it.
 

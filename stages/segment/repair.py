@@ -68,13 +68,12 @@ class Basis:
 
 @dataclass(frozen=True)
 class SetRight:
-    """The campaign with its repairs: windows, plan, where it is found, and what was set right.
+    """The campaign with its repairs: plan, where it is found, and what was set right.
 
     `level`: (3,), rad/s, the gyros at rest; `rows`: of the table of repairs, where `finding` is
     the id of the repair whose finding tells of it.
     """
 
-    binned: Sequence[Binned]
     plan: Sequence[Manoeuvre]
     level: Array
     explained: Explained
@@ -123,7 +122,6 @@ class _Campaign:
             self._rivals,
         )
         return SetRight(
-            self._binned,
             self._plan,
             self._level,
             self._explained,

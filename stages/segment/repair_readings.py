@@ -115,7 +115,6 @@ class Scale:
     others: Sequence[float]
     why: str
     seen: Sequence[Multiple]
-    ratio: float
 
     @property
     def fitting(self) -> tuple[int, int, int]:
@@ -185,7 +184,7 @@ def _scale(
         return None
     others = [other for other in near if abs(other / factor - 1) > MAX_ROUNDING]
     # The unit itself is exact, where the count of an instrument is the same to its last digits.
-    return Scale(sensor, log, factor, others, _(", or ").join(near.values()), seen, ratio)
+    return Scale(sensor, log, factor, others, _(", or ").join(near.values()), seen)
 
 
 def _is_full_scale(factor: float) -> bool:

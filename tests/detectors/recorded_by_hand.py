@@ -23,7 +23,6 @@ def given(**changes: Any) -> Given:
     """A campaign in Wuhan with an IMU of 100 Hz."""
     facts: dict[str, Any] = {
         "gravity": GRAVITY,
-        "gravity_sigma": 5e-5,
         "normal_gravity": 9.7935882,
         "interval": INTERVAL,
         "instrument": "NovAtel SPAN-CPT",

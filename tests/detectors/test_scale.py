@@ -94,7 +94,7 @@ def test_a_ratio_of_no_unit_is_not_explained():
 
 
 def test_a_gravity_that_is_not_of_the_place_is_named():
-    told = given(gravity=9.7935882, gravity_sigma=5e-4, refuted_gravity=9.80665)
+    told = given(gravity=9.7935882, refuted_gravity=9.80665)
     (event,) = GravityError().detect_in_campaign(told)
     assert_told(GravityError(), event, "")
     assert event.size == pytest.approx(9.80665 - 9.7935882)

@@ -8,7 +8,6 @@ import pytest
 from inertial.effects import CATALOGUE
 from stages.extension.candidates import candidates_of, normalised
 from stages.extension.combinations import combinations_of, compared
-from stages.extension.models import names_of
 from stages.extension.named_effects import Member, NamedClass
 
 
@@ -22,7 +21,7 @@ GYRO = of_class("g", gyro_bias_ramp=0.7, gyro_warm_up=0.2, gyro_random_walk=0.1)
 
 
 def shown(*effects: str) -> frozenset[str]:
-    return frozenset(name for effect in effects for name in names_of(CATALOGUE[effect]))
+    return frozenset(name for effect in effects for name in CATALOGUE[effect].columns)
 
 
 def told(*shown_effects: str) -> dict[str, tuple[tuple[str, ...], float]]:

@@ -6,7 +6,7 @@ import pytest
 from inertial.estimation.least_squares import EffectInformation, Estimate
 from inertial.model_selection.size_after_selection import selected
 from inertial.physics.effect import Effect, Parameter
-from stages.extension.models import SensorEvidence, names_of
+from stages.extension.models import SensorEvidence
 from stages.extension.named_effects import Member, NamedClass
 from stages.extension.selected_sizes import selected_sizes
 
@@ -21,7 +21,7 @@ class Mate(Effect):
     parameters = (Parameter("r", "1", 1.0, ""),)
 
 
-NAMES = (*names_of(Hidden()), *names_of(Mate()))
+NAMES = (*Hidden().columns, *Mate().columns)
 THRESHOLD, DRAWS = 18.0, 6_000
 NOTHING = Estimate(np.zeros(0), np.zeros((0, 0)), np.zeros(0, bool), 0.0, 1, 0.0, 1)
 

@@ -14,6 +14,7 @@ from moved_by_hand import (
     Imu,
     rests,
 )
+from scipy.linalg import rq
 
 from inertial.estimation.multi_position import (
     FREE,
@@ -24,7 +25,6 @@ from inertial.estimation.multi_position import (
     free_positions,
     matrix_of,
     unobservable,
-    upper_triangular,
 )
 from inertial.estimation.triad import mounting_and_symmetric
 from inertial.estimation.variance_components import with_scatter
@@ -148,6 +148,12 @@ def test_two_positions_with_an_unknown_tilt(tilt):
 
 
 # ---- imu_tk's convention
+
+
+def upper_triangular(symmetric):
+    """The same triad with M = P R upper triangular, (3, 3)."""
+    upper = rq(symmetric, mode="r")
+    return upper * np.sign(np.diag(upper))
 
 
 def test_the_upper_triangular_form_is_the_same_triad():

@@ -42,7 +42,6 @@ from laboratory.effects import EFFECTS
 from laboratory.sensor import Sensors, Triad
 from stages.criticism.selection import (
     Selection,
-    columns_of,
     evidence_of,
     scatter_tests_of,
     select_with_scatter,
@@ -139,7 +138,7 @@ class Recording:
         By hand by residuals alone: there the parameters have no priors but vague ones. Residuals
         that nothing explains, as the recording is, are noise here.
         """
-        families, columns = self.selection.families, columns_of(effect)
+        families, columns = self.selection.families, effect.columns
         if self.equations.by_hand is None:
             said = evidence(self.equations, [effect])
             information = said.scaled(said.excesses([])).total.information

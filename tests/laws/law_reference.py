@@ -21,7 +21,6 @@ from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.scan import Candidates
 from inertial.physics.effect import Effect
 from laboratory import Recording
-from stages.criticism.selection import columns_of
 
 Array = NDArray[np.float64]
 
@@ -73,7 +72,7 @@ def remaining(campaign: Campaign, known: Effect) -> float:
     total = evidence(campaign, [known, *every]).total
     place = {name: i for i, name in enumerate(total.names)}
     signal = total.information[:, 0]
-    searched = [searched_effect(e.label, [place[n] for n in columns_of(e)]) for e in every]
+    searched = [searched_effect(e.label, [place[n] for n in e.columns]) for e in every]
     taken, _degrees = Candidates(searched).drops(total.information, signal)
     return float(np.sqrt(max(signal[0] - taken.max(), 0.0)))
 
@@ -87,8 +86,8 @@ def captured(
     """
     total = evidence(campaign, [known, law, *beside]).total
     place = {name: i for i, name in enumerate(total.names)}
-    total = total.given([place[name] for effect in beside for name in columns_of(effect)])
-    own = [place[name] for name in columns_of(law)]
+    total = total.given([place[name] for effect in beside for name in effect.columns])
+    own = [place[name] for name in law.columns]
     signal = total.information[:, own] @ sizes
     size, whole = float(signal[own] @ sizes), float(total.information[0, 0])
     return float(signal[0] ** 2 / max(whole * size, np.finfo(float).tiny))

@@ -5,10 +5,19 @@ import pytest
 from noise_simulation import noise
 
 from inertial.estimation import allan as module
-from inertial.estimation.allan import AllanSums, allan, factors_up_to, pooled_degrees
+from inertial.estimation.allan import AllanSums, factors_up_to, pooled_degrees
 from inertial.estimation.noise_model import NoiseModel
 
 WHITE = NoiseModel(white_noise=1.0)
+
+
+def allan(stretches, interval, factors=None, models=None):
+    """The overlapping Allan deviation of stretches (n, c) that are in memory."""
+    sums = AllanSums(stretches[0].shape[1], factors)
+    for stretch in stretches:
+        sums.add(stretch)
+        sums.end()
+    return sums.result(interval, models)
 
 
 def nist_series() -> np.ndarray:

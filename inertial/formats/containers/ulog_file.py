@@ -123,7 +123,6 @@ class _File(BufferedReader):
 
     def __init__(self, path: Path, size: int) -> None:
         super().__init__(FileIO(path))
-        self._size = size
         self._until = monotonic() + MAX_SECONDS + size / LEAST_BYTES_PER_SECOND
         self.broken_at: int | None = None
         self._last: tuple[int | None, int] = _HEAD_BYTES, 0  # requested and read

@@ -15,12 +15,12 @@ from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.results import Estimate, by_kind, kind_of
+from stages.report.sections.comparisons import BIAS_UNIT
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, plain, sensor_of_stage
 
 MOST_PANELS = 24
 MOST_EPOCH_PANELS = 12
-BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 SENSOR = {"accelerometer": "accel", "gyroscope": "gyro"}
 STAGE = {sensor: stage for stage, sensor in SENSOR.items()}
 Group = tuple[str, str, str]  # sensor, mount, method

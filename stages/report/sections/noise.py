@@ -10,6 +10,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
+from stages.report.sections.noise_by_manoeuvre import DATA_SHEET
 from stages.report.sections.noise_figures import allan_figure, spectrum_figure
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSORS, capital
@@ -38,7 +39,6 @@ NAME = {
         "ramp": _("Ramp"),
     },
 }
-DATA_SHEET = _("data sheet")
 RESTS = ("rest", "rest-before", "rest-after")
 
 

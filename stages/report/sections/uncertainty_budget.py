@@ -19,6 +19,7 @@ from stages.report.results import (
     quantity_of,
     symbol,
 )
+from stages.report.sections.certificate import KINDS
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR, capital, with_mount
 
@@ -36,7 +37,6 @@ SOURCES = {
     "gravity": _("gravity"),
     "latitude": _("latitude"),
 }
-KINDS = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
 MIN_SHARE = 5e-4  # of a variance, below which a share is written as nothing
 MIN_LABELLED = 25  # parameters of a sensor, from which a picture has no names
 
