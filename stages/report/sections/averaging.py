@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import sqrt
+from math import hypot, sqrt
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -131,10 +131,13 @@ def _colour(parameter: str) -> str:
 def _wanted(rows: Sequence[Record]) -> outline.Table:
     """How long each static position must last for a bias of a required sigma."""
     return outline.Table(
-        _("Duration of each static position for a required σ of the bias, by the formulas of S0."),
+        _(
+            "Duration of each static position for a required σ of the bias, if it were computed by "
+            "the formulas of S0 (not the result of this report, whose σ is in “Parameters”)."
+        ),
         (
             outline.Column(_("Bias")),
-            outline.Column(_("random walk"), "number"),
+            outline.Column(_("white noise N"), "number"),
             outline.Column(_("unit"), "unit"),
             *outline.columns("number", "σ", _("duration"), group=_("Recorded")),
             outline.Column(_("floor"), "number"),
@@ -145,9 +148,8 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
         [_wanted_row(row) for row in rows],
         _("None: no formula of S0 gives a bias here."),
         _(
-            "σ² = N²/T + floor², with the random walk N of the bias and positions of "
-            "duration T. The "
-            "floor is what averaging does not reduce: tilts of the positions, gravity, an unknown "
+            "σ² = N²/T + floor², with the white noise N of the bias and positions of duration T. "
+            "The floor is what averaging does not reduce: tilts of the positions, gravity, an unknown "
             "azimuth, and the scatter between manoeuvres."
         ),
     )
@@ -165,7 +167,7 @@ def _wanted_row(row: Record) -> outline.Row:
         *(significant(walk.of(row["random_walk"]), 2), walk.name),
         *(sigma, f"{significant(row['seconds'], 3)} s"),
         *(floor, wanted, unit.name),
-        _("not attainable") if seconds is None else f"{significant(seconds, 2)} s",
+        _("not by this formula") if seconds is None else f"{significant(seconds, 2)} s",
     )
 
 
@@ -178,10 +180,13 @@ def epoch_parts(tables: Tables) -> Iterator[outline.Part]:
     for number, (group, curves) in enumerate(groups.items(), 1):
         yield _epochs(group, f"epochs-{number}", curves)
     if spreads := tables.rows("spreads"):
+        levels = tables.rows("levels")
         yield _scatter(spreads)
         seconds = [row["seconds"] for row in spreads]
         extremes = dict.fromkeys((min(seconds), max(seconds)))
-        yield outline.Paragraph(" ".join(_scatter_at(spreads, length) for length in extremes))
+        yield outline.Paragraph(
+            " ".join(_scatter_at(spreads, length, levels) for length in extremes)
+        )
         yield _spreads(spreads)
 
 
@@ -275,17 +280,24 @@ def _scatter_panel(panel: Axes, rows: Sequence[Record]) -> None:
     panel.set_ylim(0, max(2.0, 1.1 * max(map(_ratio, rows))))
 
 
-def _scatter_at(rows: Sequence[Record], seconds: float) -> str:
+def _level_sigma(levels: Sequence[Record], sensor: str) -> float:
+    """How well the white noise of a sensor is known, relative; of the least sure channel."""
+    own = [row for row in levels if row["channel"].startswith(sensor) and row["white_noise"]]
+    known = [row["sigma"] / row["white_noise"] for row in own if row["sigma"] is not None]
+    return max(known, default=0.0)
+
+
+def _scatter_at(rows: Sequence[Record], seconds: float, levels: Sequence[Record]) -> str:
     """How far the scatter is off that of white noise, at epochs of one length."""
     own = [row for row in rows if row["seconds"] == seconds]
     ratios = sorted((_ratio(row), row["quantity"], STAGE[row["sensor"]]) for row in own)
     epochs = own[0]["epochs"]
-    chance = 1 / sqrt(2 * max(epochs - 1, 1))
     (smallest, *_unused), (largest, name, stage) = ratios[0], ratios[-1]
+    chance = hypot(1 / sqrt(2 * max(epochs - 1, 1)), _level_sigma(levels, SENSOR[stage]))
     return _(
         "Epochs of {seconds} s ({epochs} of them) scatter {smallest} to {largest} times "
-        "as much as white noise, most the {name} of the {stage}; chance alone gives 1 ± "
-        "{chance}.",
+        "as much as white noise, most the {name} of the {stage}; chance and the uncertainty of the "
+        "level of the white noise give 1 ± {chance}.",
         seconds=significant(seconds, 3),
         epochs=whole(epochs),
         smallest=fixed(smallest, 2),
@@ -314,14 +326,11 @@ def _spreads(rows: Sequence[Record]) -> outline.Table:
                 _("running means"),
                 group=_("Standard deviation"),
             ),
-            *outline.columns(
-                "number", _("single epochs"), _("running means"), group=_("Variance, SI")
-            ),
         ),
         [_spread(row) for row in named],
         note=_(
-            "The variance of the running means describes their variation on the way, not the "
-            "uncertainty of the last one: its σ is that of white noise over the whole position."
+            "The scatter of the running means is their variation on the way, not the uncertainty "
+            "of the last one: its σ is that of white noise over the whole position."
         ),
     )
 
@@ -334,5 +343,4 @@ def _spread(row: Record) -> outline.Row:
         SENSOR_OF_STAGE[STAGE[row["sensor"]]],
         unit.name,
         *(significant(sqrt(each) / unit.size, 3) for each in (single, white, running)),
-        *(significant(each, 3) for each in (single, running)),
     )

@@ -95,7 +95,9 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
                 *outline.value_and_sigma(_("Joint fit")),
                 *outline.value_and_sigma(_("Extended")),
                 outline.Column(_("unit"), "unit"),
-                outline.Column(_("Shift, in σ of the joint fit"), "number"),
+                *outline.columns(
+                    "number", _("joint fit"), _("extended"), group=_("Shift, in σ of the fit")
+                ),
                 outline.Column(_("Meaning"), "note"),
             ),
             list(_shifts(own)),
@@ -115,17 +117,19 @@ def _shifts(each: Sequence[Shift]) -> Iterator[outline.Row]:
         cells += in_units(both, units)
     extended, joint = cells[::2], cells[1::2]
     sides = [column for side in (joint, extended) for column in zip(*side, strict=True)]
-    sigmas = [numbers.fixed(shift.sigmas, 1) for shift in each]
+    sigmas = [
+        (numbers.fixed(shift.sigmas, 1), numbers.fixed(shift.own_sigmas, 1)) for shift in each
+    ]
     lines = iter(zip(sigmas, *sides, strict=True))
     for kind, own in kinds.items():
         yield outline.head(KIND.get(kind, kind))
-        for shift, (text, *line) in zip(own, lines, strict=False):
+        for shift, (in_sigmas, *line) in zip(own, lines, strict=False):
             far = shift.sigmas is not None and abs(shift.sigmas) > MIN_SIGMAS
             yield outline.table_row(
                 symbol(shift.extended["parameter"]),
                 *line,
                 quantity_of(shift.extended).shown.name,
-                text,
+                *in_sigmas,
                 numbers.shortened(shift.extended["meaning"], 160),
                 anchor=shift.extended["id"],
                 tone="fair" if far else "",
@@ -174,7 +178,10 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             for (name, _), group in groupby(seen, lambda row: (_effect(row), row["unit"]))
         ],
         _("None: every effect that this campaign makes observable was detected."),
-        _("p: the probability of such data under noise alone."),
+        _(
+            "p: the probability that noise alone makes the largest of all tested effects this "
+            "significant (corrected for the number of tests, so it is often 1)."
+        ),
     )
     if hidden:
         yield outline.Table(
@@ -250,21 +257,22 @@ def structure_tests(rows: Sequence[Record]) -> Iterator[outline.Part]:
 
 
 def _insignificant(rows: Sequence[Record], where: str) -> str:
-    least = min((row for row in rows if row["degrees"]), key=lambda row: float(row["p_value"]))
+    made = [row for row in rows if row["degrees"]]
+    least = min(made, key=lambda row: float(row["p_value"]))
     sentence = _(
         "{rows} tests for structure in the residuals of the model with the identified "
-        "effects{where}, against {listed}: none is significant, smallest {p_value} "
-        "({least}, {least_2}).",
-        rows=_count(rows),
+        "effects{where}, against {listed}: none is significant, smallest {p_value} after "
+        "correction for the search ({least}, {least_2}).",
+        rows=_count(made),
         where=where,
-        listed=listed([test_name(row) for row in rows]),
+        listed=listed([test_name(row) for row in made]),
         p_value=numbers.p_is(least["p_value"]),
         least=test_name(least),
         least_2=channel(least),
     )
     if idle := [test_name(row) for row in rows if not row["degrees"]]:
         sentence += _(
-            " Not tested against {idle}, which the recording does not contain.", idle=listed(idle)
+            " Not tested against {idle}: the recording does not contain it.", idle=listed(idle)
         )
     return sentence
 

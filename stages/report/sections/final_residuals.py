@@ -84,7 +84,9 @@ SECTION = Section(
         "the band is ±3 σ. Right: the residuals over their σ, blocks of static positions and "
         "seconds of steady rotation, with the normal distribution. Noise alone gives a ratio of "
         "1.00 and leaves 0.3 % beyond 3 σ. A vibration averages out within a second, and drift of "
-        "the bias stays in."
+        "the bias stays in. Where the table's heading is not known, the azimuth of each static "
+        "position is estimated with the result, so one direction of the gyros' residuals at rest "
+        "is fitted away."
     ),
     ("residuals", "manoeuvres"),
     parts,
