@@ -48,7 +48,7 @@ SECTION = outline.Section(
     _("Parameters against averaging time"),
     _(
         "Each parameter as estimated from the first seconds of each static position "
-        "only, relative to its final value."
+        "only, relative to its final value; the joint fit is that without effects."
     ),
     _(
         "The band is value ± σ. Where it narrows about zero, longer static positions "
@@ -149,8 +149,8 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
         _("None: no formula of S0 gives a bias here."),
         _(
             "σ² = N²/T + floor², with the white noise N of the bias and positions of duration T. "
-            "The floor is what averaging does not reduce: tilts of the positions, gravity, an unknown "
-            "azimuth, and the scatter between manoeuvres."
+            "The floor is what averaging does not reduce: tilts of the positions, gravity, an "
+            "unknown azimuth, and the scatter between manoeuvres."
         ),
     )
 

@@ -37,7 +37,7 @@ def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
     yield _differences(
         rows, _("None: no parameter was estimated in two ways that could be compared.")
     )
-    yield outline.Heading(_("Published values against the result that counts"))
+    yield outline.Heading(_("Published values against the final result"))
     published = sorted(tables.rows("published_differences"), key=_worst_first)
     yield from _judged(published)
     yield _differences(published, _("None: no published value is known for this instrument."))
@@ -78,8 +78,7 @@ COMPARISONS = outline.Section(
     _("Comparisons"),
     _(
         "Static against rotation, forward against backward, method against method: the same "
-        "parameter by two ways that should agree. Then published values against the result that "
-        "counts."
+        "parameter by two ways that should agree. Then published values against the final result."
     ),
     _(
         "Worst first, the difference in units of its σ. p is the probability of a "

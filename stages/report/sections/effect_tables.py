@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
 from inertial.text import numbers
@@ -25,6 +25,7 @@ from stages.report.words import SENSOR, capital, count_in_words, listed, with_mo
 
 MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"
+DEAD_BAND = "gyro_dead_band"  # how the names of such effects begin
 Effect = tuple[str, str]  # its name in the catalogue, and the mount
 TESTS = {
     "time": _("time"),
@@ -166,21 +167,25 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         ),
         (
             outline.Column(_("Effect")),
-            outline.Column(_("worst axis"), "number", _("Detected from")),
-            outline.Column(_("parameter"), "symbol", _("Detected from")),
-            outline.Column(_("best axis"), "number", _("Detected from")),
-            outline.Column(_("unit"), "unit", _("Detected from")),
+            outline.Column(_("worst axis"), "number", _("Detection limit (5 σ)")),
+            outline.Column(_("parameter"), "symbol", _("Detection limit (5 σ)")),
+            outline.Column(_("best axis"), "number", _("Detection limit (5 σ)")),
+            outline.Column(_("unit"), "unit", _("Detection limit (5 σ)")),
             outline.Column("p", "number"),
-            outline.Column(_("Remark"), "note"),
         ),
         [
             _limit(by_name[name], list(group))
             for (name, _), group in groupby(seen, lambda row: (_effect(row), row["unit"]))
         ],
         _("None: every effect that this campaign makes observable was detected."),
-        _(
-            "p: the probability that noise alone makes the largest of all tested effects this "
-            "significant (corrected for the number of tests, so it is often 1)."
+        " ".join(
+            [
+                _(
+                    "p: the probability that noise alone makes the largest of all tested effects "
+                    "this significant (corrected for the number of tests, so it is often 1)."
+                ),
+                *_remarks(seen, by_name),
+            ]
         ),
     )
     if hidden:
@@ -194,6 +199,16 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         )
 
 
+def _remarks(rows: Sequence[Record], by_name: Mapping[Effect, Tested]) -> Iterator[str]:
+    """What is said of single effects, each with its name."""
+    if any(row["effect"].startswith(DEAD_BAND) for row in rows):
+        yield _("The size of a dead band is the share of a small input that it loses.")
+    for effect in dict.fromkeys(map(_effect, rows)):
+        remarks = dict.fromkeys(row["remark"] or "" for row in rows if _effect(row) == effect)
+        if text := numbers.shortened(" ".join(remarks).strip(), 300):
+            yield f"{capital(by_name[effect].name)}: {text}"
+
+
 def _effect(row: Record) -> Effect:
     return row["effect"], row["mount"]
 
@@ -204,7 +219,6 @@ def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
     worst = numbers.significant(unit.of(max(first["limit"], first["largest"] or 0.0)), 2)
     best = min(min(row["limit"], row["smallest"] or row["limit"]) for row in rows)
     least = numbers.significant(unit.of(best), 2)
-    beyond = dict.fromkeys(row["remark"] or "" for row in rows)
     return outline.table_row(
         capital(tested.name),
         worst,
@@ -212,7 +226,6 @@ def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
         least if least != worst else "",
         unit.name,
         numbers.probability(tested.score["p_value"]),
-        numbers.shortened(" ".join(beyond).strip(), 300),
         anchor="/".join(("limit", *filter(None, _effect(first)), first["parameter"])),
     )
 

@@ -75,10 +75,7 @@ def parts(tables: Tables) -> Iterator[Part]:
 SECTION = Section(
     "residuals",
     _("Residuals"),
-    _(
-        "Measured readings less those that the result predicts, effects included: what the result "
-        "that counts leaves over."
-    ),
+    _("Measured readings less those that the final result predicts, effects included."),
     _(
         "Left: fifths of each static position and whole steady rotations, with σ of white noise; "
         "the band is ±3 σ. Right: the residuals over their σ, blocks of static positions and "

@@ -8,6 +8,7 @@ from math import sqrt
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.estimation.probability import chi2_sf
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
@@ -22,7 +23,7 @@ QUANTITIES = {
     "position": (_("position"), Unit("m", 1.0)),
 }
 CALIBRATIONS = {
-    "nominal": (_("nominal"), "#a9b3be"),
+    "nominal": (_("uncalibrated"), "#a9b3be"),
     "published": (_("published"), "#cc79a7"),
     "calibrated": (_("calibrated"), drawing.AXIS_COLOUR["z"]),
 }
@@ -34,6 +35,7 @@ OTHERS = {
     "table angle": _("angle of the table"),
 }
 MIN_SHARE = 0.005  # below which a source is not listed
+MIN_P = 0.01  # of errors larger than predicted, below which a row is marked
 MOST_SOURCES = 8
 Key = tuple[str, str, float | None]  # mount, motion, seconds; none: turns
 
@@ -63,7 +65,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
 
 SECTION = outline.Section(
     "navigation",
-    _("Worth in navigation"),
+    _("Navigation performance"),
     _(
         "The rests and whole turns of this campaign as free inertial navigation, before and after "
         "calibration: at rest, and after a whole turn, attitude, velocity and position should be "
@@ -102,12 +104,15 @@ def _errors(groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
             outline.Column(_("(parameters)"), "number", _("rms")),
             outline.Column(_("unit"), "unit", _("rms")),
             outline.Column(_("manoeuvres"), "number"),
-            outline.Column(_("χ² over its degrees"), "number"),
+            *outline.columns("number", _("χ² over its degrees"), "p"),
         ),
         rows,
         note=_(
-            "χ² over its degrees: squared error after calibration by its predicted covariance; "
-            "near 1 where that is right."
+            "χ² over its degrees, 3 for each manoeuvre: squared error after calibration by its "
+            "predicted covariance; about 1 where the prediction is right, below 1 where it is too "
+            "large. The parameters fit a part of the noise of these same manoeuvres, so it tends "
+            "to be below 1. p: the probability of a χ² at least this far to the side on which it "
+            "is."
         ),
     )
 
@@ -121,7 +126,10 @@ def _error_row(
 ) -> outline.Row:
     name, unit = QUANTITIES[quantity]
     tried = [row for row in rows if row["calibrated"] is not None]
-    chi_squared = [row["normalised"] for row in tried]
+    degrees = 3 * len(tried)
+    chi_squared = 3 * sum(row["normalised"] for row in tried)
+    above = float(chi2_sf(chi_squared, degrees)) if tried else None
+    p_value = None if above is None else min(above, 1 - above)
     # Predictions beside errors that were found are those of the same manoeuvres.
     predicted = tried or rows
     return outline.table_row(
@@ -132,8 +140,10 @@ def _error_row(
         f"({_rms(predicted, 'by_parameters', unit)})",
         unit.name,
         numbers.whole(len(tried)),
-        numbers.fixed(sum(chi_squared) / len(tried) if tried else None, 2),
+        numbers.fixed(chi_squared / degrees if tried else None, 2),
+        numbers.probability(p_value),
         anchor=rows[0]["id"],
+        tone="fair" if above is not None and above < MIN_P else "",
     )
 
 
@@ -159,8 +169,8 @@ def _courses(tables: Tables) -> Iterator[outline.Figure]:
         yield outline.Figure(
             with_mount(
                 _(
-                    "{name}: errors against time; grey as decoded, blue calibrated, and the band "
-                    "of ± 1 σ that is predicted for it.",
+                    "{name}: errors against time; grey uncalibrated, blue calibrated, and the "
+                    "band of ± 1 σ that is predicted for it.",
                     name=name,
                 ),
                 mount,
@@ -202,7 +212,7 @@ def _shares(tables: Tables, groups: Mapping[Key, Sequence[Record]]) -> outline.T
     listed = [n for n in largest if max(map(abs, total[n].values())) >= MIN_SHARE][:MOST_SOURCES]
     columns = [(key, quantity) for key in keys for quantity in QUANTITIES]
     return outline.Table(
-        _("Shares of the predicted variance, per cent."),
+        _("Shares of the predicted variance, per cent, over the same manoeuvres as above."),
         (
             outline.Column(_("Source")),
             *(
