@@ -26,6 +26,7 @@ STAGE = {sensor: stage for stage, sensor in SENSOR.items()}
 Group = tuple[str, str, str]  # sensor, mount, method
 KINDS = {"bias": _("bias"), "scale": _("scale"), "cross": _("cross-axis terms")}
 SHOWN_SIGMAS = 4  # of a single epoch
+MIN_FALL = 1.002  # of a σ from the shortest to the longest time, with less it depends on others
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
@@ -99,9 +100,12 @@ def _figure(
         drawing.ticks(panel, 4)
 
     title = _estimate(group).name
-    shown = list(curves)[:MOST_PANELS]
+    drawn = [name for name, rows in curves.items() if _shortens(rows)] or list(curves)
+    shown = drawn[:MOST_PANELS]
     margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
-    rest = outline.more(len(curves) - len(shown), _(" in the averaging table"))
+    rest = outline.more(len(drawn) - len(shown), _(" in the averaging table"))
+    if len(drawn) < len(curves):
+        rest = _("Parameters whose σ does not depend on it are not drawn. {rest}", rest=rest)
     return outline.Figure(
         _(
             "{title}: value ± σ against averaging time, relative to the final value. {rest}",
@@ -115,6 +119,13 @@ def _figure(
             title=title,
         ),
     )
+
+
+def _shortens(rows: Sequence[Record]) -> bool:
+    """Whether the σ of a parameter falls as static positions last longer."""
+    by_time = sorted(rows, key=lambda row: float(row["seconds"]))
+    first, last = by_time[0]["sigma"], by_time[-1]["sigma"]
+    return first is None or last is None or bool(first > MIN_FALL * last)
 
 
 def _arrays(rows: Sequence[Record], *keys: str) -> Iterator[Array]:

@@ -22,14 +22,19 @@ from stages.report.outline import (
     columns,
     table_row,
 )
-from stages.report.sections.residual_figures import UNIT, Residual, draw_by_manoeuvre, pieces_of
+from stages.report.sections.residual_figures import (
+    UNIT,
+    Residual,
+    beyond_noise,
+    draw_by_manoeuvre,
+    pieces_of,
+)
 from stages.report.tables import Tables, once
 from stages.report.words import SENSORS, capital
 
 STEADY = "steady"
 MAX_SIGMAS = 3.0
 REACH, BIN = 4.5, 0.25  # σ, of the histogram
-MAX_RATIO = 1.2  # from which it is marked
 
 
 @once
@@ -148,7 +153,7 @@ def _table(tables: Tables) -> Table:
                 ratio = float(np.sqrt(np.mean(values**2)))
                 beyond = int((np.abs(values) > MAX_SIGMAS).sum())
                 cells += [whole(len(values)), fixed(ratio, 2), whole(beyond)]
-                high = high or ratio > MAX_RATIO
+                high = high or beyond_noise(ratio, len(values))
             name = f"{capital(SENSORS[sensor])}, {axis}"
             rows.append(table_row(name, *cells, tone="fair" if high else ""))
     headings = (_("means"), _("rms, in σ"), _("beyond 3 σ"))
