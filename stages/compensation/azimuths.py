@@ -73,7 +73,7 @@ def _horizontal(rests: Sequence[tuple[StaticPosition, Array, Array]], gain: Arra
         weights = np.nan_to_num(each)
         information = information + (columns.T * weights.sum(axis=0)) @ columns
         right = right + columns.T @ (weights * np.nan_to_num(left)).sum(axis=0)
-    found: Array = np.linalg.solve(information + PRIOR_INFORMATION * np.eye(2), right)
+    found: Array = np.asarray(np.linalg.solve(information + PRIOR_INFORMATION * np.eye(2), right))
     for _ in range(ITERATIONS):
         along = found / np.linalg.norm(found)
         across = np.array([-along[1], along[0]])

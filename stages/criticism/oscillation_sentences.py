@@ -239,7 +239,7 @@ def _title(effect: str) -> str:
 
 
 def _with_sigma(value: float, sigma: float) -> str:
-    return " ± ".join(with_sigma(value, sigma, decimals_of(sigma, 1)))
+    return " ± ".join(with_sigma(value, sigma, decimals_of(sigma)))
 
 
 def _order(ripple: Ripple) -> str:

@@ -285,7 +285,7 @@ def _insignificant(rows: Sequence[Record], where: str) -> str:
     )
     if idle := [test_name(row) for row in rows if not row["degrees"]]:
         sentence += _(
-            " Not tested against {idle}: the recording does not contain it.", idle=listed(idle)
+            " Not tested against {idle}, which the recording does not contain.", idle=listed(idle)
         )
     return sentence
 

@@ -149,7 +149,7 @@ def _colour_bar(figure: Drawn, beside: Axes, matrix: QuadMesh) -> None:
     panel = figure.add_axes((place.x1 + 0.01, place.y0, 0.012, place.height))
     bar = figure.colorbar(matrix, cax=panel, ticks=[-1, 0, 1])
     bar.ax.set_yticklabels(["−1", "0", "+1"], fontsize=6.0)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
     panel.tick_params(length=0)
     panel.grid(visible=False)
 
