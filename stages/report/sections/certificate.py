@@ -94,7 +94,6 @@ def parts(tables: Tables) -> Iterator[Part]:
         _("The axes x, y and z of the case, at right angles to each other."),
         small=True,
     )
-    yield Heading(_("Results"), breaks=True)
     yield Equation(
         _("reading = (I + S + N) · truth + b"),
         _(
@@ -103,6 +102,7 @@ def parts(tables: Tables) -> Iterator[Part]:
             "Further terms are added to the reading."
         ),
     )
+    yield Heading(_("Results"), breaks=True)
     earlier = _earlier(tables)
     for mount in dict.fromkeys(result.mount for result in final_results(tables)):
         own = [result for result in final_results(tables) if result.mount == mount]
