@@ -224,7 +224,7 @@ def test_shares_add_up_and_name_what_limits(clean, navigated_clean):
     errors = navigated_clean["navigation_errors"].query("calibrated.notna() and seconds == 60")
     for quantity, own in errors.groupby("quantity"):
         of_parameters = (own["by_parameters"] ** 2).sum() / (own["predicted"] ** 2).sum()
-        by = shares.query("quantity == @quantity and seconds == 60")
+        by = shares[(shares["quantity"] == quantity) & (shares["seconds"] == 60)]
         known = by["family"].str.startswith(("gyro ", "accelerometer ", "accel "))
         assert by.loc[known, "share"].sum() == pytest.approx(of_parameters, rel=1e-6)
     # A z accelerometer that is known to 1 mm/s² only moves z up by 60 mm/s, and so z down.

@@ -37,7 +37,8 @@ CURES: dict[str, dict[str, Any]] = {
 }
 SENTENCES = {
     "gyro": "Gyros: gyro g-sensitivity (in the model). Usable with these remarks.",
-    "accel": "Accelerometers: usable. No fault was detected; the report states the detection limits.",
+    "accel": "Accelerometers: usable. "
+    "No fault was detected; the report states the detection limits.",
 }
 
 

@@ -8,7 +8,6 @@ from math import sqrt
 import numpy as np
 from matplotlib.axes import Axes
 
-from inertial.estimation.probability import chi2_sf
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
@@ -35,7 +34,6 @@ OTHERS = {
     "table angle": _("angle of the table"),
 }
 MIN_SHARE = 0.005  # below which a source is not listed
-MIN_P = 0.01  # of errors larger than predicted, below which a row is marked
 MOST_SOURCES = 8
 Key = tuple[str, str, float | None]  # mount, motion, seconds; none: turns
 
@@ -104,15 +102,14 @@ def _errors(groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
             outline.Column(_("(parameters)"), "number", _("rms")),
             outline.Column(_("unit"), "unit", _("rms")),
             outline.Column(_("manoeuvres"), "number"),
-            *outline.columns("number", _("χ² over its degrees"), "p"),
+            outline.Column(_("χ² over its degrees"), "number"),
         ),
         rows,
         note=_(
             "χ² over its degrees, 3 for each manoeuvre: squared error after calibration by its "
             "predicted covariance; about 1 where the prediction is right, below 1 where it is too "
             "large. The parameters fit a part of the noise of these same manoeuvres, so it tends "
-            "to be below 1. p: the probability of a χ² at least this far to the side on which it "
-            "is."
+            "to be below 1."
         ),
     )
 
@@ -126,10 +123,7 @@ def _error_row(
 ) -> outline.Row:
     name, unit = QUANTITIES[quantity]
     tried = [row for row in rows if row["calibrated"] is not None]
-    degrees = 3 * len(tried)
-    chi_squared = 3 * sum(row["normalised"] for row in tried)
-    above = float(chi2_sf(chi_squared, degrees)) if tried else None
-    p_value = None if above is None else min(above, 1 - above)
+    chi_squared = [row["normalised"] for row in tried]
     # Predictions beside errors that were found are those of the same manoeuvres.
     predicted = tried or rows
     return outline.table_row(
@@ -140,10 +134,8 @@ def _error_row(
         f"({_rms(predicted, 'by_parameters', unit)})",
         unit.name,
         numbers.whole(len(tried)),
-        numbers.fixed(chi_squared / degrees if tried else None, 2),
-        numbers.probability(p_value),
+        numbers.fixed(sum(chi_squared) / len(tried) if tried else None, 2),
         anchor=rows[0]["id"],
-        tone="fair" if above is not None and above < MIN_P else "",
     )
 
 

@@ -10,13 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.records import labels, omissions
-from inertial.estimation.triad import jacobian_of_mounting, mounting_and_symmetric
 from inertial.tables import AXES
 from inertial.text import units
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import aligned, counted, fixed, shortened, significant, whole
-from inertial.text.parameters import BIAS, MOUNTING, SYMMETRIC
 from stages.report.outline import (
     Column,
     Equation,
@@ -57,10 +55,6 @@ BY_METHOD = _(
     "What follows is no result of its own: the same parameters by each method, side by side. How "
     "they should agree is compared in “Comparisons”."
 )
-ELEMENTS = tuple(  # of M by rows
-    tuple(f"scale_{row}" if row == column else f"cross_{row}{column}" for column in AXES)
-    for row in AXES
-)
 MAX_LETTERS = 40  # of an identifier that stays in one line
 MAX_SYMBOLS = 18
 MAX_METHODS = 4  # side by side in one table
@@ -83,7 +77,6 @@ def parts(tables: Tables) -> Iterator[Part]:
     for result in final_results(tables):
         yield Heading(_("Result: {name}", name=result.name))
         yield from _result(result)
-        yield from _derived(tables, result)
     yield Heading(_("By method"))
     yield Paragraph(BY_METHOD)
     yield _fits(estimates(tables))
@@ -113,7 +106,7 @@ PARAMETERS = Section(
         "scale errors and cross-axis terms are estimated; mounting rotation and non-orthogonality "
         "are derived from them."
     ),
-    (*RESULT_TABLES, "covariance"),
+    RESULT_TABLES,
     parts,
 )
 
@@ -273,60 +266,18 @@ def _rows(
             )
 
 
-def _derived(tables: Tables, estimate: Estimate) -> Iterator[Table]:
-    """Mounting rotation and non-orthogonality by M of a result that has only the twelve."""
-    matrix = _matrix(estimate)
-    if matrix is None or any(row["parameter"] in MOUNTING for row in estimate.determined):
-        return
-    if np.linalg.det(matrix) <= 0:  # a triad whose axes are exchanged has no mounting
-        return
-    known = {(row["first"], row["second"]): row["covariance"] for row in tables.rows("covariance")}
-    ids = [estimate.calibration[name]["id"] for name in np.ravel(ELEMENTS)]
-    covariance = np.array([[known.get((a, b), known.get((b, a), 0.0)) for b in ids] for a in ids])
-    jacobian = jacobian_of_mounting(matrix)
-    sigmas = np.sqrt(np.diagonal(jacobian @ covariance @ jacobian.T))
-    if not sigmas.all():
-        return
-    rows: list[Record] = [
-        {"parameter": name, "value": float(value), "sigma": float(sigma), "unit": "rad"}
-        for name, value, sigma in zip(
-            MOUNTING + SYMMETRIC, mounting_and_symmetric(matrix), sigmas, strict=True
-        )
-    ]
-    lines: list[Row] = []
-    for kind, group in groupby(rows, lambda row: kind_of(row["parameter"])):
-        own = list(group)
-        units_of = [quantity_of(row).shown.name for row in own]
-        lines.append(head(KIND[kind]))
-        lines += [
-            table_row(symbol(row["parameter"]), *cells, unit)
-            for row, cells, unit in zip(own, written(own), units_of, strict=True)
-        ]
-    yield Table(
-        _("{name}: derived from its matrix M.", name=estimate.name),
-        (Column("", "symbol"), *value_and_sigma(unit=True)),
-        lines,
-    )
-
-
-def _matrix(estimate: Estimate) -> NDArray[np.float64] | None:
-    """M, where all of its elements are determined."""
-    known = estimate.calibration
-    if not known.keys() >= {name for line in ELEMENTS for name in line}:
-        return None
-    errors = np.array([[known[name]["value"] for name in line] for line in ELEMENTS])
-    return np.asarray(np.eye(3) + errors)
-
-
 def _matrices(estimate: Estimate) -> Matrices | None:
     """M, its inverse and the bias as numbers, where all twelve parameters are determined."""
-    known, matrix = estimate.calibration, _matrix(estimate)
-    if matrix is None or not known.keys() >= set(BIAS):
-        return None
-    bias = np.array([known[name]["value"] for name in BIAS])
+    known = estimate.calibration
+    matrix, bias = np.eye(3), np.zeros(3)
     try:
+        for i, axis in enumerate(AXES):
+            bias[i] = known[f"bias_{axis}"]["value"]
+            for j, other in enumerate(AXES):
+                name = f"scale_{axis}" if i == j else f"cross_{axis}{other}"
+                matrix[i, j] += known[name]["value"]
         inverse = np.linalg.inv(matrix)
-    except np.linalg.LinAlgError:
+    except (KeyError, np.linalg.LinAlgError):
         return None
     unit = known["bias_x"]["unit"]
     return Matrices(
