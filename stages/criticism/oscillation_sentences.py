@@ -64,8 +64,8 @@ COUPLED = _(" Through the cross-axis terms it also appears in the other gyros: {
 COUPLED_HIDDEN = _("{axis}, {expected} °/s expected, less than its noise shows")
 COUPLED_READ = _("{axis}, {expected} °/s expected, {read} °/s measured{more}")
 COUPLED_MORE = _(
-    " (they differ by {excess} °/s, phase included; by the tipping of the case, which projects the "
-    "table's rate on this axis, {tipping} °/s are expected)"
+    " ({excess} °/s apart with its phase, {tipping} °/s expected by the case's tipping in the "
+    "table's rate)"
 )
 
 CONSEQUENCE = _("{turn} Angles over part of a turn are in error by up to {swing}″.")
