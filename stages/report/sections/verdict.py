@@ -113,7 +113,7 @@ def _card(tables: Tables, row: Record) -> outline.Finding:
         anchor=f"cause/{row['id']}",
         title=title_of(tables, row),
         grade=_grade(row),
-        sentence=shortened(row["sentence"], 700),
+        sentence=shortened(row["sentence"], 900),
         answers=tuple(_answers(tables, row)),
         facts=(*facts, (_("identifier"), row["id"])),
         links=tuple(_links(tables, row)),
@@ -294,4 +294,4 @@ def as_text(tables: Tables) -> str:
 
 
 def _indented(text: str) -> list[str]:
-    return wrapped(typeset(shortened(text, 700)), 80, "  ", "  ")
+    return wrapped(typeset(shortened(text, 900)), 80, "  ", "  ")
