@@ -19,7 +19,7 @@ from stages.diagnosis.conformity import (
     decision,
 )
 from stages.plan.certificate import Statements
-from stages.report.sections.certificate import SECTION
+from stages.report.sections.certificate import SECTION, _risk
 from tests.report.synthetic import campaign, section_on
 
 CAMPAIGN = """
@@ -171,3 +171,28 @@ def test_a_value_stands_with_twice_its_sigma():
     row = re.search(r"<i>s</i><sub>x</sub>.*", section_on(made, SECTION)).group()
     cells = [re.sub("<[^>]*>", "", cell).rstrip("\u2007\u2008") for cell in row.split("</td>")]
     assert cells[5:8] == ["615.1", "±\u202f4.4", "ppm"]
+
+
+def test_what_is_not_corrected_stands_in_units_of_u():
+    """A shift of 0.52 σ is one of 0.26 U; a cause that is removed shifts nothing."""
+    made = campaign(logs=())
+    causes = made["causes"]
+    causes["moves"] = np.where(causes["cure"] == "none", 0.52, 4.0)
+    shown = section_on(made, SECTION)
+    assert shown.count("Not corrected, and no component of U") == (causes["cure"] == "none").sum()
+    assert "oscillation, which shifts no parameter by more than 0.26 U." in shown
+    causes["moves"] = 0.05
+    assert "Not corrected" not in section_on(made, SECTION)
+
+
+@pytest.mark.parametrize(
+    ("risk", "text"), [(1e-13, "< 0.01 %"), (9e-5, "< 0.01 %"), (0.0228, "2.3 %")]
+)
+def test_a_risk_is_no_smaller_than_tails_are_known(risk, text):
+    assert _risk(risk) == text
+
+
+def test_the_certificate_has_what_its_values_mean_and_rest_on():
+    shown = re.sub("<[^>]*>", " ", section_on(campaign(logs=()), SECTION))
+    assert "reading = (I + S + N) · truth + b" in shown
+    assert "Latitude" in shown

@@ -161,6 +161,13 @@ def test_gyros_on_a_table_at_rest_are_shown_to_feel_the_earth(asymmetric):
     assert asymmetric.loc["gyro", "resolution"]["value"].isna().all()
 
 
+def test_gravity_alone_is_no_upper_limit_of_the_threshold_of_an_accelerometer(asymmetric):
+    """Each axis reads ±g or lies level: that g is sensed says nothing of a threshold."""
+    limits = asymmetric.loc["accel", "threshold"]
+    assert limits["value"].isna().all()
+    assert set(limits["reason"]) == {"no small input along the axis was applied"}
+
+
 def test_the_drift_without_force_is_the_bias(coupled):
     """G is 14, −10 and 12 °/h/g in this campaign; S0's biases are hidden in it."""
     found = coupled["compensation/characteristics"]

@@ -220,6 +220,13 @@ def test_shares_add_up_and_name_what_limits(clean, navigated_clean):
     shares = navigated_clean["navigation_shares"]
     sums = shares.groupby(["motion", "seconds", "quantity"], dropna=False)["share"].sum()
     np.testing.assert_allclose(sums, 1)
+    # They are of the manoeuvres that were navigated, whose predictions stand beside the errors.
+    errors = navigated_clean["navigation_errors"].query("calibrated.notna() and seconds == 60")
+    for quantity, own in errors.groupby("quantity"):
+        of_parameters = (own["by_parameters"] ** 2).sum() / (own["predicted"] ** 2).sum()
+        by = shares[(shares["quantity"] == quantity) & (shares["seconds"] == 60)]
+        known = by["family"].str.startswith(("gyro ", "accelerometer ", "accel "))
+        assert by.loc[known, "share"].sum() == pytest.approx(of_parameters, rel=1e-6)
     # A z accelerometer that is known to 1 mm/s² only moves z up by 60 mm/s, and so z down.
     covariance = clean[0]["diagnosis/covariance"]
     name = next(i for i in covariance["first"] if "accel" in i and i.endswith("bias_z"))

@@ -104,7 +104,9 @@ def test_a_gap_in_a_turn_is_one_finding_with_the_angle_that_it_hides():
     (one,) = found(results)
     assert (one["cause"], one["count"], one["size"]) == ("gap", 1, 640)
     # 6.4 s at 10 °/s, by a gyro that reads 615 ppm too much and 0.0021 °/s of the earth: 64.053°
-    assert "gap of 6.40 s" in one["sentence"] and "turned by 64.1° meanwhile" in one["sentence"]
+    assert (
+        "gap of 6.40 s" in one["sentence"] and "turned by 64.1° during the gap" in one["sentence"]
+    )
     turn = results["segment/performed"].set_index("manoeuvre").loc["x-forward"]
     assert turn["bridged"] and turn["lost"] and not turn["complete"]
     assert np.degrees(turn["missing_angle"]) == pytest.approx(64.0, abs=0.1)

@@ -39,7 +39,7 @@ def test_the_turn_with_a_gap_is_bridged_and_its_gap_the_only_finding(demo):
     (gap,) = found[found["cause"] == "gap"].to_dict("records")
     assert gap["log"] == "z-backward.asc"
     # 1197 samples at 100 Hz and 10 °/s
-    assert "gap of 12.0 s" in gap["sentence"] and "turned by 120° meanwhile" in gap["sentence"]
+    assert "gap of 12.0 s" in gap["sentence"] and "turned by 120° during the gap" in gap["sentence"]
     turn = performed(demo).loc["z-backward"]
     assert turn["bridged"] and not turn["complete"]
     fitted = demo["gyroscope/fit_manoeuvres"].query("method == 'joint'")

@@ -112,17 +112,18 @@ class Gap(Detector):
         angle = float(np.degrees((lost.before + lost.after) / 2 * lost.seconds))
         return Description(
             _(
-                "{sentence} It turned by {angle}° meanwhile, at the rate before and after.",
+                "{sentence} At the rate before and after it the table turned by {angle}° during "
+                "the gap.",
                 sentence=sentence,
                 angle=significant(angle, 3),
             ),
             _(
-                "A sum over the turn lacks these {angle}°, which follow from the rate beside them.",
+                "The sum of increments over the turn lacks about {angle}°.",
                 angle=significant(angle, 3),
             ),
             _(
-                "The joint estimate bridges them, where a second of steady rate is recorded before "
-                "and after, or as much as is missing; formulas of whole turns leave this one out."
+                "The joint fit interpolates gaps with at least 1 s of steady rate (or the length "
+                "of the gap, if shorter) on both sides; whole-turn formulas do not use this turn."
             ),
         )
 

@@ -23,7 +23,10 @@ class GyroGSensitivity(Effect):
     source = "IEEE Std 528-2019, 'acceleration-sensitive drift rate'"
     parameters = tuple(
         Parameter(
-            f"g_{i}{j}", "(rad/s)/(m/s²)", 1.0 * UNIT, _("{i} gyro per force along {j}", i=i, j=j)
+            f"g_{i}{j}",
+            "(rad/s)/(m/s²)",
+            1.0 * UNIT,
+            _("response of the {i} gyro to specific force along {j}", i=i, j=j),
         )
         for i in "xyz"
         for j in "xyz"

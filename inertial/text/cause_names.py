@@ -90,7 +90,7 @@ NAMES = {
     "manoeuvre_swapped": _("exchanged manoeuvres"),
     "rate_off": _("another sample rate"),
     "sign_flip": _("reversed sign"),
-    "size_effect": _("accelerometers apart from each other"),
+    "size_effect": _("size effect of the accelerometers"),
     "status_invalid": _("invalid status"),
     "table_angle_scale": _("scale of the table's angle"),
     "table_axis_non_orthogonality": _("table axis non-orthogonality"),

@@ -3,6 +3,7 @@
 from inertial.text.messages import _
 
 NOT_STATED = _("not stated")
+STATED = _("stated in the campaign file")
 REALISES = {
     "angle": _("angle"),
     "rate": _("rotation rate"),

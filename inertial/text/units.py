@@ -118,7 +118,7 @@ _BY_UNIT = {
     "m/s²/√s": Quantity(Unit("µg/√h", STANDARD_GRAVITY * 1e-6 / 60), Unit("10⁻⁶ m/s²/√s", 1e-6)),
     "s²/rad²": Quantity(Unit("ppm/(°/s)²", 1e-6 / DEGREE**2), Unit("s²/rad²", 1.0)),
 }
-_OF_OSCILLATION = Quantity(Unit("rad/s", 1.0), Unit("rad/s", 1.0))
+_OF_OSCILLATION = Quantity(DEGREES_PER_SECOND, Unit("rad/s", 1.0))
 _DIMENSIONLESS = {
     "asymmetry": _RATIO,
     "scale": _RATIO,

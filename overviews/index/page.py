@@ -153,7 +153,7 @@ def _campaigns(
         _(
             "The verdict is that of the worse sensor, a cause what moves a result or was removed. "
             "A worst σ is the largest of the three biases, three scale factors or six cross-axis "
-            "terms of the result that counts; — where one of them has no value."
+            "terms of the final result; — where one of them has no value."
         ),
         (),
         parts,

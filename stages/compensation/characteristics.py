@@ -48,6 +48,7 @@ Array = NDArray[np.float64]
 ByCounts = dict[tuple[str, str], float]
 
 MIN_COSINE = 1 - 1e-9  # between an axis of the case and that of the input
+MAX_THRESHOLD = 0.1  # of the largest input; a larger one is no upper limit of the threshold
 OF_INPUT = {
     *("accel_scale_asymmetry", "accel_quadratic", "accel_cubic", "accel_hysteresis"),
     *("gyro_scale_asymmetry", "gyro_scale_quadratic", "gyro_scale_cubic"),
@@ -68,6 +69,7 @@ NO_ATTITUDE = _("the attitudes are not known, so neither is the input along the 
 NO_INPUT = _("no known input was applied along the axis")
 ONE_LINE = _("fewer than three different inputs were applied along the axis")
 NOT_SENSED = _("no input along the axis is so large that noise shows it to be sensed")
+NO_SMALL_INPUT = _("no small input along the axis was applied")
 NO_CHANGE = _("no small change of the input along the axis was applied that noise does not hide")
 NOT_BOTH = _("the inputs along the axis do not tell the bias from an asymmetry")
 NO_FORCES = _("the static positions do not tell it from the sensitivity to force")
@@ -135,7 +137,7 @@ def _of_axis(
             "composite_error": asdict(composite_error(applied, whole, sigma)),
             "linearity_error": asdict(line) if line else {"reason": ONE_LINE},
             "asymmetry": {"value": both[0], "sigma": both[1]} if both else {"reason": NOT_BOTH},
-            "threshold": _limit(threshold(applied, read, sigma), by_counts, NOT_SENSED),
+            "threshold": _threshold(threshold(applied, read, sigma), largest, by_counts),
             "resolution": _limit(resolution(applied, read, sigma), by_counts, NO_CHANGE),
         }
     shared: dict[str, Any] = {
@@ -147,6 +149,13 @@ def _of_axis(
         yield (
             _row(sensor, axis, quantity, FIGURES[quantity] or UNIT[sensor], mount) | shared | figure
         )
+
+
+def _threshold(limits: Limits, largest: float, by_counts: float | None) -> dict[str, Any]:
+    """Of an input that is not small it says nothing that it is sensed."""
+    if limits.upper is not None and limits.upper > MAX_THRESHOLD * largest:
+        return _limit(replace(limits, upper=None), by_counts, NO_SMALL_INPUT)
+    return _limit(limits, by_counts, NOT_SENSED)
 
 
 def _limit(limits: Limits, by_counts: float | None, reason: str) -> dict[str, Any]:

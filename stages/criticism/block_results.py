@@ -48,7 +48,7 @@ WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
 MIN_EXCESS = 1.2  # of chi-squared per degree; the uncertainty of the noise level explains less
 
-NOT_TESTED = _("Not detected.")
+NOT_TESTED = _("Not detected; section “Noise” states the upper limit (K).")
 NO_FLICKER = _("The noise at rest does not show it.")
 FLICKER = _("The noise at rest shows {sizes} in the order of the axes, which the sigmas allow for.")
 OF_QUALITY = _("Sought in the quality of the samples: findings “{finding}”.")

@@ -259,7 +259,7 @@ class OscillationResults:
     def _sentence(self, oscillation: Oscillation) -> str:
         if oscillation.effects[0] != IN_TIME and oscillation.ripple:
             return sentences.of_ripple(oscillation, oscillation.ripple, self.result.turns)
-        return sentences.of_oscillation(oscillation)
+        return sentences.of_oscillation(oscillation, self.result.turns)
 
     def _not_named(self, name: str) -> str:
         for named in self.named:

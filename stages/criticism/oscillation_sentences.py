@@ -31,8 +31,9 @@ SINGLE_TURN = _(
 )
 
 VIBRATION = _(
-    "The case oscillates about {axis} while the table turns: {frequency} Hz, "
-    "{amplitude} °/s ({arc:.1f}″), in {manoeuvres}."
+    "The case oscillates about {axis} while the table turns: {frequency} Hz by the clock of the "
+    "logs, or an alias of it at {rate} Hz sampling; {amplitude} °/s ({arc:.1f}″ at this "
+    "frequency), in {manoeuvres}."
 )
 IN_ANGLE = _(" It is periodic in the table's angle: {order} per revolution.")
 RIPPLE = _("The table's rate has a ripple {order} per revolution, of {size} of its angle, {turns}.")
@@ -45,35 +46,39 @@ AT_RATE = _("{frequency} Hz and {amplitude} °/s at {rate} °/s")
 
 UNDECIDED = _(
     " The data do not distinguish whether it is periodic in time or in the table's "
-    "angle: the first is {odds} as likely."
+    "angle: the first is {odds} times as likely."
 )
 NOT_IN_TIME = _(
-    " As an oscillation in time, of one frequency in all turns, it would be {odds} less likely."
+    " As an oscillation in time, of one frequency in all turns, it would be less likely by a "
+    "factor of {odds}."
 )
 NOT_IN_ANGLE = _(
-    " As a ripple of order {orders} of the table's angle it would be {odds} less likely."
+    " As a ripple of the table's angle (order {orders}) it would be about the table's axis; that "
+    "is less likely by a factor of {odds}."
 )
 MULTIPLES = _(" Lines at {each} have the same cause.")
-VERY_LARGE_ODDS = _("more than 10¹⁷ times")
+VERY_LARGE_ODDS = _("more than 10¹⁷")
 
-COUPLED_UNKNOWN = _(" Through their cross terms the other axes contain it too.")
-COUPLED = _(" Of it the cross terms predict {each}.")
-COUPLED_HIDDEN = _("{expected} °/s in {axis}, less than its noise shows")
-COUPLED_READ = _("{expected} °/s in {axis}, where {read} °/s is measured{more}")
+COUPLED_UNKNOWN = _(" Through the cross-axis terms it also appears in the other gyros.")
+COUPLED = _(" Through the cross-axis terms it also appears in the other gyros: {each}.")
+COUPLED_HIDDEN = _("{axis}, {expected} °/s expected, less than its noise shows")
+COUPLED_READ = _("{axis}, {expected} °/s expected, {read} °/s measured{more}")
 COUPLED_MORE = _(
-    " ({excess} °/s apart by its phase; the case tips, which turns {tipping} °/s of the table's"
-    " rate there)"
+    " ({excess} °/s apart with its phase, {tipping} °/s expected by the case's tipping in the "
+    "table's rate)"
 )
 
-CONSEQUENCE = _(
-    "{turn} bias, scale factors and cross terms. Part of a turn is in error by up to {swing}″."
-)
-CLOSED = _("A whole turn is free of it, and so are")
+CONSEQUENCE = _("{turn} Angles over part of a turn are in error by up to {swing}″.")
+CLOSED = _("A whole turn is free of it, and so are bias, scale factors and cross-axis terms.")
 NOT_CLOSED = _(
     "As its order is no whole number it does not close over a turn, but blocks of "
-    "turns take their angle from the gyros; it does no harm to"
+    "turns take their angle from the gyros, so that bias, scale factors and cross-axis terms are "
+    "hardly affected."
 )
-CLOSED_IN_TIME = _("Over whole turns it adds no angle, so it does no harm to")
+CLOSED_IN_TIME = _(
+    "Over a whole turn its angle nearly averages out, so that bias, scale factors and cross-axis "
+    "terms are hardly affected."
+)
 ACTION_UNDECIDED = _("To distinguish them, {split}: if periodic in angle its frequency doubles.")
 ACTION_ANGLE = _("Turn by whole turns; look at the table's gear, motor, bearing and encoder.")
 ACTION_TIME = _(
@@ -100,12 +105,13 @@ SHORT_TURN = _(
 )
 
 
-def of_oscillation(oscillation: Oscillation) -> str:
+def of_oscillation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str:
     """An oscillation in time, or of an axis of the case against the table's angle."""
     mean, axis = oscillation.mean, oscillation.likeliest.axis
     sentence = VIBRATION.format(
         axis=_("the table's axis") if axis == TABLE else axis,
         frequency=_with_sigma(mean.frequency, mean.frequency_sigma),
+        rate=significant(_sampling_rate(turns, mean.manoeuvres), 3),
         amplitude=_with_sigma(degrees(mean.amplitude), degrees(mean.amplitude_sigma)),
         arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
         manoeuvres=_in_turns(mean.manoeuvres),
@@ -118,6 +124,11 @@ def of_oscillation(oscillation: Oscillation) -> str:
         + _coupling(oscillation.coupled)
         + _other_explanation(oscillation)
     )
+
+
+def _sampling_rate(turns: Sequence[SteadyTurn], names: Sequence[str]) -> float:
+    """The lowest of the turns that show it, Hz."""
+    return 1 / max(turn.step for turn in turns if turn.name in names)
 
 
 def _in_turns(names: Sequence[str]) -> str:
@@ -228,7 +239,7 @@ def _title(effect: str) -> str:
 
 
 def _with_sigma(value: float, sigma: float) -> str:
-    return " ± ".join(with_sigma(value, sigma, decimals_of(sigma, 1)))
+    return " ± ".join(with_sigma(value, sigma, decimals_of(sigma)))
 
 
 def _order(ripple: Ripple) -> str:
@@ -271,7 +282,7 @@ def _other_explanation(oscillation: Oscillation) -> str:
         return ""
     odds = VERY_LARGE_ODDS
     if oscillation.log_odds <= MAX_LOG_ODDS:
-        odds = _("{significant} times", significant=significant(exp(oscillation.log_odds), 1))
+        odds = significant(exp(oscillation.log_odds), 1)
     if len(oscillation.effects) > 1:
         return UNDECIDED.format(odds=odds)
     if oscillation.effects[0] != IN_TIME:

@@ -308,8 +308,7 @@ def _gain(cause: Hypothesis, drop: float | None) -> str | None:
         )
     if drop is not None:
         return _(
-            "Manoeuvres that the fit has not seen are predicted better with it: χ² is lower by "
-            "{drop}.",
-            drop=significant(drop, 3),
+            "χ² of held-out manoeuvres falls by {drop}.",
+            drop=significant(drop),
         )
     return None

@@ -12,6 +12,7 @@ from inertial.campaign.records import Row
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
+from inertial.text.numbers import significant
 from inertial.text.parameters import JOINT
 
 SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
@@ -41,13 +42,11 @@ NO_BETTER = _(
 ONE_NOT_DETERMINED = _("beside it one parameter would not be determined")
 NOT_DETERMINED = _("beside it {count} parameters would not be determined")
 REPLACED = _(
-    "The extended result of the {sensors} counts, with {effects}: χ² of "
-    "manoeuvres that the fit has not seen is reduced by {drop:.1f}, of "
-    "{expected:.1f} that exactly known effects would bring, and no finding remains "
-    "unexplained."
+    "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {drop}, of "
+    "{expected} attainable, and no finding remains unexplained."
 )
 FREED = _(
-    "The extended result of the {sensors} counts, with {effects}: that is the own error of "
+    "The result of the {sensors} includes {effects}: that is the own error of "
     "{manoeuvres}, which no other manoeuvre shows, and no finding remains unexplained."
 )
 OTHER_MEMBERS = _(
@@ -115,7 +114,12 @@ def decided(
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
     else:
         drop, expected = best["drop"], best["snr_squared"]
-        reason = REPLACED.format(sensors=sensors, effects=names, drop=drop, expected=expected)
+        reason = REPLACED.format(
+            sensors=sensors,
+            effects=names,
+            drop=significant(drop),
+            expected=significant(expected),
+        )
     return Decision(best["method"], reason + others)
 
 

@@ -97,14 +97,17 @@ def verdict(
         return Verdict(ON_CONDITION, sentence + _others(own, unconfirmed), " ".join(conditions))
     if own:
         sentence = _(
-            "{sensors}: {causes}. Usable within these limits.",
+            "{sensors}: {causes}. Usable with these remarks.",
             sensors=sensors,
             causes=_names(own, _limit),
         )
         return Verdict(WITHIN_LIMITS, sentence)
     return Verdict(
         USABLE,
-        _("{sensors}: usable. Nothing is wrong that this campaign could show.", sensors=sensors),
+        _(
+            "{sensors}: usable. No fault was detected; the report states the detection limits.",
+            sensors=sensors,
+        ),
     )
 
 

@@ -61,7 +61,7 @@ def off_by_a_sample(
         stage="gyroscope",
         quantity="scale",
         unit="1",
-        first=_("the result that counts"),
+        first=_("the final result"),
         second=scales[0]["source"],
         first_value=None,
         second_value=None,

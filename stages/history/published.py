@@ -37,7 +37,7 @@ def against_published(
             stage=STAGES[row["sensor"]],
             quantity=name,
             unit=row["unit"],
-            first=ours["id"] if ours else _("the result that counts"),
+            first=ours["id"] if ours else _("the final result"),
             second=row["source"],
             first_value=value,
             second_value=row["value"],

@@ -81,7 +81,8 @@ class Navigator:
         self.site = Site(data.gravity.number, data.earth.up, data.earth.level)
         self.course_rows: list[Row] = []
         self._rows: list[Row] = []
-        self._variances: dict[tuple[str, float | None, str], dict[Source, float]] = {}
+        # By motion, time, quantity, and whether they were navigated, not only predicted.
+        self._variances: dict[tuple[str, float | None, str, bool], dict[Source, float]] = {}
         self._longest = 0.0
         self._navigated: set[tuple[str, float]] = set()
 
@@ -97,7 +98,7 @@ class Navigator:
 
     @property
     def share_rows(self) -> list[Row]:
-        """Of the table of shares."""
+        """Of the table of shares: of what was navigated, as far as anything was."""
         return [
             {
                 "mount": self.data.mount,
@@ -108,7 +109,8 @@ class Navigator:
                 "source": name,
                 "share": variance / sum(variances.values()),
             }
-            for (motion, seconds, quantity), variances in self._variances.items()
+            for (motion, seconds, quantity, tried), variances in self._variances.items()
+            if tried or (motion, seconds, quantity, True) not in self._variances
             for (family, name), variance in variances.items()
             if variance
         ]
@@ -215,7 +217,7 @@ class Navigator:
                 error = errors["calibrated"][rows]
                 row["normalised"] = float(error @ np.linalg.solve(square, error) / 3)
             self._rows.append(row)
-            key = (motion, None if motion == "turn" else seconds, quantity)
+            key = (motion, None if motion == "turn" else seconds, quantity, bool(errors))
             total = self._variances.setdefault(key, {})
             for source, variance in expected.shares(quantity).items():
                 total[source] = total.get(source, 0.0) + float(variance[0])

@@ -1,14 +1,16 @@
 """What a campaign takes as known: every quantity with its sigma and where it is from."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import cos, radians
+from math import cos, radians, sin
 from typing import Any
 
 from inertial.physics.gravity_anomalies import ANOMALY_SIGMA, is_refuted, latitude_of
 from inertial.physics.site import EARTH_RATE, earth_rate, normal_gravity
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
-from inertial.text.units import ARC_SECOND
+from inertial.text.numbers import significant
+from inertial.text.statements import STATED
+from inertial.text.units import ARC_SECOND, DEGREE_PER_HOUR
 
 # Where a campaign states no sigma, these are assumed, and the report states that.
 ASSUMED_POSITION = 30 * ARC_SECOND
@@ -59,7 +61,7 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
     if heading is None:
         yield _row("heading", None, None, "rad", _("not known"))
     else:
-        yield _row("heading", radians(heading), None, "rad", _("stated: table.heading_deg"))
+        yield _row("heading", radians(heading), None, "rad", STATED)
     if sets_positions or "position_sigma_arcsec" in table:
         sigma = ASSUMED_POSITION
         yield _of_table(table, "position", "position_sigma_arcsec", ARC_SECOND, sigma, "rad")
@@ -93,9 +95,8 @@ def _of_table(
 ) -> Row:
     """The sigma of what the table sets, stated or `assumed`; `unit_size`: of the key, in `unit`."""
     if key in table:
-        origin = _("stated: table.{key}", key=key)
-        return _row(quantity, 0.0, table[key] * unit_size, unit, origin)
-    origin = _("assumed, for table.{key} is not stated", key=key)
+        return _row(quantity, 0.0, table[key] * unit_size, unit, STATED)
+    origin = _("assumed, for the campaign file states no {key}", key=key)
     return _row(quantity, 0.0, assumed, unit, origin, assumed=True)
 
 
@@ -110,10 +111,16 @@ def _earth_rate(latitude_deg: float | None) -> Iterator[Row]:
         return
     latitude = radians(latitude_deg)
     up, level = earth_rate(latitude)
+    up_sigma, level_sigma = (
+        EARTH_RATE * abs(share) * ASSUMED_LATITUDE for share in (cos(latitude), sin(latitude))
+    )
     computed = _("computed from the latitude, whose sigma is assumed as 0.01°")
-    sigma = EARTH_RATE * abs(cos(latitude)) * ASSUMED_LATITUDE
-    yield _row("earth_rate_up", up, sigma, "rad/s", computed)
-    yield _row("earth_rate_level", level, None, "rad/s", computed)
+    yield _row("earth_rate_up", up, up_sigma, "rad/s", computed)
+    neglected = _(
+        "computed from the latitude; its sigma, {sigma} °/h, is neglected",
+        sigma=significant(level_sigma / DEGREE_PER_HOUR, 2),
+    )
+    yield _row("earth_rate_level", level, None, "rad/s", neglected)
 
 
 def _gravity(file: YamlFile) -> tuple[float, float]:
@@ -191,12 +198,9 @@ def _other_latitude(stated: float, latitude: float, height: float) -> str:
 
 def _gravity_origin(site: dict[str, Any]) -> str:
     if "gravity_m_s2" in site:
-        stated = _("stated: site.gravity_m_s2")
-        return (
-            stated
-            if "gravity_sigma_m_s2" in site
-            else _("{stated}, its sigma assumed as 5 mGal", stated=stated)
-        )
+        if "gravity_sigma_m_s2" in site:
+            return STATED
+        return _("{stated}, its sigma assumed as 5 mGal", stated=STATED)
     height = f"{site['height_m']:g} m" if "height_m" in site else _("0 m, for no height is stated")
     return _(
         "normal gravity at latitude {latitude_deg:g}°, height {height}",

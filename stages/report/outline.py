@@ -286,6 +286,12 @@ class Chapter:
         """Whether it stands behind the evidence; on screen it is folded then."""
         return self.number.isalpha()
 
+    @property
+    def reading(self) -> str:
+        """How to read it; nothing where it has words alone, and so nothing to be explained."""
+        words = all(isinstance(part, (Paragraph, Sentences)) for part in self.parts)
+        return "" if words else self.section.reading
+
 
 @dataclass(frozen=True)
 class Report:

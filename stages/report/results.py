@@ -222,10 +222,17 @@ class Shift:
     @property
     def sigmas(self) -> float | None:
         """How far apart they are, in sigmas of the joint fit; none where one has no value."""
-        new, old = self.extended, self.joint
-        if old is None or new["value"] is None or not old["sigma"]:
+        return None if self.joint is None else self._over(self.joint["sigma"])
+
+    @property
+    def own_sigmas(self) -> float | None:
+        """The same in sigmas of the extended fit."""
+        return self._over(self.extended["sigma"])
+
+    def _over(self, sigma: float | None) -> float | None:
+        if self.joint is None or self.extended["value"] is None or not sigma:
             return None
-        return float((new["value"] - old["value"]) / old["sigma"])
+        return float((self.extended["value"] - self.joint["value"]) / sigma)
 
     @property
     def name(self) -> str:

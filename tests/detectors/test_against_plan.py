@@ -321,7 +321,7 @@ def test_what_a_gap_takes_from_a_turn_is_told_by_the_gap_alone(line, samples):
     turn = performed(results).loc["z-backward"]
     assert turn["lost"] and not turn["complete"]
     bridged = line == 500
-    assert turn["bridged"] == bridged == ("turned by 36.0° meanwhile" in gap["sentence"])
+    assert turn["bridged"] == bridged == ("turned by 36.0° during the gap" in gap["sentence"])
     assert bridged or "is left out" in gap["action"]
 
 

@@ -130,7 +130,7 @@ def calibration(*mounts: Mount, **changes: Any) -> Calibration:
         "value": 9.7936174,
         "sigma": 5e-5,
         "unit": "m/s²",
-        "origin": "stated: site.gravity_m_s2",
+        "origin": "stated in the campaign file",
     }
     return Calibration(
         campaign=CAMPAIGN | changes,

@@ -36,8 +36,9 @@ CURES: dict[str, dict[str, Any]] = {
     },
 }
 SENTENCES = {
-    "gyro": "Gyros: gyro g-sensitivity (in the model). Usable within these limits.",
-    "accel": "Accelerometers: usable. Nothing is wrong that this campaign could show.",
+    "gyro": "Gyros: gyro g-sensitivity (in the model). Usable with these remarks.",
+    "accel": "Accelerometers: usable. "
+    "No fault was detected; the report states the detection limits.",
 }
 
 
@@ -91,7 +92,7 @@ def _cause(row: dict[str, Any]) -> dict[str, Any]:
 def verdicts() -> Rows:
     """The extended result of the gyros counts, and the joint one of the accelerometers."""
     told = {
-        "gyro": "The extended result of the gyros counts, with gyro g-sensitivity.",
+        "gyro": "The result of the gyros includes gyro g-sensitivity.",
         "accel": "The joint result of the accelerometers counts: they show no effect.",
     }
     return [

@@ -58,7 +58,7 @@ def known() -> Rows:
         {"quantity": q, "value": value, "sigma": sigma, "unit": unit, "origin": origin}
         | {"assumed": origin.startswith("assumed")}
         for q, value, sigma, unit, origin in (
-            ("gravity", GRAVITY, 5e-5, "m/s²", "stated: site.gravity_m_s2"),
+            ("gravity", GRAVITY, 5e-5, "m/s²", "stated in the campaign file"),
             (
                 "earth_rate_up",
                 3.7039e-5,
@@ -74,8 +74,8 @@ def known() -> Rows:
                 "computed from the latitude, whose sigma is assumed as 0.01°",
             ),
             ("heading", None, None, "rad", "not known"),
-            ("position", 0.0, 2 * arc_second, "rad", "stated: table.position_sigma_arcsec"),
-            ("turn_angle", 0.0, 2 * arc_second, "rad", "stated: table.angle_sigma_arcsec"),
+            ("position", 0.0, 2 * arc_second, "rad", "stated in the campaign file"),
+            ("turn_angle", 0.0, 2 * arc_second, "rad", "stated in the campaign file"),
             ("turn_rate", 0.0, 1e-3, "1", "assumed, for table.rate_sigma_ppm is not stated"),
         )
     ]

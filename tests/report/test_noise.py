@@ -29,7 +29,7 @@ def test_allan_deviation_spectrum_and_terms_in_this_order() -> None:
     assert "2 static stretches" in allan.caption
     assert "Allan deviation, °/h" in allan.drawn and "Allan deviation, µg" in allan.drawn
     assert "data sheet" in allan.drawn
-    assert "root of power density, °/√h" in spectrum.drawn
+    assert "amplitude spectral density, °/√h" in spectrum.drawn
     hertz = re.findall(r"(\d+\.\d) Hz", spectrum.drawn)
     assert len(hertz) == 1 and float(hertz[0]) == pytest.approx(12.5, rel=0.04)
     assert isinstance(gyros, Table) and isinstance(accelerometers, Table)

@@ -32,7 +32,7 @@ TITLES = [
     "Unmodelled effects",
     "Comparisons",
     "Compensation",
-    "Worth in navigation",
+    "Navigation performance",
     "Alignment and rotation modulation",
     "Uncertainty budget",
     "Temperature",
@@ -291,7 +291,7 @@ def test_a_shift_of_the_extended_model_is_in_sigmas_of_the_joint_fit() -> None:
 
 def test_which_result_counts_is_stated_beside_the_effects() -> None:
     text = Page(synthetic.documents()["html"]).text
-    assert "The extended result of the gyros counts, with gyro g-sensitivity." in text
+    assert "The result of the gyros includes gyro g-sensitivity." in text
     assert "The joint result of the accelerometers counts" not in text  # they show no effect
 
 
@@ -332,7 +332,7 @@ def test_comparisons_come_worst_first() -> None:
         "comparison/published/gyroscope/bias_y",
     ]
     assert "Not compared. Not independent: scale factor of the x gyro." in page.text
-    assert "1 value of 2 comparisons differs by more than chance." in page.text
+    assert "1 of 2 pairs of values differs by more than chance." in page.text
 
 
 def test_checks_stand_before_and_after() -> None:
@@ -453,7 +453,7 @@ def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
     # Where no parameter depends on the temperature nothing is said of it; so of figures.
     silent = ("Temperature", "Sensor characteristics")
     silent += ("What shows each effect", "Checks of the compensated readings")
-    silent += ("Worth in navigation", "Alignment and rotation modulation", "Uncertainty budget")
+    silent += ("Navigation performance", "Alignment and rotation modulation", "Uncertainty budget")
     silent += ("Repeatability and drift",)
     assert headings == [title for title in TITLES if title not in silent]
     assert "Verdict: not usable" in documents["txt"]

@@ -1,5 +1,7 @@
 """The page of studies: what it says in numbers, and what of it is left where there is little."""
 
+import re
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -16,7 +18,8 @@ from tests.report.synthetic_values import rows_as
 @pytest.fixture
 def made() -> dict[str, pd.DataFrame]:
     rows = synthetic_studies(np.random.default_rng(1))
-    return {name: rows_as(DECLARED.writes[name], rows[name]) for name in DECLARED.writes}
+    made = {name: rows_as(DECLARED.writes[name], rows[name]) for name in DECLARED.writes}
+    return made | {"levels": tables.LEVELS.empty()}
 
 
 def built(section: Section, made: dict[str, pd.DataFrame]) -> list[Part]:
@@ -25,6 +28,10 @@ def built(section: Section, made: dict[str, pd.DataFrame]) -> list[Part]:
 
 def of(section: list[Part], kind: type) -> list:
     return [part for part in section if isinstance(part, kind)]
+
+
+def number(cell: str) -> float:
+    return float(cell.replace("−", "-"))
 
 
 def text(section: list[Part]) -> str:
@@ -54,6 +61,8 @@ def test_the_middle_of_the_turns_is_held_against_the_whole(made):
     assert whole[2:] == ("615.1", "3.0", "—", "—")
     by_time = by["x", "180° by time, at the set rate"]
     assert by_time[3] == "100" and by_time[5] == "4.2"
+    # The scale has the decimals of its difference from the whole turn, whatever its own σ.
+    assert number(by_time[2]) - number(whole[2]) == pytest.approx(number(by_time[4]), abs=0.11)
 
 
 @pytest.mark.parametrize("name", [*DECLARED.writes, "all"])
@@ -63,6 +72,22 @@ def test_without_a_table_the_rest_of_the_page_is_there(made, name):
     drawn = len(of(section, Figure))
     assert drawn == 0 if name == "all" else drawn >= 4
     assert bool(of(section, Sentences)) == (name not in ("not_studied", "all"))
+
+
+def test_chance_holds_what_the_noise_level_is_uncertain_by(made):
+    """A level known to 3 % beside epochs whose own scatter is known better."""
+    rows = [
+        {"channel": f"{sensor}_{axis}", "white_noise": 1e-6, "sigma": 3e-8}
+        | {"source": "common", "degrees": 500.0}
+        for sensor in ("gyro", "accel")
+        for axis in "xyz"
+    ]
+    exact = text(built(studies.SECTION, made))
+    said = text(built(studies.SECTION, made | {"levels": rows_as(tables.LEVELS, rows)}))
+    chance = [[float(c) for c in re.findall(r"give 1 ± (0\.\d+)", own)] for own in (exact, said)]
+    for alone, both in zip(*chance, strict=True):
+        assert both == pytest.approx(np.hypot(alone, 0.03), abs=0.01)
+    assert chance[0] != chance[1]
 
 
 def test_a_fencepost_stands_on_top_of_the_published_values():
@@ -84,12 +109,13 @@ def test_a_fencepost_stands_on_top_of_the_published_values():
     }
     section = built(
         comparisons.COMPARISONS,
-        {
+        synthetic.campaign()
+        | {
             "differences": tables.DIFFERENCES.empty(),
             "published_differences": rows_as(tables.DIFFERENCES, [other, named]),
         },
     )
-    assert "1 value of 1 comparison" in text(section) or "1 value of one" in text(section)
+    assert "1 of 1 pair of values differs by more than chance." in text(section)
     assert "Scale factors of the gyros: fencepost." in text(section)
     (table,) = of(section, Table)
     assert table.rows[0].anchor == named["id"] and table.rows[0].tone == "fair"

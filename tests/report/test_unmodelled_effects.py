@@ -52,7 +52,7 @@ def test_what_is_identified_says_how_sure_it_is_and_what_it_gains() -> None:
     assert (
         "Identified: no other effect of the catalogue has the same signature in these data." in html
     )
-    assert "Signal-to-noise ratio: 77. Probability under noise alone: p &lt; 10⁻¹²." in html
+    assert "Signal-to-noise ratio: 77.0. Probability under noise alone: p &lt; 10⁻¹²." in html
     assert "χ² of the gyros falls by 12 070 of 12 897, which captures 99." in html
     assert "mass unbalance" not in html.partition("Certainty")[0]  # the sentence is criticism's own
 
@@ -96,7 +96,7 @@ def test_an_oscillation_is_shown_as_s0_shows_it() -> None:
     html = demo()["criticism/oscillation"]
     shown = "x gyro in x-forward, a turn about x; y gyro in y-forward, a turn about y; x gyro in"
     assert shown in html
-    assert html.count("20.000 Hz, 0.0100 rad/s") == 2
+    assert html.count("20.000 Hz, 0.573 °/s") == 2
     assert html.count("no significant line") == 1
 
 
@@ -173,8 +173,12 @@ def test_what_is_only_consistent_is_never_said_to_be_detected() -> None:
 
 def test_six_tests_are_a_line_where_none_is_and_a_table_where_one_is_significant() -> None:
     silent = section(of(synthetic_unmodelled.without_effects))
-    assert "none is significant, smallest p = 0.090 (time, x gyro)" in silent
-    assert "Not tested against the temperature" in silent
+    smallest = "smallest p = 0.090 after correction for the search (time, x gyro)"
+    assert f"none is significant, {smallest}" in silent
+    # Five were made: the temperature is not recorded.
+    made = "against time, the angle of the table, the rate of the turns, the attitude and a change"
+    assert "Five tests for structure" in silent and made in silent
+    assert "Not tested against the temperature, which the recording does not contain." in silent
     firing = section(of(synthetic_unmodelled.of_no_name, "change"))
     assert "none is significant" not in firing
     assert "A change in time x gyro at 20.0 min 75.00 1 × 10⁻⁹ significant" in firing

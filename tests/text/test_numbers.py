@@ -109,7 +109,7 @@ def test_control_characters_become_visible_and_long_texts_end() -> None:
         ("k2_x", "(m/s²)/(m/s²)²", 1.0197162e-6, 10.0, "µg/g²"),
         ("c_x", "m/s³", 2.72406944e-09, 1.0, "µg/h"),
         ("north", "rad", 4.8481368e-6, 1.0, "arcsec"),
-        ("amplitude", "rad/s", 0.01, 0.01, "rad/s"),
+        ("amplitude", "rad/s", 0.01, 0.5729577951308232, "°/s"),
         ("frequency", "Hz", 20.0, 20.0, "Hz"),
         ("unheard_of", "furlong", 0.05, 0.05, "furlong"),
     ],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import sqrt
+from math import hypot, sqrt
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,6 +26,7 @@ STAGE = {sensor: stage for stage, sensor in SENSOR.items()}
 Group = tuple[str, str, str]  # sensor, mount, method
 KINDS = {"bias": _("bias"), "scale": _("scale"), "cross": _("cross-axis terms")}
 SHOWN_SIGMAS = 4  # of a single epoch
+MIN_FALL = 1.002  # of a σ from the shortest to the longest time, with less it depends on others
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
@@ -48,7 +49,7 @@ SECTION = outline.Section(
     _("Parameters against averaging time"),
     _(
         "Each parameter as estimated from the first seconds of each static position "
-        "only, relative to its final value."
+        "only, relative to its final value; the joint fit is that without effects."
     ),
     _(
         "The band is value ± σ. Where it narrows about zero, longer static positions "
@@ -99,9 +100,12 @@ def _figure(
         drawing.ticks(panel, 4)
 
     title = _estimate(group).name
-    shown = list(curves)[:MOST_PANELS]
+    drawn = [name for name, rows in curves.items() if _shortens(rows)] or list(curves)
+    shown = drawn[:MOST_PANELS]
     margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
-    rest = outline.more(len(curves) - len(shown), _(" in the averaging table"))
+    rest = outline.more(len(drawn) - len(shown), _(" in the averaging table"))
+    if len(drawn) < len(curves):
+        rest = _("Parameters whose σ does not depend on it are not drawn. {rest}", rest=rest)
     return outline.Figure(
         _(
             "{title}: value ± σ against averaging time, relative to the final value. {rest}",
@@ -115,6 +119,13 @@ def _figure(
             title=title,
         ),
     )
+
+
+def _shortens(rows: Sequence[Record]) -> bool:
+    """Whether the σ of a parameter falls as static positions last longer."""
+    by_time = sorted(rows, key=lambda row: float(row["seconds"]))
+    first, last = by_time[0]["sigma"], by_time[-1]["sigma"]
+    return first is None or last is None or bool(first > MIN_FALL * last)
 
 
 def _arrays(rows: Sequence[Record], *keys: str) -> Iterator[Array]:
@@ -131,10 +142,13 @@ def _colour(parameter: str) -> str:
 def _wanted(rows: Sequence[Record]) -> outline.Table:
     """How long each static position must last for a bias of a required sigma."""
     return outline.Table(
-        _("Duration of each static position for a required σ of the bias, by the formulas of S0."),
+        _(
+            "Duration of each static position for a required σ of the bias, if it were computed by "
+            "the formulas of S0 (not the result of this report, whose σ is in “Parameters”)."
+        ),
         (
             outline.Column(_("Bias")),
-            outline.Column(_("random walk"), "number"),
+            outline.Column(_("white noise N"), "number"),
             outline.Column(_("unit"), "unit"),
             *outline.columns("number", "σ", _("duration"), group=_("Recorded")),
             outline.Column(_("floor"), "number"),
@@ -145,10 +159,9 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
         [_wanted_row(row) for row in rows],
         _("None: no formula of S0 gives a bias here."),
         _(
-            "σ² = N²/T + floor², with the random walk N of the bias and positions of "
-            "duration T. The "
-            "floor is what averaging does not reduce: tilts of the positions, gravity, an unknown "
-            "azimuth, and the scatter between manoeuvres."
+            "σ² = N²/T + floor², with the white noise N of the bias and positions of duration T. "
+            "The floor is what averaging does not reduce: tilts of the positions, gravity, an "
+            "unknown azimuth, and the scatter between manoeuvres."
         ),
     )
 
@@ -165,7 +178,7 @@ def _wanted_row(row: Record) -> outline.Row:
         *(significant(walk.of(row["random_walk"]), 2), walk.name),
         *(sigma, f"{significant(row['seconds'], 3)} s"),
         *(floor, wanted, unit.name),
-        _("not attainable") if seconds is None else f"{significant(seconds, 2)} s",
+        _("not by this formula") if seconds is None else f"{significant(seconds, 2)} s",
     )
 
 
@@ -178,10 +191,13 @@ def epoch_parts(tables: Tables) -> Iterator[outline.Part]:
     for number, (group, curves) in enumerate(groups.items(), 1):
         yield _epochs(group, f"epochs-{number}", curves)
     if spreads := tables.rows("spreads"):
+        levels = tables.rows("levels")
         yield _scatter(spreads)
         seconds = [row["seconds"] for row in spreads]
         extremes = dict.fromkeys((min(seconds), max(seconds)))
-        yield outline.Paragraph(" ".join(_scatter_at(spreads, length) for length in extremes))
+        yield outline.Paragraph(
+            " ".join(_scatter_at(spreads, length, levels) for length in extremes)
+        )
         yield _spreads(spreads)
 
 
@@ -275,17 +291,24 @@ def _scatter_panel(panel: Axes, rows: Sequence[Record]) -> None:
     panel.set_ylim(0, max(2.0, 1.1 * max(map(_ratio, rows))))
 
 
-def _scatter_at(rows: Sequence[Record], seconds: float) -> str:
+def _level_sigma(levels: Sequence[Record], sensor: str) -> float:
+    """How well the white noise of a sensor is known, relative; of the least sure channel."""
+    own = [row for row in levels if row["channel"].startswith(sensor) and row["white_noise"]]
+    known = [row["sigma"] / row["white_noise"] for row in own if row["sigma"] is not None]
+    return max(known, default=0.0)
+
+
+def _scatter_at(rows: Sequence[Record], seconds: float, levels: Sequence[Record]) -> str:
     """How far the scatter is off that of white noise, at epochs of one length."""
     own = [row for row in rows if row["seconds"] == seconds]
     ratios = sorted((_ratio(row), row["quantity"], STAGE[row["sensor"]]) for row in own)
     epochs = own[0]["epochs"]
-    chance = 1 / sqrt(2 * max(epochs - 1, 1))
     (smallest, *_unused), (largest, name, stage) = ratios[0], ratios[-1]
+    chance = hypot(1 / sqrt(2 * max(epochs - 1, 1)), _level_sigma(levels, SENSOR[stage]))
     return _(
         "Epochs of {seconds} s ({epochs} of them) scatter {smallest} to {largest} times "
-        "as much as white noise, most the {name} of the {stage}; chance alone gives 1 ± "
-        "{chance}.",
+        "as much as white noise, most the {name} of the {stage}; chance and the uncertainty of the "
+        "level of the white noise give 1 ± {chance}.",
         seconds=significant(seconds, 3),
         epochs=whole(epochs),
         smallest=fixed(smallest, 2),
@@ -314,14 +337,11 @@ def _spreads(rows: Sequence[Record]) -> outline.Table:
                 _("running means"),
                 group=_("Standard deviation"),
             ),
-            *outline.columns(
-                "number", _("single epochs"), _("running means"), group=_("Variance, SI")
-            ),
         ),
         [_spread(row) for row in named],
         note=_(
-            "The variance of the running means describes their variation on the way, not the "
-            "uncertainty of the last one: its σ is that of white noise over the whole position."
+            "The scatter of the running means is their variation on the way, not the uncertainty "
+            "of the last one: its σ is that of white noise over the whole position."
         ),
     )
 
@@ -334,5 +354,4 @@ def _spread(row: Record) -> outline.Row:
         SENSOR_OF_STAGE[STAGE[row["sensor"]]],
         unit.name,
         *(significant(sqrt(each) / unit.size, 3) for each in (single, white, running)),
-        *(significant(each, 3) for each in (single, running)),
     )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import degrees
 
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
@@ -13,13 +12,15 @@ from inertial.text.statements import (
     NOT_STATED,
     REALISES,
     RULES,
+    STATED,
     STATEMENTS,
     THIS_ITEM_ONLY,
     TRACEABILITY,
 )
-from inertial.text.units import COVERAGE_FACTOR, ICE_POINT, Unit
+from inertial.text.units import COVERAGE_FACTOR, DEGREES, ICE_POINT, Unit
 from stages.report.outline import (
     Column,
+    Equation,
     Facts,
     Figure,
     Heading,
@@ -44,7 +45,9 @@ from stages.report.results import (
     quantity_of,
     symbol,
 )
+from stages.report.sections import basis
 from stages.report.sections.axes_of_case import axes_of_case
+from stages.report.sections.findings import causes, spoils
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSOR, SENSORS, capital, term, with_mount
@@ -59,7 +62,7 @@ ITEMS = {  # of the left and of the right column, each with the items that it jo
     _("Calibrated"): ("calibrated",),
     _("Issued"): ("issued",),
     _("Procedure"): ("procedure.name", "procedure.version"),
-    _("Deviations from it"): ("procedure.deviations",),
+    _("Deviations from the procedure"): ("procedure.deviations",),
     _("Air temperature"): ("conditions.temperature",),
     _("Relative humidity"): ("conditions.humidity",),
     _("Warm-up"): ("conditions.warm_up",),
@@ -67,7 +70,10 @@ ITEMS = {  # of the left and of the right column, each with the items that it jo
 }
 IF_STATED = {"laboratory.place", "item.axes", "conditions.humidity", "conditions.measured_with"}
 NOT_USABLE = "not_usable"  # the verdict
-KNOWN = ("gravity", "latitude")  # of the known quantities what results rest on
+# Of the errors of the table those on which the results rest, by their sources in the budget.
+TABLE_ERRORS = {"position": "position", "turn_angle": "angle"}
+MIN_UNCORRECTED = 0.1  # σ of a parameter, from which a cause that is not corrected is stated
+MIN_RISK = 1e-4  # of a false statement; of a smaller one only that is said
 
 
 def certificate_number(tables: Tables) -> str:
@@ -87,6 +93,14 @@ def parts(tables: Tables) -> Iterator[Part]:
         axes_of_case(),
         _("The axes x, y and z of the case, at right angles to each other."),
         small=True,
+    )
+    yield Equation(
+        _("reading = (I + S + N) · truth + b"),
+        _(
+            "S: scale errors s on the diagonal; N: cross-axis terms m off it. Truth: specific "
+            "force, the axis that points up reads +g; angular rate by the right-hand rule. "
+            "Further terms are added to the reading."
+        ),
     )
     yield Heading(_("Results"), breaks=True)
     earlier = _earlier(tables)
@@ -188,9 +202,7 @@ def _standards(tables: Tables) -> Table:
     if "angle" not in there and "rate" not in there:
         table = tables.row("campaign")["table"]
         rows.append(table_row(_("Angle, rotation rate"), table, NOT_STATED, NOT_STATED))
-    for row in tables.rows("known"):
-        if row["quantity"] in KNOWN and row["value"] is not None:
-            rows.append(table_row(capital(term(row["quantity"])), _known(row), row["origin"], "–"))
+    rows += [table_row(*cells, "–") for cells in _known(tables)]
     return Table(
         _("Standards used, and quantities taken as known."),
         columns("text", _("Quantity"), _("Standard or value"), _("Certificate or origin"))
@@ -199,11 +211,26 @@ def _standards(tables: Tables) -> Table:
     )
 
 
-def _known(row: Record) -> str:
-    scale, unit = (degrees(1.0), "°") if row["unit"] == "rad" else (1.0, f" {row['unit']}")
-    spread = None if row["sigma"] is None else COVERAGE_FACTOR * row["sigma"] * scale
-    value, error = numbers.with_sigma(row["value"] * scale, spread, numbers.decimals_of(spread))
-    return f"{value}{unit}" if spread is None else f"{value}{unit}, U = {error}{unit}"
+def _known(tables: Tables) -> Iterator[tuple[str, str, str]]:
+    """Name, value and origin of gravity, latitude, and the errors of the table that count."""
+    known = {row["quantity"]: row for row in tables.rows("known")}
+    gravity = known.get("gravity")
+    if gravity is not None and gravity["value"] is not None:
+        spread = COVERAGE_FACTOR * gravity["sigma"] if gravity["sigma"] else None
+        value, error = numbers.with_sigma(gravity["value"], spread, numbers.decimals_of(spread))
+        text = f"{value} m/s²" + (f", U = {error} m/s²" if spread else "")
+        yield capital(term("gravity")), text, gravity["origin"]
+    latitude = DEGREES.of(tables.row("campaign")["latitude"])
+    if latitude is not None:
+        yield capital(term("latitude")), f"{numbers.fixed(latitude, 4)}°", STATED
+    sources = {row["source"] for row in tables.rows("uncertainty_budget")}
+    for quantity, source in TABLE_ERRORS.items():
+        row = known.get(quantity)
+        if source in sources and row is not None and row["sigma"]:
+            unit = basis.UNIT[quantity]
+            spread = numbers.significant(unit.of(COVERAGE_FACTOR * row["sigma"]), 2)
+            text = _("as set, U = {spread} {unit}", spread=spread, unit=unit.name)
+            yield capital(basis.NAME[quantity]), text, row["origin"]
 
 
 # ---- The results with U.
@@ -286,7 +313,10 @@ def _effects(rows: Sequence[Record]) -> Table:
                 cells = (Traced(value, row["id"]), spread, unit.name, row["meaning"])
                 lines.append(table_row(symbol(row["parameter"]), *cells))
     return Table(
-        _("Effects that the result contains beside them; they hold together with it."),
+        _(
+            "Further terms of the measurement model, estimated together with the parameters above. "
+            "Use all of them together."
+        ),
         (
             Column("", "symbol"),
             Column(_("value"), "number"),
@@ -353,7 +383,7 @@ def _conformity(tables: Tables) -> Iterator[Part]:
             *columns("text", _("Parameters"), _("Statement")),
             Column(_("limit ±"), "number"),
             Column(_("unit"), "unit"),
-            Column(_("probability that it is wrong, at most"), "number"),
+            Column(_("probability of a false statement, by U"), "number"),
         ),
         [_assessed(key, groups[key]) for key in sorted(groups, key=_in_order)],
     )
@@ -382,7 +412,7 @@ def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
         capital("; ".join(said)),
         numbers.significant(unit.of(rows[0]["limit"]), 3),
         unit.name,
-        numbers.probability(max(risks)) if risks else "—",
+        _risk(max(risks)) if risks else "—",
         tone=tone,  # type: ignore[arg-type]
     )
 
@@ -390,8 +420,24 @@ def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
 KINDS = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
 
 
+def _risk(risk: float) -> str:
+    """In per cent; far out in the tails U is not known to be that of a Gaussian."""
+    if risk < MIN_RISK:
+        return f"< {numbers.significant(100 * MIN_RISK, 1)} %"
+    return f"{numbers.significant(100 * risk, 2)} %"
+
+
 def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
     stated = _stated(tables)
+    for row in causes(tables):
+        moves = row["moves"]
+        if row["cure"] == "none" and moves and moves > MIN_UNCORRECTED and not spoils(tables, row):
+            yield _(
+                "Not corrected, and no component of U: {cause}, which shifts no parameter by more "
+                "than {share} U.",
+                cause=in_words(row["cause"]),
+                share=numbers.significant(moves / COVERAGE_FACTOR, 2),
+            )
     if earlier:
         before = next(iter(earlier.values()))
         yield _(
@@ -402,7 +448,9 @@ def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
             campaign=before["campaign"],
         )
     else:
-        yield _("No earlier result of this item is known, so there is none as found.")
+        yield _(
+            "No earlier calibration of this item is on file, so no as-found values can be stated."
+        )
     yield stated.get("traceability", TRACEABILITY)
     yield THIS_ITEM_ONLY
     yield IN_FULL_ONLY
@@ -424,7 +472,7 @@ SECTION = Section(
     (
         *RESULT_TABLES,
         *("campaign", "certificate", "standards", "known", "clocks", "blocks", "manoeuvres"),
-        *("conformity", "earlier", "causes"),
+        *("conformity", "earlier", "causes", "verdict", "uncertainty_budget"),
     ),
     parts,
 )

@@ -43,13 +43,16 @@ def _figures(known: Sequence[Record]) -> Table:
             Column("± σ", "sigma"),
             Column(_("by noise alone, 95 %"), "number"),
             Column(_("unit"), "unit"),
-            Column(_("largest input"), "number"),
+            Column(_("largest mean input"), "number"),
             Column(_("points"), "number"),
         ),
         list(_table_rows(known)),
         note=_(
             "By noise alone: what the largest of so many errors does not exceed in 95 % of the "
-            "cases if noise, the table and the site are all there is."
+            "cases if noise, the table and the site are all there is. The input of a whole turn is "
+            "its angle over its duration, ramps included. The acceleration-insensitive drift rate "
+            "is estimated from the static positions alone; the bias of the result, from all "
+            "manoeuvres, is the better value."
         ),
     )
 
@@ -97,7 +100,7 @@ def _bandwidth_rows(rows: Sequence[Record]) -> Iterator[Row]:
             if own:
                 yield head(f"{SENSOR[sensor]}: {name}")
             for row in own:
-                value, sigma = "–", "–"
+                value, sigma = "", ""
                 if row["value"] is not None:
                     value, sigma = numbers.with_sigma(
                         row["value"], row["sigma"], numbers.decimals_of(row["sigma"])
@@ -107,9 +110,9 @@ def _bandwidth_rows(rows: Sequence[Record]) -> Iterator[Row]:
                     row["axis"] + mount,
                     value,
                     sigma,
-                    numbers.significant(row["lower"], 2) if row["lower"] else "–",
+                    numbers.significant(row["lower"], 2) if row["lower"] else "",
                     "Hz",
-                    numbers.whole(row["turns"]) if row["turns"] else "–",
+                    numbers.whole(row["turns"]) if row["turns"] else "",
                     anchor=row["id"],
                 )
 
@@ -148,7 +151,7 @@ SECTION = Section(
         "resolution are the least input, and the least change of it, that give at least half of "
         "the expected output; the plan and the counts set limits to them, with 95 % confidence: "
         "the sensor may feel less than the plan applied. The acceleration-insensitive drift rate "
-        "is what a gyro reads whatever force it is under."
+        "is what a gyro reads independent of specific force."
     ),
     ("characteristics", "bandwidths"),
     parts,
@@ -171,7 +174,7 @@ def _table_rows(rows: Sequence[Record]) -> Iterator[Row]:
 
 def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
     if row["sigma"] is None:
-        value, sigma = _between(row, unit), "–"
+        value, sigma = _between(row, unit), ""
     else:
         value, sigma = numbers.with_sigma(unit.of(row["value"]), unit.of(row["sigma"]), decimals)
     largest = ""
@@ -183,9 +186,9 @@ def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
         row["axis"] + mount,
         value,
         sigma,
-        numbers.significant(unit.of(row["by_noise"]), 2) if row["by_noise"] else "–",
+        numbers.significant(unit.of(row["by_noise"]), 2) if row["by_noise"] else "",
         unit.name,
-        largest or "–",
+        largest,
         numbers.whole(row["points"]),
         anchor=row["id"],
     )

@@ -9,14 +9,15 @@ from matplotlib.axes import Axes
 
 from inertial.tables import AXES
 from inertial.text import numbers, units
+from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
-from stages.report.results import KIND
+from stages.report.results import KIND, RESULT_TABLES, final_results
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, parameter, with_mount
+from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, listed, parameter, with_mount
 
 KINDS = {
     "static_against_turns": _("Static, rotation"),
@@ -32,33 +33,42 @@ MOST_DIFFERENCES = 120
 def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
     """Every difference in units of its sigma with the verdict in words, worst first."""
     rows = sorted(tables.rows("differences"), key=_worst_first)
-    yield from _judged(rows)
+    yield from _judged(rows, _effects_of(tables, rows))
     yield _differences(
         rows, _("None: no parameter was estimated in two ways that could be compared.")
     )
-    yield outline.Heading(_("Published values against the result that counts"))
+    yield outline.Heading(_("Published values against the final result"))
     published = sorted(tables.rows("published_differences"), key=_worst_first)
     yield from _judged(published)
     yield _differences(published, _("None: no published value is known for this instrument."))
 
 
-def _judged(rows: Sequence[Record]) -> Iterator[outline.Paragraph]:
-    """How many of them are more than chance."""
+def _effects_of(tables: Tables, rows: Sequence[Record]) -> list[str]:
+    """The effects, in words, that results have and the methods compared beyond chance have not."""
+    beyond = {(row["sensor"], row["mount"]) for row in rows if _beyond(row)}
+    results = [one for one in final_results(tables) if (SENSOR_OF[one.stage], one.mount) in beyond]
+    return list(dict.fromkeys(in_words(row["effect"]) for one in results for row in one.effects))
+
+
+def _judged(rows: Sequence[Record], effects: Sequence[str] = ()) -> Iterator[outline.Paragraph]:
+    """How many of them are more than chance; `effects`: that may be why."""
     compared = [row for row in rows if row["in_sigmas"] is not None]
     beyond = sum(map(_beyond, compared))
     if compared:
         verb = _("differs") if beyond == 1 else _("differ")
-        values = capital(numbers.counted(beyond, "value"))
-        pairs = numbers.counted(len(compared), "comparison")
-        yield outline.Paragraph(
-            _(
-                "{values} of {pairs} {verb} by more than chance.",
-                values=values,
-                pairs=pairs,
-                verb=verb,
-            ),
-            "fair" if beyond else "good",
+        text = _(
+            "{beyond} of {pairs} of values {verb} by more than chance.",
+            beyond=numbers.whole(beyond),
+            pairs=numbers.counted(len(compared), "pair"),
+            verb=verb,
         )
+        if beyond and effects:
+            text += _(
+                " The methods compared here have no effects in their model; the result contains "
+                "{effects}, which can cause such differences.",
+                effects=listed(effects),
+            )
+        yield outline.Paragraph(text, "fair" if beyond else "good")
     for row in filter(_fencepost, rows):
         yield outline.Paragraph(capital(str(row["sentence"])), "fair")
 
@@ -68,18 +78,18 @@ COMPARISONS = outline.Section(
     _("Comparisons"),
     _(
         "Static against rotation, forward against backward, method against method: the same "
-        "parameter by two ways that should agree. Then published values against the result that "
-        "counts."
+        "parameter by two ways that should agree. Then published values against the final result."
     ),
     _(
         "Worst first, the difference in units of its σ. p is the probability of a "
         "difference this large if the two are equal; among many comparisons some are "
         "large by chance, which the verdict takes into account. Two methods that use the same "
         "data are correlated: the variance of their difference is the difference of their "
-        "variances. Rests against turns has the σ of noise, table and site alone: what manoeuvres "
-        "scatter beyond it, which the σ of the methods include, is what is compared there."
+        "variances. Static against rotation is judged by the σ of noise, table and site alone. The "
+        "σ of the methods in “Parameters” also contain the scatter between manoeuvres and are "
+        "therefore larger."
     ),
-    ("differences", "published_differences"),
+    ("differences", "published_differences", *RESULT_TABLES),
     comparison_parts,
 )
 
@@ -108,7 +118,7 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Part:
         _("Differences: {counted} of values.", counted=numbers.counted(len(rows), "pair")),
         (
             *outline.columns("text", _("Compared"), _("What")),
-            *outline.columns("number", _("first"), _("second"), group=_("Values")),
+            *outline.columns("number", _("first named"), _("second named"), group=_("Values")),
             outline.Column(_("unit"), "unit", _("Values")),
             *outline.columns("number", _("in σ"), "p"),
         ),

@@ -78,7 +78,7 @@ SECTION = outline.Section(
     "compensation",
     _("Compensation"),
     _(
-        "The readings corrected with the result that counts, its effects included, and whether "
+        "The readings corrected with the final result, its effects included, and whether "
         "they then agree with what is known: gravity in every position, the earth's rate, the "
         "angle of every turn."
     ),

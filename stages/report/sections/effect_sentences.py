@@ -146,7 +146,7 @@ def certainty(row: Record) -> str:
         "unexplained": _("Not explained by any effect of the catalogue."),
     }[grade_of(row)]
     if row.get("snr"):
-        sentence += _(" Signal-to-noise ratio: {snr}.", snr=numbers.significant(row["snr"], 2))
+        sentence += _(" Signal-to-noise ratio: {snr}.", snr=numbers.significant(row["snr"], 3))
     if row["p_value"] is not None:
         sentence += _(
             " Probability under noise alone: {p_value}.", p_value=numbers.p_is(row["p_value"])

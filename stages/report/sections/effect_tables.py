@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
 from inertial.text import numbers
@@ -26,6 +26,7 @@ from stages.report.words import SENSOR, capital, count_in_words, with_mount
 
 MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"
+DEAD_BAND = "gyro_dead_band"  # how the names of such effects begin
 Effect = tuple[str, str]  # its name in the catalogue, and the mount
 TESTS = {
     "time": _("time"),
@@ -96,7 +97,9 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
                 *outline.value_and_sigma(_("Joint fit")),
                 *outline.value_and_sigma(_("Extended")),
                 outline.Column(_("unit"), "unit"),
-                outline.Column(_("Shift, in σ of the joint fit"), "number"),
+                *outline.columns(
+                    "number", _("joint fit"), _("extended"), group=_("Shift, in σ of the fit")
+                ),
                 outline.Column(_("Meaning"), "note"),
             ),
             list(_shifts(own)),
@@ -116,17 +119,19 @@ def _shifts(each: Sequence[Shift]) -> Iterator[outline.Row]:
         cells += in_units(both, units)
     extended, joint = cells[::2], cells[1::2]
     sides = [column for side in (joint, extended) for column in zip(*side, strict=True)]
-    sigmas = [numbers.fixed(shift.sigmas, 1) for shift in each]
+    sigmas = [
+        (numbers.fixed(shift.sigmas, 1), numbers.fixed(shift.own_sigmas, 1)) for shift in each
+    ]
     lines = iter(zip(sigmas, *sides, strict=True))
     for kind, own in kinds.items():
         yield outline.head(KIND.get(kind, kind))
-        for shift, (text, *line) in zip(own, lines, strict=False):
+        for shift, (in_sigmas, *line) in zip(own, lines, strict=False):
             far = shift.sigmas is not None and abs(shift.sigmas) > MIN_SIGMAS
             yield outline.table_row(
                 symbol(shift.extended["parameter"]),
                 *line,
                 quantity_of(shift.extended).shown.name,
-                text,
+                *in_sigmas,
                 numbers.shortened(shift.extended["meaning"], 160),
                 anchor=shift.extended["id"],
                 tone="fair" if far else "",
@@ -163,19 +168,26 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         ),
         (
             outline.Column(_("Effect")),
-            outline.Column(_("worst axis"), "number", _("Detected from")),
-            outline.Column(_("parameter"), "symbol", _("Detected from")),
-            outline.Column(_("best axis"), "number", _("Detected from")),
-            outline.Column(_("unit"), "unit", _("Detected from")),
+            outline.Column(_("worst axis"), "number", _("Detection limit (5 σ)")),
+            outline.Column(_("parameter"), "symbol", _("Detection limit (5 σ)")),
+            outline.Column(_("best axis"), "number", _("Detection limit (5 σ)")),
+            outline.Column(_("unit"), "unit", _("Detection limit (5 σ)")),
             outline.Column("p", "number"),
-            outline.Column(_("Remark"), "note"),
         ),
         [
             _limit(by_name[name], list(group))
             for (name, _), group in groupby(seen, lambda row: (_effect(row), row["unit"]))
         ],
         _("None: every effect that this campaign makes observable was detected."),
-        _("p: the probability of such data under noise alone."),
+        " ".join(
+            [
+                _(
+                    "p: the probability that noise alone makes the largest of all tested effects "
+                    "this significant (corrected for the number of tests, so it is often 1)."
+                ),
+                *_remarks(seen, by_name),
+            ]
+        ),
     )
     if hidden:
         yield outline.Table(
@@ -188,6 +200,16 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         )
 
 
+def _remarks(rows: Sequence[Record], by_name: Mapping[Effect, Tested]) -> Iterator[str]:
+    """What is said of single effects, each with its name."""
+    if any(row["effect"].startswith(DEAD_BAND) for row in rows):
+        yield _("The size of a dead band is the share of a small input that it loses.")
+    for effect in dict.fromkeys(map(_effect, rows)):
+        remarks = dict.fromkeys(row["remark"] or "" for row in rows if _effect(row) == effect)
+        if text := numbers.shortened(" ".join(remarks).strip(), 300):
+            yield f"{capital(by_name[effect].name)}: {text}"
+
+
 def _effect(row: Record) -> Effect:
     return row["effect"], row["mount"]
 
@@ -198,7 +220,6 @@ def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
     worst = numbers.significant(unit.of(max(first["limit"], first["largest"] or 0.0)), 2)
     best = min(min(row["limit"], row["smallest"] or row["limit"]) for row in rows)
     least = numbers.significant(unit.of(best), 2)
-    beyond = dict.fromkeys(row["remark"] or "" for row in rows)
     return outline.table_row(
         capital(tested.name),
         worst,
@@ -206,7 +227,6 @@ def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
         least if least != worst else "",
         unit.name,
         numbers.probability(tested.score["p_value"]),
-        numbers.shortened(" ".join(beyond).strip(), 300),
         anchor="/".join(("limit", *filter(None, _effect(first)), first["parameter"])),
     )
 
@@ -251,14 +271,15 @@ def structure_tests(rows: Sequence[Record]) -> Iterator[outline.Part]:
 
 
 def _insignificant(rows: Sequence[Record], where: str) -> str:
-    least = min((row for row in rows if row["degrees"]), key=lambda row: float(row["p_value"]))
+    made = [row for row in rows if row["degrees"]]
+    least = min(made, key=lambda row: float(row["p_value"]))
     sentence = _(
         "{rows} tests for structure in the residuals of the model with the identified "
-        "effects{where}, against {listed}: none is significant, smallest {p_value} "
-        "({least}, {least_2}).",
-        rows=_count(rows),
+        "effects{where}, against {listed}: none is significant, smallest {p_value} after "
+        "correction for the search ({least}, {least_2}).",
+        rows=_count(made),
         where=where,
-        listed=listed([test_name(row) for row in rows]),
+        listed=listed([test_name(row) for row in made]),
         p_value=numbers.p_is(least["p_value"]),
         least=test_name(least),
         least_2=channel(least),

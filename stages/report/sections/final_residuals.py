@@ -22,14 +22,19 @@ from stages.report.outline import (
     columns,
     table_row,
 )
-from stages.report.sections.residual_figures import UNIT, Residual, draw_by_manoeuvre, pieces_of
+from stages.report.sections.residual_figures import (
+    UNIT,
+    Residual,
+    beyond_noise,
+    draw_by_manoeuvre,
+    pieces_of,
+)
 from stages.report.tables import Tables, once
 from stages.report.words import SENSORS, capital
 
 STEADY = "steady"
 MAX_SIGMAS = 3.0
 REACH, BIN = 4.5, 0.25  # σ, of the histogram
-MAX_RATIO = 1.2  # from which it is marked
 
 
 @once
@@ -75,16 +80,15 @@ def parts(tables: Tables) -> Iterator[Part]:
 SECTION = Section(
     "residuals",
     _("Residuals"),
-    _(
-        "Measured readings less those that the result predicts, effects included: what the result "
-        "that counts leaves over."
-    ),
+    _("Measured readings less those that the final result predicts, effects included."),
     _(
         "Left: fifths of each static position and whole steady rotations, with σ of white noise; "
         "the band is ±3 σ. Right: the residuals over their σ, blocks of static positions and "
         "seconds of steady rotation, with the normal distribution. Noise alone gives a ratio of "
         "1.00 and leaves 0.3 % beyond 3 σ. A vibration averages out within a second, and drift of "
-        "the bias stays in."
+        "the bias stays in. Where the table's heading is not known, the azimuth of each static "
+        "position is estimated with the result, so one direction of the gyros' residuals at rest "
+        "is fitted away."
     ),
     ("residuals", "manoeuvres"),
     parts,
@@ -149,7 +153,7 @@ def _table(tables: Tables) -> Table:
                 ratio = float(np.sqrt(np.mean(values**2)))
                 beyond = int((np.abs(values) > MAX_SIGMAS).sum())
                 cells += [whole(len(values)), fixed(ratio, 2), whole(beyond)]
-                high = high or ratio > MAX_RATIO
+                high = high or beyond_noise(ratio, len(values))
             name = f"{capital(SENSORS[sensor])}, {axis}"
             rows.append(table_row(name, *cells, tone="fair" if high else ""))
     headings = (_("means"), _("rms, in σ"), _("beyond 3 σ"))

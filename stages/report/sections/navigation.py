@@ -22,7 +22,7 @@ QUANTITIES = {
     "position": (_("position"), Unit("m", 1.0)),
 }
 CALIBRATIONS = {
-    "nominal": (_("nominal"), "#a9b3be"),
+    "nominal": (_("uncalibrated"), "#a9b3be"),
     "published": (_("published"), "#cc79a7"),
     "calibrated": (_("calibrated"), drawing.AXIS_COLOUR["z"]),
 }
@@ -63,7 +63,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
 
 SECTION = outline.Section(
     "navigation",
-    _("Worth in navigation"),
+    _("Navigation performance"),
     _(
         "The rests and whole turns of this campaign as free inertial navigation, before and after "
         "calibration: at rest, and after a whole turn, attitude, velocity and position should be "
@@ -106,8 +106,10 @@ def _errors(groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
         ),
         rows,
         note=_(
-            "χ² over its degrees: squared error after calibration by its predicted covariance; "
-            "near 1 where that is right."
+            "χ² over its degrees, 3 for each manoeuvre: squared error after calibration by its "
+            "predicted covariance; about 1 where the prediction is right, below 1 where it is too "
+            "large. The parameters fit a part of the noise of these same manoeuvres, so it tends "
+            "to be below 1."
         ),
     )
 
@@ -159,8 +161,8 @@ def _courses(tables: Tables) -> Iterator[outline.Figure]:
         yield outline.Figure(
             with_mount(
                 _(
-                    "{name}: errors against time; grey as decoded, blue calibrated, and the band "
-                    "of ± 1 σ that is predicted for it.",
+                    "{name}: errors against time; grey uncalibrated, blue calibrated, and the "
+                    "band of ± 1 σ that is predicted for it.",
                     name=name,
                 ),
                 mount,
@@ -202,7 +204,7 @@ def _shares(tables: Tables, groups: Mapping[Key, Sequence[Record]]) -> outline.T
     listed = [n for n in largest if max(map(abs, total[n].values())) >= MIN_SHARE][:MOST_SOURCES]
     columns = [(key, quantity) for key in keys for quantity in QUANTITIES]
     return outline.Table(
-        _("Shares of the predicted variance, per cent."),
+        _("Shares of the predicted variance, per cent, over the same manoeuvres as above."),
         (
             outline.Column(_("Source")),
             *(

@@ -102,11 +102,22 @@ def _nothing(segments: Iterable[Record]) -> str:
 
 def _note(terms: Sequence[Record], sheet: Sequence[Record]) -> str:
     """What < means, and whence the data sheet."""
-    sources = dict.fromkeys(row["source"] for row in sheet if row["source"])
     limit = _("<: upper limit, 95 %; the data do not ask for the term.")
-    source = _("Data sheet: {source}.", source=shortened("; ".join(sources), 300))
     limits = any(not row["detected"] for row in terms)
-    return " ".join([*([limit] * limits), *([source] * bool(sources))])
+    return " ".join(filter(None, [limit if limits else "", of_data_sheet(sheet)]))
+
+
+def of_data_sheet(sheet: Sequence[Record]) -> str:
+    """Whence the data sheet of each sensor is; nothing without one."""
+    sensors: dict[str, list[str]] = {}
+    for row in sheet:
+        if row["source"] and SENSORS[row["sensor"]] not in sensors.setdefault(row["source"], []):
+            sensors[row["source"]].append(SENSORS[row["sensor"]])
+    each = (
+        _("{sensors}: {source}.", sensors=capital(listed(names)), source=shortened(source, 300))
+        for source, names in sensors.items()
+    )
+    return _("Data sheet. {each}", each=" ".join(each)) if sensors else ""
 
 
 def _terms_table(sensor: str, rows: Sequence[Record], note: str) -> outline.Table:

@@ -12,6 +12,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import aligned, common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK
 from stages.report import drawing, outline
+from stages.report.sections.noise import of_data_sheet
 from stages.report.tables import Record, Tables
 from stages.report.words import term
 
@@ -31,7 +32,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     sheet = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in sensors}
     if rows:
         yield _figure(rows, sheet)
-    yield _summary(rows, sheet, list(dict.fromkeys(s["source"] for s in sensors if s["source"])))
+    yield _summary(rows, sheet, of_data_sheet(sensors))
     if rows:
         yield from (_by_manoeuvre(rows, sensor) for sensor in NAME)
 
@@ -113,7 +114,7 @@ def _named(place: Place, most: int) -> str:
     return shortened(manoeuvre if phase == "rest" else f"{manoeuvre}, {term(phase)}", most)
 
 
-def _summary(rows: Sequence[Record], sheet: Sheet, sources: Sequence[str]) -> outline.Table:
+def _summary(rows: Sequence[Record], sheet: Sheet, note: str) -> outline.Table:
     lines = {
         channel: _line(channel, own, sheet)
         for channel in CHANNELS
@@ -139,7 +140,7 @@ def _summary(rows: Sequence[Record], sheet: Sheet, sources: Sequence[str]) -> ou
             for channel, own in zip(lines, cells, strict=True)
         ],
         _("None: no manoeuvre is long enough to estimate the noise."),
-        _("Data sheet: ") + shortened("; ".join(sources), 400) + "." if sources else "",
+        note,
     )
 
 

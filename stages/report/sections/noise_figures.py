@@ -73,8 +73,8 @@ def spectrum_figure(rows: Sequence[Record], sheet: Sequence[Record]) -> outline.
     lines = any(row["line"] for row in rows)
     return outline.Figure(
         _(
-            "Root of the power density: pale the data, dark the same terms. White noise is level, "
-            "at its random walk."
+            "Amplitude spectral density, the root of the two-sided power density, in units of N: "
+            "pale the data, dark the same terms. White noise is level, at its N."
         )
         + (_(" Wedge: an oscillation, not fitted.") if lines else ""),
         drawn,
@@ -208,7 +208,7 @@ def _spectrum_panel(
         )
     panel.set_title(
         _(
-            "{sensors}: root of power density, {unit}",
+            "{sensors}: amplitude spectral density, {unit}",
             sensors=capital(SENSORS[sensor]),
             unit=unit.name,
         ),

@@ -94,13 +94,15 @@ PARAMETERS = Section(
     "parameters",
     _("Parameters"),
     _(
-        "Bias, scale error and cross-axis terms of both sensors: the result that counts, then "
-        "each method that the plan allows."
+        "Bias, scale error and cross-axis terms of both sensors: the final result, then each "
+        "method that the plan allows."
     ),
     _(
         "Each value stands with its standard deviation σ. Specific force: the axis that points up "
-        "reads +g. Rotations follow the right-hand rule. The result is the one that the archive, "
-        "the export and every other section use; it holds under the verdict of page one. Bias, "
+        "reads +g. Rotations follow the right-hand rule. The result is the one on the "
+        "certificate, in the archive, in the exports and in “Residuals”, “Compensation”, "
+        "“Navigation performance” and “Uncertainty budget”; sections that use another fit say so. "
+        "It holds under the verdict of page one. Bias, "
         "scale errors and cross-axis terms are estimated; mounting rotation and non-orthogonality "
         "are derived from them."
     ),
@@ -150,6 +152,12 @@ def _fits(each: Sequence[Estimate]) -> Table:
             if (fit := estimate.fit) is not None
         ],
         _("No fit was made."),
+        _(
+            "The deviations of a scatter between manoeuvres, where it is estimated, take up "
+            "degrees of freedom; a fit without it has more."
+        )
+        if any(one.fit["scatter"] for one in each if one.fit is not None)
+        else "",
     )
 
 

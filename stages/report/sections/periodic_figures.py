@@ -14,7 +14,13 @@ from matplotlib.axes import Axes
 from inertial.tables import AXES, GYRO
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, shortened, significant
-from inertial.text.units import DEGREE, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC
+from inertial.text.units import (
+    DEGREE,
+    DEGREES_PER_HOUR,
+    DEGREES_PER_SECOND,
+    PPM,
+    SECONDS_OF_ARC,
+)
 from stages.report import drawing
 from stages.report.drawing import Array
 from stages.report.outline import Figure
@@ -23,7 +29,6 @@ from stages.report.tables import Record, Tables
 
 MAX_P = 1e-3  # below which a line is named
 SECONDS = 1.0  # of a turn that are drawn
-MILLIRADIANS = 1e-3  # rad/s
 RESIDUALS = [f"residual_{name}" for name in GYRO]
 COLUMNS = ["manoeuvre", "phase", "record", "time", *GYRO, *RESIDUALS]
 TURN = 360.0  # degrees
@@ -126,7 +131,7 @@ def over_time(tables: Tables, effect: str, key: str) -> Figure | None:
         largest = max(max(map(abs, panel.get_ylim())) for panel in panels)
         for panel in panels:
             panel.set_ylim(-largest, largest)
-        panels[0].set_ylabel("10⁻³ rad/s", labelpad=2)
+        panels[0].set_ylabel(DEGREES_PER_SECOND.name, labelpad=2)
         picture = drawing.svg(drawn, key)
     return Figure(
         _("One second of the steady part as measured by the gyros, the mean removed: ")
@@ -165,18 +170,18 @@ def _seconds(tables: Tables, turns: Collection[str]) -> dict[str, Mapping[str, A
 
 def _curve(panel: Axes, view: View, samples: Mapping[str, Array]) -> None:
     line, time = view.line, samples["time"]
-    values = (samples[view.gyro] - np.nanmean(samples[view.gyro])) / MILLIRADIANS
+    values = (samples[view.gyro] - np.nanmean(samples[view.gyro])) / DEGREES_PER_SECOND.size
     colour = drawing.AXIS_COLOUR[view.gyro]
     panel.plot(time - time[0], values, color=colour, linewidth=0.7, marker=".", markersize=2.5)
     label = _("no significant line")
     if line["p_value"] < MAX_P:
-        amplitude = line["amplitude"] / MILLIRADIANS
+        amplitude = line["amplitude"] / DEGREES_PER_SECOND.size
         for side in (-amplitude, amplitude):
             panel.axhline(side, color=drawing.QUIET, linewidth=0.6, dashes=(4, 2))
         label = _(
-            "{frequency} Hz, {amplitude} rad/s",
+            "{frequency} Hz, {amplitude} °/s",
             frequency=fixed(line["frequency"], 3),
-            amplitude=significant(line["amplitude"], 3),
+            amplitude=significant(amplitude, 3),
         )
     panel.set_title(f"{view.title}\n{label}", loc="left", pad=3, fontsize=6.8)
     panel.set_xlabel(_("Time, s"))

@@ -50,20 +50,10 @@ SECTION = outline.Section(
     "repeatability",
     _("Repeatability and drift"),
     _(
-        "How the calibrations of this instrument differ beyond their own sigmas: from day to day, "
-        "from mounting to mounting, from switch-on to switch-on; and what the next one may find. "
-        "Repeatability is the standard deviation of all values, stability that of means over 10 s "
-        "in the longest rest (IEEE Std 528; for gyros JJF 1535-2015, 3.2 and 3.3). Where a "
-        "campaign states power cycles, turn-on to turn-on is what biases differ by between them."
+        "How the calibrations of this instrument differ beyond their own sigmas, what the next one "
+        "may find, and the bias stability within this campaign."
     ),
-    _(
-        "A component is value ± σ by restricted likelihood, the sigmas within campaigns taken off, "
-        "or below its 95 % limit. Gravity and latitude that calibrations share are the same error "
-        "in all of them, so these are in no difference and in no σ here. Components joined by + "
-        "divide these calibrations in the same way, so they are one number. Campaigns that share "
-        "a mounting or a switch-on say so in their files; parts of one campaign are those between "
-        "its power cycles."
-    ),
+    "",
     (
         *("repeatability", "jumps", "forecast", "manoeuvres"),
         *("gyroscope_switch_ons", "accelerometer_switch_ons"),
@@ -103,6 +93,16 @@ def _components(rows: Sequence[Record]) -> outline.Table:
             outline.Column(_("unit"), "unit"),
         ),
         lines,
+        note=_(
+            "Repeatability is the standard deviation of all values (IEEE Std 528; for gyros JJF "
+            "1535-2015, 3.2). "
+            "A component is value ± σ by restricted likelihood, the sigmas within campaigns taken "
+            "off, or below its 95 % limit. Gravity and latitude that calibrations share are the "
+            "same error in all of them, so these are in no difference and in no σ here. Components "
+            "joined by + divide these calibrations in the same way, so they are one number. "
+            "Campaigns that share a mounting or a switch-on say so in their files; parts of one "
+            "campaign are those between its power cycles."
+        ),
     )
 
 
@@ -240,7 +240,10 @@ def _value_and_sigma(row: Record | None, unit: Unit) -> tuple[str, str]:
 
 def _stability(rows: Sequence[Record]) -> outline.Table:
     return outline.Table(
-        _("Bias stability: scatter of means over 10 s in the longest rest of this campaign."),
+        _(
+            "Bias stability: standard deviation of means over 10 s in the longest rest of this "
+            "campaign (IEEE Std 528; for gyros JJF 1535-2015, 3.3)."
+        ),
         (
             outline.Column(_("Parameter"), "name"),
             *outline.value_and_sigma(unit=True),

@@ -30,6 +30,8 @@ PIECES = 5  # of a rest, so that what changes within it is seen
 APART = 0.04  # of a manoeuvre, between its axes
 MOST_STRUCTURES = 3
 MAX_USUAL_SIGMAS = 3.0  # from which a point does not stretch the picture
+MAX_CHANCE = 4.0  # σ of the mean square of n values over its expectation, √(2/n)
+MIN_EXCESS_RATIO = 1.05  # of an rms over σ: that of the noise level itself is not known better
 # What a picture of each test goes along, its unit, and where that begins in SI.
 ALONG = {
     "time": (_("Time"), Unit("min", 60.0), 0.0),
@@ -39,6 +41,12 @@ ALONG = {
     "temperature": (_("Temperature"), Unit("°C", 1.0), ICE_POINT),
     "change": (_("Time"), Unit("min", 60.0), 0.0),
 }
+
+
+def beyond_noise(ratio: float, count: int) -> bool:
+    """Whether an rms of so many residuals, over that of the noise, is more than chance makes it."""
+    chance = MAX_CHANCE * np.sqrt(2 / count) if count else np.inf
+    return bool(ratio > MIN_EXCESS_RATIO and ratio**2 > 1 + chance)
 
 
 @dataclass(frozen=True)

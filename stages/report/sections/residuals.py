@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
@@ -44,17 +45,26 @@ from stages.report.outline import (
     table_row,
 )
 from stages.report.sections.periodic_figures import turns_about
+from stages.report.sections.residual_figures import MIN_EXCESS_RATIO, beyond_noise
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSORS, capital, term
 
 AT_REST = _("at rest")
 MOST_TURNS = 6
 POINTS = 150  # per curve
-MAX_RATIO = 1.2  # residual over noise from which it is marked
 MARK = "▲"
 MOST_ROWS = 80
 RESIDUALS = tuple(f"residual_{channel}" for channel in CHANNELS)
-Ratios = Mapping[tuple[str, str], dict[str, float]]  # by profile and manoeuvre, by channel
+
+
+class Ratio(NamedTuple):
+    """An rms of residuals over that of the noise, and of how many values."""
+
+    size: float
+    values: int
+
+
+Ratios = Mapping[tuple[str, str], dict[str, Ratio]]  # by profile and manoeuvre, by channel
 
 
 def parts(tables: Tables) -> Iterator[Part]:
@@ -83,11 +93,11 @@ SECTION = Section(
     _(
         "Left: the gyro along the axis of rotation, measured (band) and simulated "
         "(line). Right: the residuals, x orange, y green, z blue, from the smallest to "
-        "the largest sample. In the table noise alone gives a ratio of 1.0; {mark} "
-        "marks ratios above {max_ratio}. Turns are evaluated by samples, static "
-        "positions by the means of blocks.",
+        "the largest sample. In the table noise alone gives a ratio of 1.0 with a scatter of "
+        "1/√(2n) of n values; {mark} marks ratios beyond that (4 σ, and above {least}). Turns are "
+        "evaluated by samples, static positions by the means of blocks.",
         mark=MARK,
-        max_ratio=MAX_RATIO,
+        least=MIN_EXCESS_RATIO,
     ),
     ("simulated", "fidelity", "manoeuvres", "segments"),
     parts,
@@ -287,15 +297,15 @@ def _background(panel: Axes, envelope: Envelope) -> None:
 
 
 def _table(rows: Sequence[Record]) -> Table:
-    ratios: dict[tuple[str, str], dict[str, float]] = {}
+    ratios: dict[tuple[str, str], dict[str, Ratio]] = {}
     for row in rows:
         if row["noise_rms"] and row["residual_rms"] is not None:
             own = ratios.setdefault((row["profile"], row["manoeuvre"]), {})
-            own[row["channel"]] = row["residual_rms"] / row["noise_rms"]
+            own[row["channel"]] = Ratio(row["residual_rms"] / row["noise_rms"], row["samples"])
     keys = list(ratios)
     left_out = len(keys) - MOST_ROWS
     if left_out > 0:
-        keys = sorted(keys, key=lambda key: -max(ratios[key].values()))[:MOST_ROWS]
+        keys = sorted(keys, key=lambda key: -max(ratios[key].values()).size)[:MOST_ROWS]
     # turns first: they are what the figures show
     keys.sort(key=lambda key: (key[0] == AT_REST, key[0]))
     return Table(
@@ -323,7 +333,8 @@ def _rows(keys: Sequence[tuple[str, str]], ratios: Ratios) -> Iterator[Row]:
         yield table_row(shortened(manoeuvre, 60), *own)
 
 
-def _written(ratio: float | None) -> str:
+def _written(ratio: Ratio | None) -> str:
     if ratio is None:
         return "—"
-    return f"{MARK} {fixed(ratio, 2)}" if ratio > MAX_RATIO else fixed(ratio, 2)
+    text = fixed(ratio.size, 2)
+    return f"{MARK} {text}" if beyond_noise(ratio.size, ratio.values) else text

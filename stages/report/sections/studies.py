@@ -89,7 +89,7 @@ SECTION = Section(
     ),
     (
         *("epochs", "spreads", "windows", "growing", "middles"),
-        *("time_angle", "motions", "encoder", "not_studied"),
+        *("time_angle", "motions", "encoder", "not_studied", "levels"),
     ),
     parts,
 )
@@ -316,16 +316,15 @@ def _middle(row: Record, whole_turn: Record) -> Row:
     if row["by"] != WHOLE_TURN:
         off = row["scale"] - whole_turn["scale"]
         sigma = float(np.hypot(own_sigma, whole_turn["scale_sigma"])) if own_sigma else None
+    # The scale has the digits of its difference, whatever the σ of the table's rate.
     decimals = max(numbers.decimals_of(PPM.of(whole_turn["scale_sigma"])) or 1, 1)
-    pairs = ((row["scale"], row["scale_sigma"]), (off, sigma))
+    own_decimals = numbers.decimals_of(PPM.of(row["scale_sigma"]))
     return table_row(
         _names(row),
         BY.get(row["by"], str(row["by"])),
-        *(
-            cell
-            for value, spread in pairs
-            for cell in numbers.with_sigma(PPM.of(value), PPM.of(spread), decimals)
-        ),
+        numbers.fixed(PPM.of(row["scale"]), decimals),
+        numbers.with_sigma(PPM.of(row["scale"]), PPM.of(row["scale_sigma"]), own_decimals)[1],
+        *numbers.with_sigma(PPM.of(off), PPM.of(sigma), decimals),
     )
 
 

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure as Drawn
 
 from inertial.text.messages import _
 from inertial.text.numbers import significant
@@ -38,6 +40,7 @@ SOURCES = {
     "latitude": _("latitude"),
 }
 MIN_SHARE = 5e-4  # of a variance, below which a share is written as nothing
+MIN_SHARED = 0.9  # of the variance of a scale error, from which gravity makes them correlated
 MIN_LABELLED = 25  # parameters of a sensor, from which a picture has no names
 
 
@@ -111,35 +114,65 @@ def _correlations(tables: Tables) -> Iterator[Figure]:
     if not each:
         return
     with style():
-        margins = Margins(left=0.5, across=0.5, bottom=0.1, top=0.3, right=0.35)
+        margins = Margins(left=0.5, across=0.5, bottom=0.35, top=0.3, right=0.6)
         figure, axes = panels(1, len(each), 2.9, margins, sharex=False)
         for panel, (name, rows) in zip(axes[0], each, strict=True):
-            _matrix(panel, name, rows, known)
+            drawn_matrix = _matrix(panel, name, rows, known)
+        _colour_bar(figure, axes[0][-1], drawn_matrix)
         drawn = svg(figure, "correlations")
     yield Figure(
-        _("Correlations of the parameters: red +1, white 0, blue −1."),
+        " ".join([_("Correlations of the parameters.")] + [_BY_GRAVITY] * _of_gravity(tables)),
         drawn,
         _("The matrix of the correlations of all parameters of each sensor."),
     )
 
 
+_BY_GRAVITY = _(
+    "The accelerometers' scale errors share the error of gravity, so they are correlated by nearly "
+    "+1: differences between them are known far better than each of them."
+)
+
+
+def _of_gravity(tables: Tables) -> bool:
+    """Whether the error of gravity is most of the variance of scale errors."""
+    return any(
+        row["source"] == "gravity"
+        and row["share"] > MIN_SHARED
+        and kind_of(row["quantity"]) == "scale"
+        for row in tables.rows("uncertainty_budget")
+    )
+
+
+def _colour_bar(figure: Drawn, beside: Axes, matrix: QuadMesh) -> None:
+    """From −1 to 1, to the right of the last matrix."""
+    place = beside.get_position()
+    panel = figure.add_axes((place.x1 + 0.01, place.y0, 0.012, place.height))
+    bar = figure.colorbar(matrix, cax=panel, ticks=[-1, 0, 1])
+    bar.ax.set_yticklabels(["−1", "0", "+1"], fontsize=6.0)
+    bar.outline.set_visible(False)
+    panel.tick_params(length=0)
+    panel.grid(visible=False)
+
+
 def _matrix(
     panel: Axes, name: str, rows: Sequence[Record], known: dict[tuple[str, str], float]
-) -> None:
+) -> QuadMesh:
     ids = [row["id"] for row in rows]
     covariance = np.array(
         [[known.get((a, b), known.get((b, a), 0.0)) for b in ids] for a in ids], np.float64
     )
     sigma = np.sqrt(np.diag(covariance))
-    panel.pcolormesh(
+    drawn = panel.pcolormesh(
         covariance / np.outer(sigma, sigma), cmap="RdBu_r", vmin=-1, vmax=1, rasterized=False
     )
     panel.invert_yaxis()
     panel.set_aspect("equal")
     panel.grid(visible=False)
     panel.set_title(name, loc="left", pad=2)
-    panel.set_xticks([])
     labels = [symbol(row["parameter"]).replace("_", "") for row in rows]
     size = 6.0 if len(rows) < MIN_LABELLED else 4.0
-    panel.set_yticks(np.arange(len(ids)) + 0.5, labels, fontsize=size)
+    places = np.arange(len(ids)) + 0.5
+    panel.set_yticks(places, labels, fontsize=size)
+    panel.set_xticks(places, labels, fontsize=size, rotation=90)
     panel.tick_params(length=0)
+    return drawn

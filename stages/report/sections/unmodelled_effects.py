@@ -181,9 +181,9 @@ EFFECTS = outline.Section(
         "χ² is stated for the data that were fitted and for held-out data, where each "
         "manoeuvre is predicted from the others with and without the effects; an effect "
         "that only fits noise reduces nothing there. The attainable reduction is that "
-        "of exactly known effects. Sizes are least-squares estimates less what they are on "
-        "average too large because an effect is only named where it is large enough; ten "
-        "sigma above zero nothing of that is left."
+        "of exactly known effects. Sizes are least-squares estimates, corrected for selection (an "
+        "effect is reported only if significant, so its estimate is too large on average); above "
+        "10 σ the correction is zero."
     ),
     (
         *RESULT_TABLES,

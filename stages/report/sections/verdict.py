@@ -57,12 +57,15 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
     "usable_within_limits": (
         _("usable within limits"),
         "fair",
-        _("Causes were found; each is in the model, masked, bridged or small, as its card states."),
+        _(
+            "Departures from the ideal were found. Each is corrected, modelled, excluded, "
+            "interpolated or too small to matter, as is stated for each."
+        ),
     ),
     "usable": (
         _("usable"),
         "good",
-        _("All parameters are determined, and nothing is wrong that this campaign could show."),
+        _("All parameters are determined, and no fault was detected."),
     ),
 }
 SURE = {
@@ -110,7 +113,7 @@ def _card(tables: Tables, row: Record) -> outline.Finding:
         anchor=f"cause/{row['id']}",
         title=title_of(tables, row),
         grade=_grade(row),
-        sentence=shortened(row["sentence"], 700),
+        sentence=shortened(row["sentence"], 900),
         answers=tuple(_answers(tables, row)),
         facts=(*facts, (_("identifier"), row["id"])),
         links=tuple(_links(tables, row)),
@@ -177,10 +180,14 @@ def _moves(cure: str, moves: float) -> str:
     if moves > MAX_MOVE:
         size = _("more than {most} σ", most=whole(MAX_MOVE))
     if cure == "none":
-        return _("It shifts a parameter by {size}.", size=size)
+        return _("It shifts a parameter by {size} (σ of that parameter).", size=size)
     if cure == "repaired":
         return _("Not set right, it would shift a parameter by {size}.", size=size)
-    return _("Left out of the model, it would shift a parameter by {size}.", size=size)
+    return _(
+        "Left out of the model, all weights unchanged, it would shift a parameter by {size} (σ of "
+        "the result).",
+        size=size,
+    )
 
 
 def _therefore(tables: Tables, row: Record) -> str:
@@ -248,7 +255,7 @@ def _with_unit(value: float | None, decimals: int, unit: str) -> str:
 def parts(tables: Tables) -> Iterator[outline.Part]:
     """A card per cause."""
     if not causes(tables):
-        yield outline.Paragraph(_("Nothing is wrong that this campaign could show."), "good")
+        yield outline.Paragraph(_("No fault was detected."), "good")
     for row in causes(tables):
         yield _card(tables, row)
 
@@ -287,4 +294,4 @@ def as_text(tables: Tables) -> str:
 
 
 def _indented(text: str) -> list[str]:
-    return wrapped(typeset(shortened(text, 700)), 80, "  ", "  ")
+    return wrapped(typeset(shortened(text, 900)), 80, "  ", "  ")
