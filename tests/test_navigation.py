@@ -78,6 +78,19 @@ def test_at_rest_on_the_turning_earth_nothing_moves():
     assert np.abs(course.position).max() < 1e-3
 
 
+@pytest.mark.parametrize("axis", range(3))
+def test_the_earth_turns_what_moves(axis):
+    """Coriolis: under a constant acceleration a along e, δv = −ω × e a t² across it."""
+    acceleration, seconds, n = 10.0, 10.0, 10_000
+    along = np.eye(3)[axis]
+    force = constant(acceleration * along + [0, 0, G], n)
+    start, after = Start(np.eye(3), EARTH), np.array([n])
+    course = navigated(constant(EARTH, n), force, seconds / n, start, G, after)
+    deflected = -np.cross(EARTH, along) * acceleration * seconds**2
+    across = np.arange(3) != axis
+    np.testing.assert_allclose(course.velocity[0][across], deflected[across], rtol=2e-3, atol=1e-4)
+
+
 def test_coning_is_integrated():
     """An axis that describes a cone of half angle θ at ω: ω_b = −ω(sinθ cosωt, sinθ sinωt, 1−cosθ).
 
