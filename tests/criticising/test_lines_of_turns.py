@@ -164,7 +164,7 @@ def test_two_rates_tell_time_from_angle():
     assert set(named(turns(7, ripples=[(36.0, A, B)], rates=rates))) == {"table_ripple"}
     findings = named(turns(7, ringing=[(20.0, 5e-5, "y")], rates=rates))
     assert set(findings) == {"oscillation"}
-    assert "order 360.0 of" in findings["oscillation"]["sentence"]
+    assert "(order 360.0)" in findings["oscillation"]["sentence"]
 
 
 def test_what_no_turn_shows_by_itself_all_show_together():
@@ -253,4 +253,4 @@ def test_what_the_laboratory_hides_in_a_campaign_is_named():
         assert_near((found["value"], found["sigma"]), true)
     causes = results["criticism/findings"].set_index("cause")
     # The case tips by 16″ into the table's rate, which no cross term tells.
-    assert "the case tips" in causes.loc["oscillation", "sentence"]
+    assert "by the case's tipping" in causes.loc["oscillation", "sentence"]

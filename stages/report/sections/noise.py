@@ -7,10 +7,10 @@ from collections.abc import Iterable, Iterator, Sequence
 from inertial.tables import AXES
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
-from inertial.text.numbers import common_decimals, shortened, significant, with_sigma
+from inertial.text.numbers import common_decimals, significant, with_sigma
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
-from stages.report.sections.noise_by_manoeuvre import DATA_SHEET
+from stages.report.sections.data_sheets import DATA_SHEET, of_data_sheets
 from stages.report.sections.noise_figures import allan_figure, spectrum_figure
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSORS, capital
@@ -104,20 +104,7 @@ def _note(terms: Sequence[Record], sheet: Sequence[Record]) -> str:
     """What < means, and whence the data sheet."""
     limit = _("<: upper limit, 95 %; the data do not ask for the term.")
     limits = any(not row["detected"] for row in terms)
-    return " ".join(filter(None, [limit if limits else "", of_data_sheet(sheet)]))
-
-
-def of_data_sheet(sheet: Sequence[Record]) -> str:
-    """Whence the data sheet of each sensor is; nothing without one."""
-    sensors: dict[str, list[str]] = {}
-    for row in sheet:
-        if row["source"] and SENSORS[row["sensor"]] not in sensors.setdefault(row["source"], []):
-            sensors[row["source"]].append(SENSORS[row["sensor"]])
-    each = (
-        _("{sensors}: {source}.", sensors=capital(listed(names)), source=shortened(source, 300))
-        for source, names in sensors.items()
-    )
-    return _("Data sheet. {each}", each=" ".join(each)) if sensors else ""
+    return " ".join(filter(None, [limit if limits else "", of_data_sheets(sheet)]))
 
 
 def _terms_table(sensor: str, rows: Sequence[Record], note: str) -> outline.Table:

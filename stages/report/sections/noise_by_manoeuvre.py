@@ -12,13 +12,12 @@ from inertial.text.messages import _
 from inertial.text.numbers import aligned, common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK
 from stages.report import drawing, outline
-from stages.report.sections.noise import of_data_sheet
+from stages.report.sections.data_sheets import DATA_SHEET, of_data_sheets
 from stages.report.tables import Record, Tables
 from stages.report.words import term
 
 NAME = {"gyro": _("Angle random walk"), "accel": _("Velocity random walk")}
 SENSOR = {"gyro": _("gyroscope"), "accel": _("accelerometer")}
-DATA_SHEET = _("data sheet")
 MOST_ROWS = 48
 MOST_NAMES = 30
 MOST_LEVEL_NAMES = 6  # that have room beside each other
@@ -32,7 +31,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     sheet = {f"{row['sensor']}_{row['axis']}": row["white_noise"] for row in sensors}
     if rows:
         yield _figure(rows, sheet)
-    yield _summary(rows, sheet, of_data_sheet(sensors))
+    yield _summary(rows, sheet, of_data_sheets(sensors))
     if rows:
         yield from (_by_manoeuvre(rows, sensor) for sensor in NAME)
 
