@@ -16,18 +16,30 @@ from inertial.text.units import DEGREE_PER_HOUR, HOUR
 BESIDE = ("studies", "comparison", "compensation")
 
 
-def named_law(plan, name, **told):
+def hiding(plan, name, **told):
+    """What the laboratory is told."""
+    return PLANS[plan](seed=4711, effects={name: told})
+
+
+def named_law(results):
     """The only cause, its law, and the sizes by parameter."""
-    document = PLANS[plan](seed=4711, effects={name: told})
-    results = chain.in_memory_of(document, "diagnosis", BESIDE)
     (cause,) = results["diagnosis/causes"].to_dict("records")
     effects = results["criticism/effects"]
-    own = effects[effects["effect"] == cause["cause"]].set_index("parameter")
-    return results, cause, own
+    return cause, effects[effects["effect"] == cause["cause"]].set_index("parameter")
 
 
-def test_a_cubic_drift_of_one_gyro():
-    results, cause, sizes = named_law("positions", "gyro_cubic_drift", k_deg_h_h3=[0, 4, 0])
+def named_in_memory(document):
+    return named_law(chain.in_memory_of(document, "diagnosis", BESIDE))
+
+
+def test_a_cubic_drift_of_one_gyro_and_the_file_that_proposes_it(tmp_path):
+    derived = tmp_path / "derived"
+    document = hiding("positions", "gyro_cubic_drift", k_deg_h_h3=[0, 4, 0])
+    chain.run(chain.simulate(document, tmp_path / "raw"), derived, "diagnosis", BESIDE)
+    (file,) = (derived / "extension/proposed").iterdir()
+    assert file.name == "gyro_y_power_of_time.py"
+    results = chain.Results(derived)
+    cause, sizes = named_law(results)
     assert (cause["cause"], cause["verdict"]) == ("gyro_y_power_of_time", "law")
     assert sizes.loc["shape_1", "value"] == pytest.approx(3, abs=0.5)
     size, sigma = sizes.loc["k_y", ["value", "sigma"]] / DEGREE_PER_HOUR
@@ -38,17 +50,19 @@ def test_a_cubic_drift_of_one_gyro():
     assert verdict["method"] == "extended"  # the 24 parameters are those with the law in the model
 
 
+@pytest.mark.slow
 def test_a_telegraph_of_one_gyro():
     told = {"height_deg_h": [0, 0, 0.5], "dwell_s": 400.0}
-    _results, cause, sizes = named_law("positions", "gyro_telegraph", **told)
+    cause, sizes = named_in_memory(hiding("positions", "gyro_telegraph", **told))
     assert (cause["cause"], cause["verdict"]) == ("gyro_z_telegraph_of_time", "law")
     apart, sigma = sizes.loc["k_z", ["value", "sigma"]] / DEGREE_PER_HOUR
     assert abs(apart) == pytest.approx(1.0, abs=4 * sigma)  # from −0.5 to 0.5 °/h
 
 
+@pytest.mark.slow
 def test_a_sine_of_the_angle_of_no_whole_order():
     told = {"size_deg_h": [0, 1.5, 0], "order": 2.4, "phase_deg": 30.0}
-    _results, cause, sizes = named_law("stops", "gyro_stray_field", **told)
+    cause, sizes = named_in_memory(hiding("stops", "gyro_stray_field", **told))
     assert (cause["cause"], cause["verdict"]) == ("gyro_y_harmonic_of_angle", "law")
     assert sizes.loc["shape_1", "value"] == pytest.approx(2.4, abs=0.05)
     both = sizes.loc[["k_cos_y", "k_sin_y"], "value"] / DEGREE_PER_HOUR
@@ -57,9 +71,10 @@ def test_a_sine_of_the_angle_of_no_whole_order():
     )
 
 
+@pytest.mark.slow
 def test_a_power_of_the_rate():
     told = {"at_10_deg_s_deg_h": [0, 1, 0], "power": 1.5}
-    _results, cause, sizes = named_law("rates", "gyro_rate_power", **told)
+    cause, sizes = named_in_memory(hiding("rates", "gyro_rate_power", **told))
     assert (cause["cause"], cause["verdict"]) == ("gyro_y_power_of_rate", "law")
     assert sizes.loc["shape_1", "value"] == pytest.approx(1.5, abs=0.1)
     assert sizes.loc["k_y", "value"] / DEGREE_PER_HOUR == pytest.approx(1.0, abs=0.1)
@@ -74,16 +89,6 @@ def test_a_clean_campaign_and_a_random_walk_have_no_law(walk):
 
 
 # ---- Functions, and their search.
-
-
-def test_the_files_are_written_beside_the_tables(tmp_path):
-    document = PLANS["positions"](
-        seed=4711, effects={"gyro_cubic_drift": {"k_deg_h_h3": [0, 4, 0]}}
-    )
-    derived = tmp_path / "derived"
-    chain.run(chain.simulate(document, tmp_path / "raw"), derived, "extension", BESIDE)
-    (file,) = (derived / "extension/proposed").iterdir()
-    assert file.name == "gyro_y_power_of_time.py"
 
 
 def test_means_of_functions_over_stretches():
