@@ -39,7 +39,7 @@ MINUTES = (  # what takes longer than the budget of a mutant
     "test_repeatability.py::test_the_laboratory_s_history_comes_back",
     "test_repeatability.py::test_the_sessions_of_snu_repeat_within_their_sigmas",
 )
-COMPILED = "numba.njit"  # lines that coverage cannot see
+ALL_DURATIONS = ("--durations=0", "--durations-min=0")
 SEED = 20261123
 BUDGET_S = 40.0  # of tests for each mutant
 PATIENCE = 5.0  # times as long as without the fault, and 30 s: a mutant that takes longer hangs
@@ -57,13 +57,12 @@ class Coverage:
     def tests_of(self, file: str, line: int) -> list[str]:
         """The tests that execute a line, the quickest first, within the budget.
 
-        Of a compiled line those that execute any other of its file.
+        Of a line that none is seen to execute, since it is compiled or run by an import, those that
+        execute any other of its file.
         """
         lines = self.lines.get(file, {})
-        found = lines.get(line, [])
-        if not found and COMPILED in (ROOT / file).read_text(encoding="utf-8"):
-            found = sorted(set().union(*lines.values()))
-        found = sorted(found, key=self.seconds.__getitem__)
+        of_file = sorted(set().union(*lines.values()))
+        found = sorted(lines.get(line) or of_file, key=self.seconds.__getitem__)
         chosen: list[str] = []
         total = 0.0
         for test in found:
@@ -91,7 +90,7 @@ def covered(folder: Path) -> Coverage:
         suite = [str(ROOT / "tests" / part) for part in SUITE]
         suite += [f"--deselect=tests/{test}" for test in MINUTES]
         cov = [*(f"--cov=inertial/{room}" for room in ROOMS), "--cov-context=test"]
-        command = pytest_command(*suite, *cov, "--cov-report=", "--durations=0", "-vv")
+        command = pytest_command(*suite, *cov, "--cov-report=", *ALL_DURATIONS)
         env = os.environ | {"COVERAGE_FILE": str(data)}
         done = subprocess.run(command, cwd=ROOT, env=env, stdout=subprocess.PIPE, check=False)
         if done.returncode > SOME_FAILED:
