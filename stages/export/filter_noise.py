@@ -51,7 +51,7 @@ class FilterNoise:
 
     measured_density, measured_walk : (rad/s)/√Hz or (m/s²)/√Hz, and per √s; the walk none where no
         static stretch was long enough
-    walk_is_limit : the data do not ask for a random walk, and this is its upper limit
+    walk_is_limit : no random walk is significant, and this is its upper limit
     density, walk : for a filter, in the same units; the walk none where none was measured
     own_density, own_walk : what the calibration's own errors contribute, none where not known
     """

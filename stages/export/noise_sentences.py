@@ -57,7 +57,7 @@ def numbers(noise: Mapping[str, Sequence[FilterNoise]]) -> Iterator[str]:
         yield from _of_kind(kind, found)
     if any(one.walk_is_limit for found in noise.values() for one in found):
         yield _(
-            "- a random walk after < is an upper limit (95 %): the data do not ask for one. The "
+            "- a random walk after < is an upper limit (95 %): none is significant. The "
             "filter gets the limit, for without a random walk it would trust an old bias forever"
         )
 

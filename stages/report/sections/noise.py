@@ -102,7 +102,7 @@ def _nothing(segments: Iterable[Record]) -> str:
 
 def _note(terms: Sequence[Record], sheet: Sequence[Record]) -> str:
     """What < means, and whence the data sheet."""
-    limit = _("<: upper limit, 95 %; the data do not ask for the term.")
+    limit = _("<: upper limit, 95 %; the term is not significant.")
     limits = any(not row["detected"] for row in terms)
     return " ".join(filter(None, [limit if limits else "", of_data_sheets(sheet)]))
 
