@@ -91,6 +91,15 @@ def test_the_earth_turns_what_moves(axis):
     np.testing.assert_allclose(course.velocity[0][across], deflected[across], rtol=2e-3, atol=1e-4)
 
 
+def test_many_small_steps_are_as_exact_as_few_large_ones():
+    """Five radians about an axis between all others, 5·10⁻⁵ rad or 0.5 rad at a time."""
+    whole = 5.0 * np.array([2.0, -1.0, 2.0]) / 3
+    for n in (100_000, 10):
+        course = navigated(constant(whole, n), np.zeros((n, 3)), 1 / n, STILL, G, np.array([n]))
+        exact = Rotation.from_rotvec(whole).as_matrix()
+        np.testing.assert_allclose(course.attitude[0], exact, atol=1e-9)
+
+
 def test_coning_is_integrated():
     """An axis that describes a cone of half angle θ at ω: ω_b = −ω(sinθ cosωt, sinθ sinωt, 1−cosθ).
 

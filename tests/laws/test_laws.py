@@ -1,5 +1,7 @@
 """Laws of no effect of the catalogue: found with their form, proposed as effects; silence."""
 
+from dataclasses import replace
+
 import chain
 import numpy as np
 import pytest
@@ -100,6 +102,28 @@ def test_means_of_functions_over_stretches():
     np.testing.assert_allclose(ramp * HOUR, [0.0, 150**2 / 2 / 200], rtol=1e-9)
     (levels,) = laws.functions("telegraph", "time", (50 / HOUR, 250 / HOUR), motion, 0).T
     np.testing.assert_allclose(levels, [0.75, 0.25], rtol=1e-9)
+
+
+def test_states_and_their_functions():
+    """A rate that grows, a harmonic of the angle, a temperature that rises by 2 K a minute."""
+    still = stretches(
+        np.array([0.0, 60.0, 120.0]), np.full(3, 4.0), np.array([290.0, 292.0, 294.0])
+    )
+    x_axis, degree = np.eye(3)[0], np.radians(1.0)
+    rates, angles = np.array([10.0, 20.0, -10.0]) * degree, np.array([0.3, 1.0, 2.0])
+    motion = replace(still, about=x_axis, rate=rates, angle=angles, up=np.tile([0, 0, 1.0], (3, 1)))
+    growing = replace(motion, acceleration=np.full(3, degree))
+    later = laws.state("rate", growing, 0)
+    first_of_all = later - later[:, [2]]  # the middle of a stretch is the third of five
+    np.testing.assert_allclose(later[:, 2], [1.0, 2.0, -1.0])
+    assert (np.diff(first_of_all, axis=1) > 0).all()
+    both = laws.functions("harmonic", "angle", (2.4,), motion, 0)
+    first, last = (2.4 * (angles + side * rates * 2.0) for side in (-1, 1))
+    exact = [np.sin(last) - np.sin(first), np.cos(first) - np.cos(last)] / (last - first)
+    np.testing.assert_allclose(both, exact.T, rtol=1e-6)
+    np.testing.assert_allclose(laws.state("temperature_rate", motion, 0)[1], 2.0)
+    loops = laws.grid("hysteresis", "rate", motion, 0)
+    assert np.array(loops).max() < np.ptp(later[:, 2]) / 2
 
 
 def test_noise_reaches_the_odds_as_often_as_said():

@@ -1,0 +1,58 @@
+"""Formulas of effects and of motions against what they stand for, written down a second time."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from inertial.effects import CATALOGUE
+from inertial.effects.gyro_hysteresis import course
+from inertial.physics.effect import Truth
+from inertial.physics.motion import level_axes, stretches
+
+UP = np.array([0.2, -0.3, 0.9]) / np.linalg.norm([0.2, -0.3, 0.9])
+ABOUT = np.array([1.0, 2.0, -0.5]) / np.linalg.norm([1.0, 2.0, -0.5])
+
+
+def turning(rate):
+    """One stretch of a turn about an axis between all others."""
+    still = stretches(np.array([5.0]), np.array([1.0]), np.array([np.nan]))
+    return replace(still, about=ABOUT, rate=np.array([rate]), up=UP[None])
+
+
+def test_a_set_position_that_leans_turns_force_and_rate_alike():
+    """Both are turned by the small angles about the level axes, as tilts of positions are."""
+    effect, motion = CATALOGUE["table_position_error"].fixed(0.0), turning(0.7)
+    truth = Truth(rate=motion.omega, force=9.8 * motion.up)
+    angles = np.array([2e-5, -3e-5])
+    moved = effect.moves(truth, motion, angles)
+    lean = Rotation.from_rotvec(angles @ np.array(level_axes(UP)))
+    np.testing.assert_allclose(moved.force, lean.apply(truth.force), atol=1e-7)
+    np.testing.assert_allclose(moved.rate, lean.apply(truth.rate), atol=1e-8)
+    assert np.abs(moved.force - truth.force).max() > 1e-4
+
+
+def test_friction_follows_the_rate_up_and_down():
+    """Coulomb: after a fall to zero from positive rates −1, at zero again after half the break-away
+    up, 1 after all of it; and the other way round."""  # in units of the largest friction
+    degree = np.radians(1.0)  # the change of the rate from which all of it gives way
+    rates = np.outer([0.0, degree / 2, degree, 5 * degree, 4.5 * degree, 0.0], [1.0, -1.0, 1.0])
+    senses = np.tile([1.0, -1.0, np.nan], (len(rates), 1))
+    friction = course(rates, np.linspace(0, 0.5, len(rates)), senses)
+    np.testing.assert_allclose(friction[:, 0], [-1, 0, 1, 1, 0, -1], atol=1e-12)
+    np.testing.assert_allclose(friction[:, 1], [1, 0, -1, -1, 0, 1], atol=1e-12)
+    np.testing.assert_allclose(friction[:, 2], [0, 1, 1, 1, 0, -1], atol=1e-12)
+
+
+def test_orders_of_a_ripple_end_where_the_last_one_is():
+    orders = CATALOGUE["table_ripple"].grid(turning(0.7))
+    assert (orders[0], orders[-1]) == pytest.approx((1.5, 60.0))
+    np.testing.assert_allclose(np.diff(orders), 0.25)
+
+
+def test_time_since_the_middle_of_a_visit():
+    time = np.array([0.0, 1.0, 2.0, 10.0, 14.0])
+    motion = stretches(time, np.ones(5), np.full(5, np.nan))
+    motion = replace(motion, visit=np.array([0.0, 0.0, 0.0, 1.0, 1.0]))
+    np.testing.assert_allclose(motion.since_middle, [-1.0, 0.0, 1.0, -2.0, 2.0])
