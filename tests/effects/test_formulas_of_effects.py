@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from inertial.effects import CATALOGUE
 from inertial.effects.gyro_hysteresis import course
 from inertial.physics.effect import Truth
+from inertial.physics.forward import Site, Triad, predict
 from inertial.physics.motion import level_axes, stretches
 
 UP = np.array([0.2, -0.3, 0.9]) / np.linalg.norm([0.2, -0.3, 0.9])
@@ -31,6 +32,21 @@ def test_a_set_position_that_leans_turns_force_and_rate_alike():
     np.testing.assert_allclose(moved.force, lean.apply(truth.force), atol=1e-7)
     np.testing.assert_allclose(moved.rate, lean.apply(truth.rate), atol=1e-8)
     assert np.abs(moved.force - truth.force).max() > 1e-4
+
+
+def test_readings_are_the_truth_through_m_and_the_bias():
+    matrix = np.eye(3) + np.arange(9).reshape(3, 3) / 100
+    gyro, accel = (
+        Triad(matrix, np.array([1e-3, -2e-3, 3e-3])),
+        Triad(matrix.T, np.array([3, 2, 1.0])),
+    )
+    north = np.cross([0, 0, 1.0], UP)
+    motion = replace(turning(0.7), north=north[None])
+    reading = predict(motion, Site(9.8, 5e-5, 6e-5), gyro, accel)
+    rate = 0.7 * ABOUT + 5e-5 * UP + 6e-5 * north
+    for found, triad, truth in ((reading.gyro, gyro, rate), (reading.accel, accel, 9.8 * UP)):
+        by_row = [sum(m * t for m, t in zip(row, truth, strict=True)) for row in triad.matrix]
+        np.testing.assert_allclose(found[0], np.array(by_row) + triad.bias, rtol=1e-12)
 
 
 def test_friction_follows_the_rate_up_and_down():
