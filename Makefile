@@ -63,8 +63,8 @@
 #   make screenshots              a campaign's report as a person sees it, wide and narrow, light, dark and
 #                                 printed, into reports/screenshots/; also with CAMPAIGN=<name>
 #   make mutants                  puts faults into the physics, one at a time, and reports which of them the
-#                                 tests detect, in docs/mutants.md; 1200 faults take an hour on two cores,
-#                                 can be resumed; with DRAWS=100 so many of them
+#                                 tests detect, in docs/mutants.md; four or five a minute on two cores, after a
+#                                 quarter of an hour; can be resumed; with DRAWS=100 so many of them
 #   make cluster-test             campaigns through a Slurm of two nodes on this machine, one of which dies;
 #                                 some minutes; it needs root, and Debian's slurm-wlm and munge; with
 #                                 DRAWS=40 so many campaigns (docs/cluster.md)
