@@ -21,9 +21,9 @@ from inertial.physics.effect import Effect
 
 PLAN = "rates"  # shows them all
 RATIO = 10.0  # signal to noise of each effect
-# Sigma of a parameter that is estimated with the others of its group: where an effect shifts the
-# ends of a rest by a few samples, the noise is not wholly the same.
-MAX_ERROR = 0.5
+MAX_ERROR = 0.25  # sigma of a parameter that is estimated with the others of its group
+# It shifts the ends of rests by a few samples, so the noise of the two is not wholly the same.
+MAX_ERROR_OF = {"table_wobble": 0.5}
 BESIDE = ("studies", "comparison")
 # No two of a group are alike, so that each parameter has a small sigma beside the others.
 GROUPS = (
@@ -103,5 +103,5 @@ def test_each_parameter_comes_back(group, sensed, without):
     assert not {
         name: round(float(x), 2)
         for name, x in zip(names, off, strict=True)
-        if not abs(x) < MAX_ERROR
+        if not abs(x) < MAX_ERROR_OF.get(group[0], MAX_ERROR)
     }
