@@ -22,7 +22,8 @@ from inertial.physics.effect import Effect
 PLAN = "rates"  # shows them all
 RATIO = 10.0  # signal to noise of each effect
 MAX_ERROR = 0.25  # sigma of a parameter that is estimated with the others of its group
-# It shifts the ends of rests by a few samples, so the noise of the two is not wholly the same.
+# Readings are rounded to counts, differently with the effects: that leaves 0.1 to 0.3 sigma, of
+# which the two parameters of a wobble show most.
 MAX_ERROR_OF = {"table_wobble": 0.5}
 BESIDE = ("studies", "comparison")
 # No two of a group are alike, so that each parameter has a small sigma beside the others.
