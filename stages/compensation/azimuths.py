@@ -73,6 +73,8 @@ def _horizontal(rests: Sequence[tuple[StaticPosition, Array, Array]], gain: Arra
         weights = np.nan_to_num(each)
         information = information + (columns.T * weights.sum(axis=0)) @ columns
         right = right + columns.T @ (weights * np.nan_to_num(left)).sum(axis=0)
+    if not information.any():  # at a pole, or without readings
+        return np.zeros(2)
     prior = PRIOR_INFORMATION * np.eye(2)
     found: Array = np.asarray(np.linalg.solve(information + prior, right), np.float64)
     for _ in range(ITERATIONS):

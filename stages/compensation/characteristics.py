@@ -152,7 +152,7 @@ def _of_axis(
 
 
 def _threshold(limits: Limits, largest: float, by_counts: float | None) -> dict[str, Any]:
-    """Of an input that is not small it says nothing that it is sensed."""
+    """The limits; an input that is sensed gives an upper one only where it is small."""
     if limits.upper is not None and limits.upper > MAX_THRESHOLD * largest:
         return _limit(replace(limits, upper=None), by_counts, NO_SMALL_INPUT)
     return _limit(limits, by_counts, NOT_SENSED)
