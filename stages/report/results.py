@@ -48,6 +48,8 @@ KIND = {
     "mounting": _("Mounting rotation of the sensor triad against the case"),
     "symmetric": _("Non-orthogonality: the symmetric part P of M = P R"),
 }
+KIND_IN_A_SENTENCE = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
+BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
 CALIBRATION = frozenset(
     [f"{kind}_{axis}" for kind in ("bias", "scale") for axis in AXES]

@@ -14,8 +14,7 @@ from inertial.text.parameters import PARTS
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
 from stages.report.drawing import Array
-from stages.report.results import Estimate, by_kind, kind_of
-from stages.report.sections.comparisons import BIAS_UNIT
+from stages.report.results import BIAS_UNIT, Estimate, by_kind, kind_of
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, plain, sensor_of_stage
 

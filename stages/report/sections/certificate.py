@@ -38,6 +38,7 @@ from stages.report.outline import (
     table_row,
 )
 from stages.report.results import (
+    KIND_IN_A_SENTENCE,
     RESULT_TABLES,
     Estimate,
     final_results,
@@ -390,7 +391,7 @@ def _conformity(tables: Tables) -> Iterator[Part]:
 
 
 def _in_order(key: tuple[str, str, str]) -> tuple[str, str, int]:
-    return key[0], key[1], list(KINDS).index(key[2])
+    return key[0], key[1], list(KIND_IN_A_SENTENCE).index(key[2])
 
 
 def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
@@ -405,7 +406,9 @@ def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
         if one in each
     ]
     risks = [row["risk"] for row in rows if row["risk"] is not None]
-    name = f"{capital(SENSOR[sensor])}, {KINDS[kind]}" + (f" ({mount})" if mount else "")
+    name = f"{capital(SENSOR[sensor])}, {KIND_IN_A_SENTENCE[kind]}" + (
+        f" ({mount})" if mount else ""
+    )
     tone = "" if set(each) == {"conforms"} else "poor" if "does_not_conform" in each else "fair"
     return table_row(
         name,
@@ -415,9 +418,6 @@ def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
         _risk(max(risks)) if risks else "—",
         tone=tone,  # type: ignore[arg-type]
     )
-
-
-KINDS = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
 
 
 def _risk(risk: float) -> str:

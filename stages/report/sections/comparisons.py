@@ -16,7 +16,7 @@ from inertial.text.parameters import SENSOR_OF
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
-from stages.report.results import KIND, RESULT_TABLES, final_results
+from stages.report.results import BIAS_UNIT, KIND, RESULT_TABLES, final_results
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, parameter, with_mount
 
@@ -183,7 +183,6 @@ VERDICTS = {
     "on_condition": _("on condition:"),
     "not_usable": _("not usable"),
 }
-BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 Key = tuple[str, str, str]  # mount, sensor and parameter
 Calibration = Mapping[Key, Record]  # the parameters of the result that counts
 

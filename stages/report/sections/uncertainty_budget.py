@@ -14,6 +14,7 @@ from inertial.text.numbers import significant
 from stages.report.drawing import Margins, panels, style, svg
 from stages.report.outline import Column, Figure, Part, Row, Section, Table, columns, table_row
 from stages.report.results import (
+    KIND_IN_A_SENTENCE,
     RESULT_TABLES,
     by_kind,
     final_results,
@@ -21,7 +22,6 @@ from stages.report.results import (
     quantity_of,
     symbol,
 )
-from stages.report.sections.certificate import KINDS
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR, capital, with_mount
 
@@ -82,7 +82,7 @@ SECTION = Section(
 
 def _in_order(item: tuple[tuple[str, str, str], list[Record]]) -> tuple[str, str, int]:
     (sensor, mount, kind), _rows = item
-    return sensor, mount, list(KINDS).index(kind)
+    return sensor, mount, list(KIND_IN_A_SENTENCE).index(kind)
 
 
 def _shares(key: tuple[str, str, str], rows: Sequence[Record], there: Sequence[str]) -> Row:
@@ -95,7 +95,7 @@ def _shares(key: tuple[str, str, str], rows: Sequence[Record], there: Sequence[s
         for source in there
     ]
     return table_row(
-        with_mount(f"{capital(SENSOR[sensor])}, {KINDS[kind]}", mount),
+        with_mount(f"{capital(SENSOR[sensor])}, {KIND_IN_A_SENTENCE[kind]}", mount),
         significant(unit.of(float(np.sqrt(max(variances)))), 2),
         unit.name,
         *("–" if share < MIN_SHARE else significant(100 * share, 2) for share in shares),
