@@ -101,7 +101,7 @@ def _of_table(
 
 
 def _earth_rate(latitude_deg: float | None) -> Iterator[Row]:
-    """Its parts upwards and level, rad/s."""
+    """The latitude, rad, where it is stated, and the parts upwards and level, rad/s."""
     if latitude_deg is None:
         # A direction of which nothing is known: each part has a third of the squared rate.
         unknown = _("assumed, for the latitude is not known")
@@ -114,8 +114,9 @@ def _earth_rate(latitude_deg: float | None) -> Iterator[Row]:
     up_sigma, level_sigma = (
         EARTH_RATE * abs(share) * ASSUMED_LATITUDE for share in (cos(latitude), sin(latitude))
     )
-    computed = _("computed from the latitude, whose sigma is assumed as 0.01°")
-    yield _row("earth_rate_up", up, up_sigma, "rad/s", computed)
+    stated = _("stated; its sigma is assumed")
+    yield _row("latitude", latitude, ASSUMED_LATITUDE, "rad", stated)
+    yield _row("earth_rate_up", up, up_sigma, "rad/s", _("computed from the latitude"))
     neglected = _(
         "computed from the latitude; its sigma, {sigma} °/h, is neglected",
         sigma=significant(level_sigma / DEGREE_PER_HOUR, 2),

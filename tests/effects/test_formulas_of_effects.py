@@ -8,7 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from inertial.effects import CATALOGUE
 from inertial.effects.gyro_hysteresis import course
-from inertial.physics.effect import Truth
+from inertial.effects.table_axis_non_orthogonality import _middle
+from inertial.effects.thermal_hysteresis import turned_over
+from inertial.physics.effect import Reading, Truth
 from inertial.physics.forward import Site, Triad, predict
 from inertial.physics.motion import level_axes, stretches
 
@@ -72,3 +74,41 @@ def test_time_since_the_middle_of_a_visit():
     motion = stretches(time, np.ones(5), np.full(5, np.nan))
     motion = replace(motion, visit=np.array([0.0, 0.0, 0.0, 1.0, 1.0]))
     np.testing.assert_allclose(motion.since_middle, [-1.0, 0.0, 1.0, -2.0, 2.0])
+
+
+def test_gyros_mounted_askew_show_the_rate_of_the_earth_as_well():
+    effect, angles = CATALOGUE["gyro_accel_misalignment"].fixed(0.0), np.array([1e-3, -2e-3, 3e-3])
+    for rate in (0.0, 0.7):
+        motion = turning(rate)
+        truth = Truth(rate=motion.omega + 5e-5 * UP, force=9.8 * motion.up)
+        moved = effect.moves(truth, motion, angles)
+        np.testing.assert_allclose(moved.rate - truth.rate, np.cross(truth.rate, angles))
+
+
+def test_a_dead_band_takes_from_the_rate_along_the_axis_and_not_from_the_bias():
+    """At rest with z up and down, 10 °/h of the earth, in a band of 12 °/h that loses a half."""
+    earth = np.radians(10.0) / 3600
+    still = stretches(np.array([5.0, 15.0]), np.ones(2), np.full(2, np.nan))
+    motion = replace(still, up=np.array([[0, 0, 1.0], [0, 0, -1.0]]))
+    truth = Truth(rate=earth * motion.up, force=9.8 * motion.up)
+    reading = Reading(truth.rate + 3e-4, truth.force)
+    effect = CATALOGUE["gyro_dead_band_z"].fixed(1.2 * earth)
+    lost = reading.gyro - effect.reads(reading, truth, motion, np.array([0.5])).gyro
+    np.testing.assert_allclose(lost, truth.rate / 2, atol=1e-15)
+
+
+def test_the_middle_axis_of_a_table_is_one_line_whichever_way_the_case_leans():
+    """Leaning by 0.3 rad east and west about an axis that points north: the same axis, and as
+    far backwards as forwards."""
+    lean = np.array([0.3, -0.3, 0.3])
+    up = np.column_stack([np.sin(lean), 0 * lean, np.cos(lean)])
+    line, sine = _middle(up, np.tile([0.0, 1.0, 0.0], (3, 1)))
+    np.testing.assert_allclose(line, np.tile(line[0], (3, 1)), atol=1e-12)
+    np.testing.assert_allclose(np.abs(line[0]), [0, 1, 0], atol=1e-12)
+    np.testing.assert_allclose(sine, np.sin(0.3) * np.array([1, -1, 1]), atol=1e-12)
+
+
+def test_hysteresis_of_temperature_begins_where_the_temperature_does():
+    course = np.array([290.0, 300.0, 310.0, 296.0])
+    motion = stretches(np.arange(4.0), np.ones(4), course)
+    np.testing.assert_allclose(turned_over(motion, 5.0), [0.0, 1.0, 1.0, -1.0])

@@ -125,6 +125,11 @@ def test_states_and_their_functions():
     exact = [np.sin(last) - np.sin(first), np.cos(first) - np.cos(last)] / (last - first)
     np.testing.assert_allclose(both, exact.T, rtol=1e-6)
     np.testing.assert_allclose(laws.state("temperature_rate", motion, 0)[1], 2.0)
+    hours = replace(motion, time=np.array([0.0, 3600.0, 7200.0]))
+    unknown = replace(hours, temperature=np.array([290.0, 292.0, np.nan]))
+    assert np.isnan(laws.temperature_rate(unknown)).all()  # not only about the one that lacks
+    cycles = np.array(laws.grid("harmonic", "rate", motion, 0))[:, 0] * 3 / (2 * np.pi)
+    np.testing.assert_allclose(np.diff(cycles), 1 / 3)  # over the span of 30 °/s
     loops = laws.grid("hysteresis", "rate", motion, 0)
     assert np.array(loops).max() < np.ptp(later[:, 2]) / 2
 

@@ -59,20 +59,9 @@ def known() -> Rows:
         | {"assumed": origin.startswith("assumed")}
         for q, value, sigma, unit, origin in (
             ("gravity", GRAVITY, 5e-5, "m/s²", "stated in the campaign file"),
-            (
-                "earth_rate_up",
-                3.7039e-5,
-                1.1e-8,
-                "rad/s",
-                "computed from the latitude, whose sigma is assumed as 0.01°",
-            ),
-            (
-                "earth_rate_level",
-                6.2813e-5,
-                None,
-                "rad/s",
-                "computed from the latitude, whose sigma is assumed as 0.01°",
-            ),
+            ("latitude", 30.5278 * DEGREE, 0.01 * DEGREE, "rad", "stated; its sigma is assumed"),
+            ("earth_rate_up", 3.7039e-5, 1.1e-8, "rad/s", "computed from the latitude"),
+            ("earth_rate_level", 6.2813e-5, None, "rad/s", "computed from the latitude"),
             ("heading", None, None, "rad", "not known"),
             ("position", 0.0, 2 * arc_second, "rad", "stated in the campaign file"),
             ("turn_angle", 0.0, 2 * arc_second, "rad", "stated in the campaign file"),

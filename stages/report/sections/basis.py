@@ -230,6 +230,7 @@ def _refused(lines: Sequence[Record]) -> Iterator[Table]:
 
 NAME = {
     "gravity": _("gravity"),
+    "latitude": _("latitude"),
     "earth_rate_up": _("earth rate, vertical component"),
     "earth_rate_level": _("earth rate, horizontal component"),
     "heading": _("azimuth of the table's zero mark"),
@@ -238,6 +239,7 @@ NAME = {
     "turn_rate": _("rate of the table, relative"),
 }
 UNIT = {
+    "latitude": units.DEGREES,
     "earth_rate_up": units.DEGREES_PER_HOUR,
     "earth_rate_level": units.DEGREES_PER_HOUR,
     "heading": units.DEGREES,

@@ -12,7 +12,6 @@ from inertial.text.statements import (
     NOT_STATED,
     REALISES,
     RULES,
-    STATED,
     STATEMENTS,
     THIS_ITEM_ONLY,
     TRACEABILITY,
@@ -221,9 +220,11 @@ def _known(tables: Tables) -> Iterator[tuple[str, str, str]]:
         value, error = numbers.with_sigma(gravity["value"], spread, numbers.decimals_of(spread))
         text = f"{value} m/s²" + (f", U = {error} m/s²" if spread else "")
         yield capital(term("gravity")), text, gravity["origin"]
-    latitude = DEGREES.of(tables.row("campaign")["latitude"])
-    if latitude is not None:
-        yield capital(term("latitude")), f"{numbers.fixed(latitude, 4)}°", STATED
+    if latitude := known.get("latitude"):
+        spread = DEGREES.of(COVERAGE_FACTOR * latitude["sigma"])
+        text = f"{numbers.fixed(DEGREES.of(latitude['value']), 4)}°"
+        text += f", U = {numbers.significant(spread, 2)}°"
+        yield capital(term("latitude")), text, latitude["origin"]
     sources = {row["source"] for row in tables.rows("uncertainty_budget")}
     for quantity, source in TABLE_ERRORS.items():
         row = known.get(quantity)
