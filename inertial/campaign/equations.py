@@ -90,10 +90,14 @@ class Campaign:
     @property
     def manoeuvres(self) -> list[str]:
         """The manoeuvres in the equations, in the order of the plan."""
-        names = [position.manoeuvre.name for position in self.inputs.static_positions]
-        names += [recorded.plan.name for recorded in self._whole]
-        names += [name for name, _, _ in self.static_forces]
+        names = [*self._gyro_names, *(name for name, _, _ in self.static_forces)]
         return list(dict.fromkeys([*names, *(self.by_hand.moving if self.by_hand else ())]))
+
+    @property
+    def _gyro_names(self) -> list[str]:
+        """Of the gyros' static positions, then of their rotations."""
+        names = [position.manoeuvre.name for position in self.inputs.static_positions]
+        return [*names, *(recorded.plan.name for recorded in self._whole)]
 
     @property
     def _whole(self) -> list[Recorded]:
@@ -126,6 +130,17 @@ class Campaign:
         """Which stretches of `motion` are those of a sensor, `gyro` or `accel`."""
         gyros = sum(len(motion.rate) for motion in self.gyro_motions)
         return slice(0, gyros) if sensor == "gyro" else slice(gyros, len(self.motion.rate))
+
+    def manoeuvres_of(self, sensor: str) -> list[str]:
+        """The manoeuvre of each of its `stretches`, of a sensor that is simulated."""
+        if sensor == "gyro":
+            names = [*self._gyro_names, *(self.by_hand.moving if self.by_hand else ())]
+            motions = self.gyro_motions
+        else:
+            names = [name for name, _, _ in self.static_forces]
+            motions = [motion for _, _, motion in self.static_forces]
+        each = zip(names, motions, strict=True)
+        return [name for name, motion in each for _ in range(len(motion.rate))]
 
     def candidates(self, effects: Sequence[Effect]) -> dict[str, list[Effect]]:
         """Each effect by its name, once for every value of its scanned parameter."""
@@ -255,9 +270,15 @@ class Campaign:
             for i in (0, 1)
         )
 
-    def system(self, sensor: str, effects: Sequence[Effect], prior_sigma: float) -> System | None:
+    def system(
+        self,
+        sensor: str,
+        effects: Sequence[Effect],
+        prior_sigma: float,
+        only: set[str] | None = None,
+    ) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
-        return self._system(sensor, effects, _prior_sigmas(effects, prior_sigma), None)
+        return self._system(sensor, effects, _prior_sigmas(effects, prior_sigma), only)
 
     def equations(
         self, sensor: str, effects: Sequence[Effect], prior_sigma: float, *, walking: bool = False
@@ -325,9 +346,7 @@ class Campaign:
             carried = self._carried(self.by_hand, effects, prior_sigmas)
             drifting = carried.drifting(self.by_hand.scatter, self.by_hand.used(only))
             return replace(drifting, measured=self.drifts["gyro"])
-        names = [position.manoeuvre.name for position in self.inputs.static_positions]
-        names += [recorded.plan.name for recorded in self._whole]
-        used = [only is None or name in only for name in names]
+        used = [only is None or name in only for name in self._gyro_names]
         if not any(used):
             return None
         equations = replace(

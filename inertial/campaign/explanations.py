@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from inertial.campaign.hypotheses import MODEL, POSITIONS, Hypothesis
+from inertial.campaign.hypotheses import MAX_CARRYING, MODEL, POSITIONS, Hypothesis
 
 Where = Callable[[Hypothesis, Hypothesis], bool]
 
@@ -271,7 +271,19 @@ def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
         return cause.sensor == other.sensor and _generality(cause) < _generality(other)
     if cause.stage in (MODEL, POSITIONS):
         return False
-    return _unresolved(cause) and same_axis(cause, other)
+    return _unresolved(cause) and same_axis(cause, other) and _reaches(cause, other)
+
+
+def _reaches(fault: Hypothesis, structure: Hypothesis) -> bool:
+    """Whether a fault touches all of the few manoeuvres that carry a structure of the residuals.
+
+    One that no few carry is not of a fault that touches few.
+    """
+    if structure.cause != "unknown_structure" or not fault.manoeuvres:
+        return True
+    if structure.manoeuvres:
+        return structure.manoeuvres <= fault.manoeuvres
+    return len(fault.manoeuvres) > MAX_CARRYING
 
 
 def _unresolved(fault: Hypothesis) -> bool:

@@ -17,13 +17,15 @@ RECORDING, PLAN, POSITIONS, MODEL = "quality", "segment", "accelerometer", "crit
 COUNTS = "gyroscope"  # the stage that finds counts of another size than stated
 RIVAL = "rival"  # state of a repair that others explain as well
 PLANNED = "plan"  # the stage that repairs what the campaign file states
+MAX_CARRYING = 3  # manoeuvres that carry a structure of the residuals; it is elsewhere with more
 
 
 @dataclass(frozen=True)
 class Hypothesis:
     """What would have to be true, where, how large, how sure, and what was done about it.
 
-    `stage`: whose finding it is; `manoeuvres`: those whose records it touches; `verdict`: of
+    `stage`: whose finding it is; `manoeuvres`: those whose records it touches, or without which
+    it is not there, none where that is not known or they are many; `verdict`: of
     criticism, else empty; `members`: effects that it may be, the most probable first;
     `repair`: the row of the repair that undoes it, if any; `rivals`: of repairs of which each
     would, so that none is applied; `masked`: whether its records are.
@@ -82,6 +84,7 @@ class Findings:
     criticism_findings: pd.DataFrame
     members: pd.DataFrame
     cause_positions: pd.DataFrame
+    structure_manoeuvres: pd.DataFrame
     plan_repairs: pd.DataFrame
     segment_repairs: pd.DataFrame
     channel_repairs: pd.DataFrame
@@ -114,7 +117,9 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
     repair_of, without = _repairs(findings)
     positions = rows_of(findings.cause_positions)
     place = {row["finding"]: row["position"] for row in positions if row["rank"] == 1}
-    touched = _touched(findings)
+    touched, carrying = _touched(findings), dict[str, set[str]]()
+    for row in rows_of(findings.structure_manoeuvres):
+        carrying.setdefault(row["finding"], set()).add(row["manoeuvre"])
     for stage, rows in findings.by_stage.items():
         for row in rows:
             row = row | {"manoeuvre": row["manoeuvre"] or place.get(row["id"])}
@@ -124,7 +129,9 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
                 stage=stage,
                 cause=row["cause"],
                 row=row,
-                manoeuvres=frozenset(own | touched.get(row["id"], set())),
+                manoeuvres=frozenset().union(
+                    own, touched.get(row["id"], ()), carrying.get(row["id"], ())
+                ),
                 verdict=row.get("verdict") or "",
                 members=tuple(members.get(row["id"], ())),
                 repair=next(iter(repair_of.get(row["id"], ())), None),

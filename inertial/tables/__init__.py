@@ -118,6 +118,7 @@ from inertial.tables.unmodelled import (
     SCORE_VECTOR,
     SCORES,
     SIMULATED,
+    STRUCTURE_MANOEUVRES,
     STRUCTURE_POINTS,
     STRUCTURES,
     WORTH,

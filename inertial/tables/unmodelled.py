@@ -134,6 +134,16 @@ CAUSE_POSITIONS = Table(
         Column("statistic", DOUBLE, "1", "reduction of chi-squared by the effect at this position"),
     ),
 )
+STRUCTURE_MANOEUVRES = Table(
+    "structure_manoeuvres",
+    1,
+    (
+        Column("finding", TEXT, "", "id of a finding about a structure that few manoeuvres carry"),
+        MOUNT,
+        Column("rank", INTEGER, "1", "1 for the one that contributes most"),
+        Column("manoeuvre", TEXT, "", "as in manoeuvres: without all of them no test detects any"),
+    ),
+)
 DETECTION_LIMITS = Table(
     "detection_limits",
     1,

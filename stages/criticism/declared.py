@@ -18,6 +18,7 @@ DECLARED = Declared(
         "random_walks": tables.RANDOM_WALKS,
         "structures": tables.STRUCTURES,
         "structure_points": tables.STRUCTURE_POINTS,
+        "structure_manoeuvres": tables.STRUCTURE_MANOEUVRES,
         "findings": tables.EFFECT_FINDINGS,
         "members": tables.MEMBERS,
         "cause_positions": tables.CAUSE_POSITIONS,

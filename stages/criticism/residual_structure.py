@@ -5,13 +5,14 @@ walks enter as they do there.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.equations import Campaign
+from inertial.campaign.hypotheses import MAX_CARRYING
 from inertial.model_selection.cause import UNKNOWN_STRUCTURE
 from inertial.model_selection.structure_tests import (
     TESTS,
@@ -23,6 +24,7 @@ from inertial.model_selection.structure_tests import (
 from inertial.physics.effect import Array, Effect, Parameter, Reading
 from inertial.physics.motion import Motion
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant
 from stages.criticism.finding_rows import (
@@ -40,7 +42,7 @@ PRIOR_SIGMA = 1e4  # of a named effect's parameters, in their typical sizes
 SOLVED = {"gyro": "gyro", "accel": "accelerometer"}  # of a sensor in the joint result
 AXES = "xyz"
 BINS = 60  # of a figure
-MIN_INFORMATION = 1e-6  # of that of a function alone; with less the function counts as fitted
+MIN_INFORMATION = 1e-6  # of that of a function alone; with less the function counts as absorbed
 
 
 class Functions(Effect):
@@ -65,11 +67,21 @@ class Functions(Effect):
 
 
 @dataclass(frozen=True)
-class Tested:
-    """The six tests of the residuals of one mount given the named effects."""
+class Fitted:
+    """What residuals are of: one mount, the named effects, and the manoeuvres used, None: all."""
 
     campaign: Campaign
     named: Sequence[Effect]
+    only: frozenset[str] | None = None
+
+
+@dataclass(frozen=True)
+class Tested:
+    """The six tests of the residuals; `noise_degrees`, `level`: as in `structure_tests`."""
+
+    fitted: Fitted
+    noise_degrees: float
+    level: float
     tests: Sequence[Structure]
 
     @property
@@ -103,21 +115,65 @@ def structure_tests(
 
     `level`: accepted probability that any detects a structure where there is none.
     """
+    return _tests(Fitted(campaign, named), noise_degrees, level)
+
+
+def _tests(fitted: Fitted, noise_degrees: float, level: float) -> Tested:
     equations = [
         equation
         for sensor in SOLVED
         for axis in range(3)
-        for degrees in [campaign.noise_degrees(sensor, noise_degrees)]
-        for equation in _equations(campaign, named, sensor, axis, degrees)
+        for degrees in [fitted.campaign.noise_degrees(sensor, noise_degrees)]
+        for equation in _equations(fitted, sensor, axis, degrees)
     ]
-    return Tested(campaign, named, structures(equations, level))
+    return Tested(fitted, noise_degrees, level, structures(equations, level))
+
+
+def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
+    """The manoeuvres without which a sensor has no structure; none where no few carry it.
+
+    They are left out one after the other, each time that without which the most significant
+    structure explains least; those that turn out not to be needed are put back.
+    """
+    campaign = tested.fitted.campaign
+    names = list(dict.fromkeys(campaign.manoeuvres_of(sensor)))
+
+    def without(some: Sequence[str]) -> Fitted:
+        return replace(tested.fitted, only=frozenset(campaign.manoeuvres).difference(some))
+
+    def found(some: Sequence[str]) -> list[Structure]:
+        return _tests(without(some), tested.noise_degrees, tested.level).of(sensor)
+
+    left_out, remaining = list[str](), tested.of(sensor)
+    while remaining and len(left_out) < min(MAX_CARRYING, len(names) // 2):
+        others = [name for name in names if name not in left_out]
+        explained = [_explained(without([*left_out, name]), remaining[0]) for name in others]
+        left_out.append(others[int(np.argmin(explained))])
+        remaining = found(left_out)
+    for name in left_out[:-1]:
+        fewer = [other for other in left_out if other != name]
+        if not remaining and not found(fewer):
+            left_out = fewer
+    return () if remaining else tuple(left_out)
+
+
+def _explained(fitted: Fitted, test: Structure) -> float:
+    """The reduction of χ² by a structure as it was fitted, but for its size."""
+    chosen, values = test.values
+    assert test.equations is not None  # it is detected
+    structure = test.equations.tested.functions[:, chosen] @ values
+    own = [structure[:, None]]
+    rest, columns, _ = _residuals(fitted, test.sensor, AXES.index(test.axis), own)
+    information = float(columns[:, 0] @ columns[:, 0])
+    return float(columns[:, 0] @ rest) ** 2 / information if information > 0 else 0.0
 
 
 def points(tested: Tested, test: Structure) -> Iterator[Point]:
     """The residuals in bins along which a structure is detected, all else as fitted."""
     sensor, axis = test.sensor, test.axis
-    own = tested.campaign.stretches(sensor)
-    conditions = conditions_of(tested.campaign.motion, own, sensor, AXES.index(axis))
+    campaign = tested.fitted.campaign
+    own = campaign.stretches(sensor)
+    conditions = conditions_of(campaign.motion, own, sensor, AXES.index(axis))
     abscissa = _abscissa(conditions, test.kind, AXES.index(axis))
     bins = [group for group in _bins(abscissa) if len(group)]
     chosen, values = test.values
@@ -126,7 +182,7 @@ def points(tested: Tested, test: Structure) -> Iterator[Point]:
     shown[:, 0] = test.equations.tested.functions[:, chosen] @ values
     for column, group in enumerate(bins, 1):
         shown[group, column] = 1.0
-    rest, columns, _ = _residuals(tested.campaign, tested.named, sensor, AXES.index(axis), [shown])
+    rest, columns, _ = _residuals(tested.fitted, sensor, AXES.index(axis), [shown])
     for column, group in enumerate(bins, 1):
         own_column = columns[:, column]
         information = float(own_column @ own_column)
@@ -158,8 +214,9 @@ def _bins(abscissa: Array) -> list[Integers]:
 
 
 def _equations(
-    campaign: Campaign, named: Sequence[Effect], sensor: str, axis: int, noise_degrees: float
+    fitted: Fitted, sensor: str, axis: int, noise_degrees: float
 ) -> Iterator[ScoreEquations]:
+    campaign = fitted.campaign
     if getattr(campaign.solution, SOLVED[sensor]) is None:
         return
     conditions = conditions_of(campaign.motion, campaign.stretches(sensor), sensor, axis)
@@ -167,7 +224,7 @@ def _equations(
     if not tested:
         return  # nothing of this sensor is simulated
     functions = [groups.functions for _, groups in tested]
-    rest, columns, degrees = _residuals(campaign, named, sensor, axis, functions)
+    rest, columns, degrees = _residuals(fitted, sensor, axis, functions)
     first = 0
     for kind, groups in tested:
         own = slice(first, first + groups.functions.shape[1])
@@ -187,25 +244,22 @@ def _equations(
 
 
 def _residuals(
-    campaign: Campaign,
-    named: Sequence[Effect],
-    sensor: str,
-    axis: int,
-    functions: Sequence[Array],
+    fitted: Fitted, sensor: str, axis: int, functions: Sequence[Array]
 ) -> tuple[Array, Array, int]:
     """The residuals, (m,), the functions with all that is fitted removed, (m, k), and the degrees.
 
     `functions`: of the stretches of the sensor.
     """
+    campaign = fitted.campaign
     whole = np.zeros((len(campaign.motion.rate), sum(each.shape[1] for each in functions)))
     whole[campaign.stretches(sensor)] = np.hstack(list(functions))
-    system = campaign.system(
-        sensor, [*named, Functions(sensor, axis, "tested", whole)], PRIOR_SIGMA
-    )
+    effects = [*fitted.named, Functions(sensor, axis, "tested", whole)]
+    only = None if fitted.only is None else set(fitted.only)
+    system = campaign.system(sensor, effects, PRIOR_SIGMA, only)
     assert system is not None  # else there are no tests
-    rest, columns, raw = system.projected(sum(len(effect.parameters) for effect in named))
-    fitted = np.sum(columns**2, axis=0) < MIN_INFORMATION * raw
-    return rest, np.where(fitted, 0.0, columns), system.rows - system.parameters
+    rest, columns, raw = system.projected(sum(len(effect.parameters) for effect in fitted.named))
+    absorbed = np.sum(columns**2, axis=0) < MIN_INFORMATION * raw
+    return rest, np.where(absorbed, 0.0, columns), system.rows - system.parameters
 
 
 def conditions_of(motion: Motion, part: slice, sensor: str, axis: int) -> Conditions:
@@ -232,11 +286,14 @@ SCAN_UNITS = {"time": "Hz", "change": "s", "angle": "cycles per revolution"}
 
 NOT_NOISE = _("The residuals of the {sensors} are not noise: {description} ({p_value}).")
 ALSO = _("The structure shows in {others} too.")
+CARRIED = _("Without {manoeuvres} the tests detect none.")
+NOT_CARRIED = _("No one, two or three manoeuvres carry it alone.")
 CONSEQUENCE = _(
     "The joint result stands as it is: no effect by name is added to it for this "
     "sensor, and its sigmas do not allow for the structure."
 )
-ACTION = _("Look at the picture of the residuals; record the manoeuvres concerned again.")
+ACTION = _("Look in the picture of the residuals for what they depend on.")
+ACTION_IF_CARRIED = _("Look at the picture of the residuals; record {manoeuvres} again.")
 DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is known
     ("time", True): _("about {axis} they oscillate in time, every {period} s"),
     ("time", False): _("about {axis} they drift smoothly with time"),
@@ -281,20 +338,23 @@ def structure_rows(
         shared |= {"x_unit": X_UNITS[test.kind], "unit": UNITS[test.sensor]}
         for point in points(tested, test):
             yield "structure_points", shared | asdict(point)
-    for sensor, words in SENSORS.items():
+    for sensor in SENSORS:
         if sensor in reported:
-            yield from _finding(tested.of(sensor), sensor, words, reported[sensor], mount)
+            yield from _finding(tested, sensor, reported[sensor], mount)
 
 
 def _finding(
-    tests: Sequence[Structure], sensor: str, words: str, consistent: Sequence[str], mount: str
+    tested: Tested, sensor: str, consistent: Sequence[str], mount: str
 ) -> Iterator[TableRow]:
-    best = tests[0]
+    tests, carried = tested.of(sensor), carrying(tested, sensor)
+    best, described = tests[0], _description(tests[0])
     sentence = [
-        NOT_NOISE.format(sensors=words, description=_description(best), p_value=p_is(best.p_value))
+        NOT_NOISE.format(sensors=SENSORS[sensor], description=described, p_value=p_is(best.p_value))
     ]
     if others := [_name(test) for test in tests[1:]]:
         sentence.append(ALSO.format(others=_(" and in ").join(others)))
+    sentence.append(CARRIED.format(manoeuvres=listed(carried)) if carried else NOT_CARRIED)
+    action = ACTION_IF_CARRIED.format(manoeuvres=listed(carried)) if carried else ACTION
     if consistent:
         names = _(" and ").join(in_words(name) for name in consistent)
         sentence.append(ONLY_CONSISTENT.format(effects=names))
@@ -313,7 +373,7 @@ def _finding(
             "severity": 2,
             "sentence": " ".join(sentence),
             "consequence": CONSEQUENCE,
-            "action": ACTION,
+            "action": action,
             "verdict": UNKNOWN_STRUCTURE,
             "statistic": best.statistic,
             "degrees": best.degrees,
@@ -321,6 +381,9 @@ def _finding(
         },
     )
     yield from member_rows(identifier, mount, consistent)
+    for rank, manoeuvre in enumerate(carried, 1):
+        row = {"finding": identifier, "mount": mount, "rank": rank, "manoeuvre": manoeuvre}
+        yield "structure_manoeuvres", row
 
 
 def _description(test: Structure) -> str:

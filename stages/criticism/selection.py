@@ -52,7 +52,8 @@ class Selection:
     about as well what the random walk explains; `searched`: the columns of each effect in
     `evidence`; `families`: its candidates by its name, in the order of
     `SearchedEffect.candidates`; `limits`: the detection limits;
-    `rivals`: by effect the random walk that is as likely, and the log odds of the effect.
+    `rivals`: by effect the random walk that is as likely, and the log odds of the effect;
+    `of_structure`: by effect of both sensors that with the structure in whose residuals it is seen.
     """
 
     campaign: Campaign
@@ -63,6 +64,7 @@ class Selection:
     named: Named
     limits: Sequence[Visible]
     rivals: Mapping[str, tuple[str, float]] = field(default_factory=dict)
+    of_structure: Mapping[str, str] = field(default_factory=dict)
 
     def prior(self, effect: SearchedEffect) -> Array:
         """The share of each value of a scan: that of its range which is nearest to it."""
@@ -116,18 +118,36 @@ class Selection:
         return self.campaign.solution.random_walks
 
     def without_certain_names(self, sensors: Sequence[str]) -> "Selection":
-        """The same with structure in the residuals of these sensors, so no certain name there."""
+        """The same with structure in the residuals of these sensors, so no certain name there.
 
-        def uncertain(cause: Cause) -> Cause:
-            inside = self.sensor(cause) in sensors
-            return replace(cause, verdict=UNKNOWN_STRUCTURE) if inside else cause
+        Nor of an effect of both sensors that would not be named without their readings.
+        """
+        if not sensors:
+            return self
+        of_structure = dict(self.of_structure)
+        for cause in self.named.causes:
+            drops = self._drops(cause)
+            own = {sensor: drops.pop(sensor) for sensor in sensors}
+            if self.sensor(cause) not in own and sum(drops.values()) < cause.threshold:
+                of_structure[cause.effect] = max(own, key=lambda sensor: own[sensor])
+        moved = replace(self, of_structure=of_structure)
+        causes = tuple(
+            replace(cause, verdict=UNKNOWN_STRUCTURE) if moved.sensor(cause) in sensors else cause
+            for cause in self.named.causes
+        )
+        return replace(moved, named=replace(self.named, causes=causes))
 
-        causes = tuple(uncertain(cause) for cause in self.named.causes)
-        return replace(self, named=replace(self.named, causes=causes))
+    def _drops(self, cause: Cause) -> dict[str, float]:
+        """The reduction of χ² of each sensor by a cause, given the other causes."""
+        others = [i for c in self.named.causes if c is not cause for i in c.columns]
+        evidence = self.evidence.given(list(dict.fromkeys(others)))
+        drops = (sensor.drop(cause.columns)[0] for sensor in evidence.sensors)
+        return dict(zip(evidence.labels, drops, strict=True))
 
     def sensor(self, cause: Cause) -> str:
-        """The sensor that determines a cause best."""
-        return self.evidence.labels[self.evidence.sensor_of(cause.columns)]
+        """The sensor that determines a cause best, or whose structure it resembles."""
+        best = self.evidence.labels[self.evidence.sensor_of(cause.columns)]
+        return self.of_structure.get(cause.effect, best)
 
     def consistent(self) -> dict[str, list[str]]:
         """Of each sensor the causes with which the data are no more than consistent."""

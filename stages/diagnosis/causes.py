@@ -110,12 +110,17 @@ class Cause:
 
     @property
     def spoils(self) -> bool:
-        """Whether it is not removed and moves a parameter by more than its sigma."""
+        """Whether it is not removed and moves a parameter by more than its sigma.
+
+        By how much is not known of what leaves a structure in the residuals.
+        """
         if self.cure != NONE:
             return False
         if self.moves is not None:
             return self.moves > MAX_MOVE
-        return int(self.main.row["severity"]) >= SPOILS or self.verdict == UNKNOWN_STRUCTURE
+        left = {each.cause for member in self.members for each in member.consequences}
+        structured = UNKNOWN_STRUCTURE in {self.verdict, *left}
+        return structured or int(self.main.row["severity"]) >= SPOILS
 
     @property
     def name(self) -> str:

@@ -12,6 +12,7 @@ DECLARED = Declared(
         "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
         "members": From("criticism", tables.MEMBERS),
         "cause_positions": From("criticism", tables.CAUSE_POSITIONS),
+        "structure_manoeuvres": From("criticism", tables.STRUCTURE_MANOEUVRES),
         "effects": From("criticism", tables.EFFECTS),
         "random_walks": From("criticism", tables.RANDOM_WALKS),
         "swept": From("criticism", tables.TEMPERATURE_CURVES),

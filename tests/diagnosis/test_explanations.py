@@ -1,5 +1,6 @@
 """Which finding is the cause of which: a few findings at a time, as the stages write them."""
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -50,6 +51,25 @@ def test_a_clipped_motion_does_not_explain_the_jump_of_a_bias_at_rest(rest, expl
     jump = finding("segment", "bias_jump", "gyro", **of(rest))
     assert causes(clipped, jump)["saturation"] == explained
     assert len(causes(clipped, jump)) == 2 - len(explained)
+
+
+@pytest.mark.parametrize(
+    ("carrying", "moved", "explained"),
+    [
+        (("x-up",), ("x-up",), True),
+        (("x-up",), ("z-down",), False),
+        (("x-up", "z-down"), ("x-up",), False),
+        ((), ("x-up",), False),  # no few manoeuvres carry it
+        ((), ("x-up", "x-down", "y-up", "y-down"), True),
+        (("x-up",), (), True),  # a fault of all the log
+    ],
+)
+def test_a_fault_explains_only_the_structure_that_its_manoeuvres_carry(carrying, moved, explained):
+    moving = finding("segment", "table_moving", **of(*moved))
+    structure = effect("unknown_structure", "gyro", "unknown_structure")
+    structure = replace(structure, **of(*carrying))
+    found = {"unknown_structure"} if explained else set()
+    assert causes(moving, structure)["table_moving"] == found
 
 
 def test_an_effect_explains_the_position_that_it_looks_like():

@@ -1,0 +1,47 @@
+"""Where the structure of the residuals is, and what is not named beside it."""
+
+import chain
+import pytest
+from hidden import hidden_plans
+
+
+def criticised(document, fault):
+    document["faults"] = [fault]
+    return chain.in_memory_of(document, "criticism", chain.BESIDE)
+
+
+def swaying(channel, log):
+    """One accelerometer by 2 cm/s², once in six seconds, in one log of twelve or in all."""
+    sway = {"channel": channel, "frequency_hz": 1 / 6, "amplitude_m_s2": 0.02}
+    return criticised(chain.short(seed=1801), {"oscillate": {"log": log, "line": 1, **sway}})
+
+
+@pytest.mark.parametrize(
+    ("channel", "manoeuvre"), [("accel_y", "x-forward"), ("accel_z", "y-backward")]
+)
+def test_a_structure_of_one_manoeuvre_is_said_to_be_there(channel, manoeuvre):
+    results = swaying(channel, f"{manoeuvre}.asc")
+    finding = results["criticism/findings"].set_index("cause").loc["unknown_structure"]
+    assert finding["sensor"] == "accel"
+    assert f"Without {manoeuvre} the tests detect none." in finding["sentence"]
+    (place,) = results["criticism/structure_manoeuvres"].to_dict("records")
+    assert (place["finding"], place["manoeuvre"]) == (finding["id"], manoeuvre)
+
+
+def test_a_structure_of_all_manoeuvres_is_in_no_few_of_them():
+    results = swaying("accel_x", "all")
+    finding = results["criticism/findings"].set_index("cause").loc["unknown_structure"]
+    assert "No one, two or three manoeuvres carry it alone." in finding["sentence"]
+    assert results["criticism/structure_manoeuvres"].empty
+
+
+@pytest.mark.slow
+def test_what_one_turn_of_a_gyro_shows_of_no_law_names_no_table():
+    """Errors of the table are seen by both sensors; here the gyros alone would show them."""
+    sway = {"channel": "gyro_z", "frequency_hz": 1 / 45, "amplitude_rad_s": 3e-4}
+    fault = {"oscillate": {"log": "x-forward.asc", "line": 1, **sway}}
+    results = criticised(hidden_plans.positions(seed=1801), fault)
+    findings = results["criticism/findings"].set_index("cause")
+    assert set(findings["verdict"]) == {"unknown_structure"}
+    assert set(findings["sensor"]) == {"gyro"}
+    assert "Without x-forward" in findings.loc["unknown_structure", "sentence"]
