@@ -15,6 +15,10 @@ Array = NDArray[np.float64]
 MIN_SAMPLES = 64  # in which a line can be distinguished from noise
 OVERSAMPLING = 2  # the search steps by half a bin, so that no line lies between two
 MAX_LEAKAGE = 0.05  # of the amplitude of a removed line, one bin away from it
+MIN_TAPERED = 0.4  # of the power about a line beyond the noise, that it has in the tapered record
+HANN_NOISE = (
+    1.5  # times as much noise in a tapered record (Harris 1978, equivalent noise bandwidth)
+)
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,9 @@ def strongest(
     """The most significant line of a record.
 
     The periodogram of white noise is exponentially distributed about its level, which is estimated
-    from its median; the p-value is corrected for the search over all bins.
+    from its median; the p-value is corrected for the search over all bins. A sidelobe of what is
+    below the search is no line: in the record tapered by a Hann window a line is as high, and a
+    sidelobe is not (Harris, Proc. IEEE 66 (1978) 51).
 
     Parameters
     ----------
@@ -68,7 +74,7 @@ def strongest(
     level = float(np.median(density[inside]) / np.log(2)) if inside.any() else 0.0
     if level <= 0:
         return None
-    candidates = inside.copy()
+    candidates = inside & _lines(density, _spectrum(record, rate, tapered=True)[1], level)
     for line in taken:
         candidates &= density > n / (2 * rate) * line.leaks(frequency, n / rate) ** 2
     if not candidates.any():
@@ -98,18 +104,34 @@ def line_at(record: Array, rate: float, lowest: float, frequency: float, p_value
     return Line(frequency, float(sigma_frequency), split.amplitude, float(sigma_amplitude), p_value)
 
 
-def _spectrum(record: Array, rate: float) -> tuple[Array, Array]:
-    """Frequencies, Hz, and power density of one side."""
+def _spectrum(record: Array, rate: float, *, tapered: bool = False) -> tuple[Array, Array]:
+    """Frequencies, Hz, and power density of one side; of a line the same where it is tapered."""
     from scipy.fft import rfft, rfftfreq  # here, as a stage without turns needs none
 
     n, count = len(record), OVERSAMPLING * len(record)  # which is even
     place = np.arange(n) - (n - 1) / 2
     level = record - record.mean()
     level = level - place * (place @ level / (place @ place))
-    transformed = rfft(level, count)
+    transformed = rfft(level * _taper(n) if tapered else level, count)
     density = np.abs(transformed) ** 2 / (rate * n)
     density[1:-1] *= 2  # of both signs of a frequency
     return rfftfreq(count, 1 / rate), density
+
+
+def _lines(density: Array, tapered: Array, noise: float) -> NDArray[np.bool_]:
+    """Where a peak would be no sidelobe, (m,): by the power within a bin without and with taper.
+
+    `noise`: the mean of the density without any line.
+    """
+    width = 2 * OVERSAMPLING + 1
+    about = np.pad(density, OVERSAMPLING, mode="edge")
+    highest = np.lib.stride_tricks.sliding_window_view(about, width).max(axis=1)
+    return np.asarray(tapered - HANN_NOISE * noise > MIN_TAPERED * (highest - noise))
+
+
+def _taper(count: int) -> Array:
+    """A Hann window whose mean is one, (n,)."""
+    return np.asarray(1 - np.cos(2 * np.pi * (np.arange(count) + 0.5) / count))
 
 
 def _refined(record: Array, rate: float, near: float) -> float:
@@ -174,7 +196,8 @@ def pooled(
     chi-squared distribution with 2k degrees of freedom. So a line that is significant in no single
     record may be so in all common. The p-value is not corrected for the search.
 
-    Returns frequencies, Hz, drop of chi-squared, and natural logarithm of its p-value, (m,) each.
+    Returns frequencies, Hz, drop of chi-squared, and natural logarithm of its p-value, (m,) each;
+    0 at sidelobes of what is below `lowest`, as in `strongest`.
 
     Parameters
     ----------
@@ -186,20 +209,18 @@ def pooled(
     longest = max(len(record) / rate for record, rate in zip(records, rates, strict=True))
     step = 1 / (OVERSAMPLING * longest)
     frequency = np.arange(lowest, min(rates) / 2, step)
-    drop = np.zeros_like(frequency)
+    drop, tapered = np.zeros_like(frequency), np.zeros_like(frequency)
     for record, rate in zip(records, rates, strict=True):
         place = np.arange(len(record))
         level = record - np.polyval(np.polyfit(place, record, 1), place)
-        summed = czt(
-            level,
-            len(frequency),
-            np.exp(-2j * np.pi * step / rate),
-            np.exp(2j * np.pi * lowest / rate),
-        )
-        power = np.abs(summed) ** 2
+        ratio, start = np.exp(np.array([-2j * np.pi * step, 2j * np.pi * lowest]) / rate)
+        both = np.array([level, level * _taper(len(record))])
+        power, own = np.abs(czt(both, len(frequency), ratio, start)) ** 2
         drop += power * 2 * np.log(2) / np.median(power)
+        tapered += own * 2 * np.log(2) / np.median(power)
     degrees = 2 * len(records)
-    return frequency, drop, chi2_logsf(drop, degrees)
+    log_p = chi2_logsf(drop, degrees)
+    return frequency, drop, np.where(_lines(drop, tapered, degrees), log_p, 0.0)
 
 
 def score(drops: Array) -> Array:

@@ -1,8 +1,9 @@
 """An oscillation in noise: its numbers within their sigmas, and silence where there is none."""
 
 import numpy as np
+import pytest
 
-from inertial.estimation.periodic_in_time import strongest, without_line
+from inertial.estimation.periodic_in_time import pooled, strongest, without_line
 
 
 def test_frequency_and_amplitude_come_back_within_their_sigmas():
@@ -33,3 +34,18 @@ def test_a_record_without_its_line_is_the_rest():
     split = without_line(3 + 0.2 * np.cos(2 * np.pi * 7 * time), 100.0, 7.0)
     assert abs(split.amplitude - 0.2) < 1e-3
     assert np.abs(split.less(split.amplitude)).max() < 1e-3
+
+
+@pytest.mark.parametrize("slow", [1 / 20, 1 / 6, 0.31, 0.9])
+def test_sidelobes_of_what_swings_below_the_search_are_no_lines(slow):
+    """A record of six seconds that swings by a hundred sigma, and a line of three in it."""
+    rng, time = np.random.default_rng(6), np.arange(590) / 100
+    swing = 100 * np.sin(2 * np.pi * slow * time + 0.7)
+    records = [swing + rng.standard_normal(len(time)) for _ in range(2)]
+    alone = strongest(records[0], 100.0, 2.0)
+    assert alone is None or alone.p_value > 1e-4
+    frequencies, _, log_p = pooled(records, [100.0, 100.0], 2.0)
+    assert log_p.min() + np.log(len(frequencies)) > np.log(1e-4)
+    line = strongest(records[0] + 3 * np.sin(2 * np.pi * 30.07 * time), 100.0, 2.0)
+    assert line is not None and line.p_value < 1e-6
+    assert abs(line.frequency - 30.07) < 4 * line.sigma_frequency
