@@ -28,6 +28,10 @@ HIDDEN = {
     "accel_quadratic": ({"k2_micro_g_g2": [0, 200, 0]}, {"k2_y": 200e-6 / G}),
     "accel_bias_ramp": ({"ramp_m_s2_h": [0, 0, 1.0e-3]}, {"c_z": 1e-3 / 3600}),
     "accel_bias_jump": ({"size_micro_g": [60, 0, 0], "at_s": 700}, {"b_x": 60 * MICRO_G}),
+    "mounting_shift": (
+        {"rotation_arcsec": [0, 30, 0], "at_s": 2200},
+        {"theta_y": np.radians(30 / 3600)},
+    ),
     "lever_arm": ({"arm_m": [0, 0.016, 0]}, {"r_y": 0.016}),
     "table_tilt": (
         {"north_arcsec": 7, "east_arcsec": 0},

@@ -65,7 +65,7 @@ def _same_cause(cause: Hypothesis, other: Hypothesis) -> bool:
 _KIND = {
     name: kind
     for kind, names in {
-        "bias jump": ("bias_jump", "gyro_bias_jump", "accel_bias_jump"),
+        "bias jump": ("bias_jump", "gyro_bias_jump", "accel_bias_jump", "mounting_shift"),
         "periodic": ("oscillation", "table_ripple", "table_eccentricity", "table_wobble"),
         "temperature": (
             "temperature_drift",

@@ -42,6 +42,7 @@ from inertial.effects.latitude_error import LatitudeError
 from inertial.effects.latitude_sign import LatitudeSign
 from inertial.effects.law import Law, every_law
 from inertial.effects.lever_arm import LeverArm
+from inertial.effects.mounting_shift import MountingShift
 from inertial.effects.oscillation import Oscillation
 from inertial.effects.size_effect import SizeEffect
 from inertial.effects.table_angle_scale import TableAngleScale
@@ -95,6 +96,7 @@ CATALOGUE: dict[str, Effect] = {
         LeverArm(),
         SizeEffect(),
         GyroAccelMisalignment(),
+        MountingShift(),
         # the table
         TableSpeedError(),
         TableTilt(),

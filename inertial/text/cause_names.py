@@ -37,6 +37,7 @@ NAMES = {
     "wrong_rate": _("wrong rate"),
     "unexplained": _("unexplained"),
     "wrong_scale_of_turns": _("wrong scale of turns"),
+    "mounting_shift": _("shift of the IMU in its fixture"),
     "accel_bias_per_log": _("bias of the accelerometers after each switch-on"),
     "accel_bias_jump": _("accelerometer bias jump"),
     "accel_bias_ramp": _("accelerometer bias ramp"),

@@ -219,6 +219,8 @@ def _equations(
     campaign = fitted.campaign
     if getattr(campaign.solution, SOLVED[sensor]) is None:
         return
+    if fitted.only is not None and fitted.only.isdisjoint(campaign.manoeuvres_of(sensor)):
+        return
     conditions = conditions_of(campaign.motion, campaign.stretches(sensor), sensor, axis)
     tested = [(kind, groups) for kind, test in TESTS.items() for groups in test(conditions)]
     if not tested:

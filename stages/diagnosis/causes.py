@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from inertial.campaign.explanations import Explained
@@ -39,6 +39,7 @@ MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed sp
 SPOILS = 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
+TURNED = "mounting_shift"  # turns the axes of both sensors, whichever shows it
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
 
 DONE = {
@@ -69,7 +70,8 @@ class Cause:
     """A cause, or equal ones, with their consequences, and what was done about it.
 
     `moves`: largest shift of a parameter of the result that it causes or, undone, caused, in its
-    sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns.
+    sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns;
+    `modelled`: those of them in the model of whose result it is, where it is not in both.
     """
 
     members: tuple[Explained, ...]
@@ -79,6 +81,11 @@ class Cause:
     moves: float | None
     held_out_drop: float | None = None
     gain: str | None = None
+    modelled: frozenset[str] = frozenset()
+
+    def of(self, sensor: str) -> Cause:
+        """What it is for the result of one sensor."""
+        return replace(self, cure=MODELLED) if sensor in self.modelled else self
 
     @property
     def main(self) -> Hypothesis:
@@ -211,7 +218,8 @@ class Evidence:
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
             done = HARMLESS
         sensors = tuple(dict.fromkeys(result.sensor for result in own))
-        return Cause(members, sensors, cure, done, moves, drop, _gain(main, drop))
+        modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
+        return Cause(members, sensors, cure, done, moves, drop, _gain(main, drop), modelled)
 
     def _own(self, cause: Hypothesis) -> Iterator[SensorResult]:
         """The results that a cause concerns: of its sensor, and where the model has its effect."""
@@ -220,7 +228,8 @@ class Evidence:
                 continue
             if self._in_turns(cause) and sensor == "accel":
                 continue  # no mean of theirs is of a turn
-            if cause.sensor in (None, sensor) or cause.causes & result.effects.keys():
+            of_both = cause.sensor is None or cause.cause == TURNED
+            if of_both or cause.sensor == sensor or cause.causes & result.effects.keys():
                 yield result
 
     def _in_turns(self, cause: Hypothesis) -> bool:
@@ -266,7 +275,11 @@ class Evidence:
         if cause.row.get("moves") is not None:
             moves.append(float(cause.row["moves"]))
         modelled = [result for result in own if result.models(cause.causes)]
-        kept = [result for result in own if result.shows(cause.causes) and result not in modelled]
+        others = [result for result in own if result not in modelled]
+        kept = [result for result in others if result.shows(cause.causes)]
+        if cause.cause == TURNED:
+            kept = others
+            moves += _moved_by_turning(modelled, others)
         drops = [result.drop for result in modelled if result.drop is not None]
         largest = max(moves, default=None)
         if modelled and not kept:
@@ -284,6 +297,19 @@ def _moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
     relative = abs(repair["stated"] / repair["value"] - 1)
     sigmas = [sigma for result in own if (sigma := result.scale_sigma) is not None]
     return relative / min(sigmas) if sigmas else None
+
+
+def _moved_by_turning(
+    modelled: Sequence[SensorResult], others: Sequence[SensorResult]
+) -> list[float]:
+    """By how many sigma the case's turning moves cross-axis terms of another sensor at most.
+
+    Its turns may all be before or all after it, so that its terms hold for one of the two mountings
+    and its residuals show nothing.
+    """
+    angle = max((result.angle(TURNED) for result in modelled), default=0.0)
+    sigmas = [result.cross_sigma for result in others]
+    return [angle / sigma for sigma in sigmas if sigma and angle]
 
 
 def _moved_by_clock(error: float, own: Sequence[SensorResult]) -> float | None:

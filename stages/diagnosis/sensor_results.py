@@ -15,7 +15,7 @@ from inertial.campaign.hypotheses import MODEL
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
-from inertial.text.parameters import BIAS, FREE, JOINT, SCALE
+from inertial.text.parameters import BIAS, CROSS, FREE, JOINT, SCALE
 from stages.diagnosis.decision import Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
@@ -70,6 +70,16 @@ class SensorResult:
     def bias_sigma(self) -> float | None:
         """The smallest sigma of a bias of the result."""
         return self._smallest(BIAS)
+
+    @property
+    def cross_sigma(self) -> float | None:
+        """The smallest sigma of a cross-axis term of the result."""
+        return self._smallest(CROSS)
+
+    def angle(self, effect: str) -> float:
+        """The largest angle of an effect in the model of the result, rad; 0 without it."""
+        own = [r for r in self.chosen.rows if r["effect"] == effect and r["unit"] == "rad"]
+        return max((abs(row["value"]) for row in own), default=0.0)
 
     def _smallest(self, names: Collection[str]) -> float | None:
         rows = [row for row in self.chosen.rows if row["parameter"] in names and row["sigma"]]

@@ -68,7 +68,7 @@ def verdict(
     `swept`: the range of temperatures, K, over which its changes in one attitude are known;
     `only_noise`: whether the campaign is a recording of the noise in one attitude.
     """
-    own = [cause for cause in causes if result.sensor in cause.sensors]
+    own = [cause.of(result.sensor) for cause in causes if result.sensor in cause.sensors]
     sensors = SENSORS[result.sensor]
     spoiling = [cause for cause in own if cause.spoils]
     if spoiling:

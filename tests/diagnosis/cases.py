@@ -500,6 +500,15 @@ CASES: tuple[Case, ...] = (
         hidden=effect(table_tilt={"north_arcsec": 0.955, "east_arcsec": 0.0}),  # SNR 9
     ),
     Case(
+        "imu-turned-in-its-fixture",  # after three of six rests, before all turns
+        short,
+        (cause({"mounting_shift"}, alone=True),),
+        accel=LIMITED,
+        gyro=LOST,  # its axes are those of the second mounting, and nothing in it shows that
+        hidden=effect(mounting_shift={"rotation_arcsec": [0.0, 0.0, 200.0], "at_s": 180.0}),
+        known=False,
+    ),
+    Case(
         "quadratic-accelerometer",
         positions,
         (cause({"accel_quadratic"}, "accel"),),

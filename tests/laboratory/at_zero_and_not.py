@@ -124,6 +124,10 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     ),
     "accel_bias_temperature": ({"k_micro_g_k": ZERO}, {"k_micro_g_k": ONE}),
     "accel_bias_jump": ({"size_micro_g": ZERO, "at_s": 9}, {"size_micro_g": ONE, "at_s": 9}),
+    "mounting_shift": (
+        {"rotation_arcsec": ZERO, "at_s": 9},
+        {"rotation_arcsec": [100] * 3, "at_s": 9},
+    ),
     "accel_vibration_rectification": (
         {"k_micro_g_g2": ONE, "vibration_g": 0, "from_s": 3, "to_s": 9},
         {"k_micro_g_g2": [1e4] * 3, "vibration_g": 0.1, "from_s": 3, "to_s": 9},

@@ -1,0 +1,53 @@
+"""An IMU that shifts in its fixture once."""
+
+from dataclasses import replace
+
+from inertial.physics.drift import after, evenly, without_clock
+from inertial.physics.effect import Array, Effect, Parameter, Scan, Truth, known_earth, of_tables
+from inertial.physics.motion import Motion, cross
+from inertial.text.messages import _
+from inertial.text.units import ARC_SECOND
+
+CANDIDATES = 36  # times of the shift, as of the jump of a bias
+
+
+class MountingShift(Effect):
+    """f += f × θ H(t − t₀), ω += ω × θ H(t − t₀): the case has turned by θ; t₀ is scanned.
+
+    From then on every axis of the case points elsewhere than the plan says, for both sensors alike.
+    A jump of a bias is the same in all attitudes; this one turns what is sensed, so it goes with
+    the attitude and with the rate. A single position that is off returns, this does not.
+    """
+
+    name = "mounting_shift"
+    cause = _(
+        "a screw or an adhesive gives way, or something touches the IMU: it sits otherwise from "
+        "then on"
+    )
+    source = "IEEE Std 1554-2005, stability of the mounting fixture"
+    parameters = tuple(
+        Parameter(
+            f"theta_{axis}",
+            "rad",
+            2 * ARC_SECOND,
+            _("rotation of the case about its {axis} axis", axis=axis),
+        )
+        for axis in "xyz"
+    )
+    sizes = of_tables(ARC_SECOND, 10, 60)
+    scan = Scan("t0", "s", _("time of the shift since the first sample of all logs"))
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        turned = after(motion, self.value(motion))[:, None] * values
+        upward, level = known_earth(truth, motion)
+        return replace(
+            truth,
+            rate=truth.rate + cross(motion.omega + upward + level, turned),
+            force=truth.force + cross(truth.force, turned),
+        )
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def grid(self, motion: Motion) -> Array:
+        return evenly(motion, CANDIDATES)
