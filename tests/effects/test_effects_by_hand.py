@@ -209,6 +209,20 @@ def test_a_jump_within_a_rest_counts_for_what_is_behind_it(name):
     np.testing.assert_allclose(read[:, 1 if name.startswith("gyro") else 4], [0, 2 / 3, 1])
 
 
+def test_a_case_that_has_turned_sees_everything_turned_the_other_way():
+    angle, turned = DEGREE * np.arange(3) * 0.01, np.array([1e-5, -2e-5, 3e-5])
+    motion = replace(on_a_turn(angle), time=np.array([150.0, 450, 750]), seconds=np.full(3, 300.0))
+    back, share = Rotation.from_rotvec(turned).inv(), np.array([0, 2 / 3, 1])[:, None]
+    truth = truth_of(motion, STILL)
+    for read, true in zip(
+        acted("mounting_shift", turned.tolist(), motion, at=400.0),
+        (truth.rate, truth.force),
+        strict=True,
+    ):
+        np.testing.assert_allclose(read, share * (back.apply(true) - true), atol=1e-8)
+        assert np.abs(read[2]).max() > 1e-6
+
+
 def test_hysteresis_remembers_the_side_from_which_an_axis_came():
     force = GRAVITY * np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, 0, 1]])
     visits = np.array([0.0, 1, 2, 3])

@@ -294,6 +294,22 @@ def test_biases_go_on_through_the_pause(
         assert np.abs(off[:, :2]).max() < 1e-11
 
 
+def test_an_imu_that_has_turned_in_its_fixture_senses_along_other_axes(
+    performed: Performed,
+) -> None:
+    """By 10° about y between two rests with z up: then x points down by 10°, z is off upright."""
+    plan = [rest(name=name, seconds=20) for name in ("one", "two")]
+    shift = {"rotation_arcsec": [0, 36000, 0], "at_s": 50}
+    recording = performed(*plan, effects={"mounting_shift": shift})
+    assert np.abs(deviation(recording, "one", "accelerometer")).max() < 1e-9
+    off = deviation(recording, "two", "accelerometer").mean(axis=0)
+    ten = radians(10)
+    assert off == pytest.approx([-GRAVITY * sin(ten), 0, GRAVITY * (cos(ten) - 1)], abs=1e-9)
+    off = deviation(recording, "two", "gyro").mean(axis=0)  # x to the north: what it loses
+    felt = [NORTH * (cos(ten) - 1) - UP * sin(ten), 0, UP * (cos(ten) - 1) + NORTH * sin(ten)]
+    assert off == pytest.approx(felt, abs=1e-12)
+
+
 def test_a_bias_follows_the_rate_of_the_temperature(performed: Performed) -> None:
     """2 °/h per K/min at 36 K/h, 0.6 K/min."""
     also = {"temperature": {"start_deg_c": 20, "slope_k_h": 36}}
