@@ -105,7 +105,7 @@ def test_an_oscillation_says_in_numbers_what_it_costs() -> None:
     # 0.01 rad/s / (2π · 20 Hz) = 7.958e-5 rad, 16.4 arcsec; against 2π rad 12.7 ppm
     assert "7.96 × 10⁻⁵ rad, 16.4 arcsec: 13 ppm of 360°" in html
     assert "the σ of the scale factor of the x gyro is 2.2 ppm" in html
-    assert "fall from 0.00662 rad/s to 3.50 × 10⁻⁵ rad/s rms in held-out turns" in html
+    assert "fall from 0.379 °/s to 0.00201 °/s rms in held-out turns" in html
 
 
 def test_the_clearest_comes_first_and_leads_to_the_card_of_its_cause() -> None:

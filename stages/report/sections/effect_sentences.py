@@ -11,6 +11,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, shortened, significant, whole, with_sigma
+from inertial.text.units import DEGREES_PER_SECOND, Unit
 from stages.report.results import Shift, quantity_of
 from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSORS, with_mount
@@ -228,8 +229,10 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
     for row in own:
         if row["unit"] != "sigma" and row["scope"] == HELD_OUT:
             gyro = _("{axis} gyro", axis=row["axis"]) if row["axis"] else "gyros"
-            before, after = (significant(row[f"rms_{at}"], 3) for at in ("before", "after"))
-            unit = shortened(row["unit"], 20)
+            unit = DEGREES_PER_SECOND if row["unit"] == "rad/s" else Unit(row["unit"], 1.0)
+            before, after = (
+                significant(unit.of(row[f"rms_{at}"]), 3) for at in ("before", "after")
+            )
             yield (
                 _(
                     "The residuals of the {gyro} fall from {before} {unit} to {after} "
@@ -237,7 +240,7 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
                     "held-out turns.",
                     gyro=gyro,
                     before=before,
-                    unit=unit,
+                    unit=shortened(unit.name, 20),
                     after=after,
                 )
             )

@@ -198,9 +198,8 @@ def angle(tables: Tables, effect: str) -> Iterator[str]:
     plan = {row["manoeuvre"]: row for row in tables.rows("manoeuvres")}
     whole = abs(plan[line["manoeuvre"]]["angle"] or 0.0)
     sentence = _(
-        "As an angle, A/(2πf), it is {amplitude} rad, {significant} arcsec",
-        amplitude=significant(amplitude, 3),
-        significant=significant(SECONDS_OF_ARC.of(amplitude), 3),
+        "As an angle, A/(2πf), it is {amplitude} arcsec",
+        amplitude=significant(SECONDS_OF_ARC.of(amplitude), 3),
     )
     if whole:
         share = significant(PPM.of(amplitude / whole), 2)
