@@ -103,7 +103,7 @@ def test_an_oscillation_is_shown_as_s0_shows_it() -> None:
 def test_an_oscillation_says_in_numbers_what_it_costs() -> None:
     html = demo()["criticism/oscillation"]
     # 0.01 rad/s / (2π · 20 Hz) = 7.958e-5 rad, 16.4 arcsec; against 2π rad 12.7 ppm
-    assert "7.96 × 10⁻⁵ rad, 16.4 arcsec: 13 ppm of 360°" in html
+    assert "A/(2πf), it is 16.4 arcsec: 13 ppm of 360°" in html
     assert "the σ of the scale factor of the x gyro is 2.2 ppm" in html
     assert "fall from 0.379 °/s to 0.00201 °/s rms in held-out turns" in html
 
