@@ -271,19 +271,7 @@ def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
         return cause.sensor == other.sensor and _generality(cause) < _generality(other)
     if cause.stage in (MODEL, POSITIONS):
         return False
-    return _unresolved(cause) and same_axis(cause, other) and _reaches(cause, other)
-
-
-def _reaches(fault: Hypothesis, structure: Hypothesis) -> bool:
-    """Whether a fault touches all of the few manoeuvres that carry a structure of the residuals.
-
-    One that no few carry is not of a fault that touches few.
-    """
-    if structure.cause != "unknown_structure" or not fault.manoeuvres:
-        return True
-    if structure.manoeuvres:
-        return structure.manoeuvres <= fault.manoeuvres
-    return len(fault.manoeuvres) > MAX_CARRYING
+    return _unresolved(cause) and same_axis(cause, other)
 
 
 def _unresolved(fault: Hypothesis) -> bool:
@@ -309,7 +297,13 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
     A finding that several explain is the consequence of the one that explains most.
     """
     hypotheses = [h for h in hypotheses if h.cause not in CIRCUMSTANCES]
-    explained = {h.id: [other for other in hypotheses if explains(h, other)] for h in hypotheses}
+    touched: dict[object, frozenset[str]] = {}
+    for h in hypotheses:
+        touched[_kind(h)] = touched.get(_kind(h), frozenset()) | h.manoeuvres
+    explained = {
+        h.id: [o for o in hypotheses if explains(h, o) and _reaches(h, o, touched[_kind(h)])]
+        for h in hypotheses
+    }
     by_strength = sorted(hypotheses, key=lambda h: (len(explained[h.id]), _rank(h)), reverse=True)
     owner: dict[str, str] = {}
     for cause in by_strength:
@@ -320,6 +314,24 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
         own = tuple(h for h in hypotheses if _root(h.id, owner) == root.id)
         if len(own) > 1 or not _is_noise(root):
             yield Explained(root, own)
+
+
+def _kind(fault: Hypothesis) -> object:
+    """What equal faults have in common."""
+    return fault.stage, fault.cause, fault.mount, fault.sensor
+
+
+def _reaches(cause: Hypothesis, structure: Hypothesis, touched: frozenset[str]) -> bool:
+    """Whether faults touch all of the few manoeuvres that carry a structure of the residuals.
+
+    One that no few carry is not of faults that touch few. `touched`: by all faults that are equal;
+    none: all the log.
+    """
+    if structure.cause != "unknown_structure" or cause.stage == MODEL or not touched:
+        return True
+    if structure.manoeuvres:
+        return structure.manoeuvres <= touched
+    return len(touched) > MAX_CARRYING
 
 
 def _is_noise(finding: Hypothesis) -> bool:

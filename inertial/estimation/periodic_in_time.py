@@ -15,10 +15,9 @@ Array = NDArray[np.float64]
 MIN_SAMPLES = 64  # in which a line can be distinguished from noise
 OVERSAMPLING = 2  # the search steps by half a bin, so that no line lies between two
 MAX_LEAKAGE = 0.05  # of the amplitude of a removed line, one bin away from it
-MIN_TAPERED = 0.4  # of the power about a line beyond the noise, that it has in the tapered record
-HANN_NOISE = (
-    1.5  # times as much noise in a tapered record (Harris 1978, equivalent noise bandwidth)
-)
+MIN_TAPERED = 0.4  # least ratio of peak powers, less the noise, with and without a Hann window
+HANN_NOISE = 1.5  # its equivalent noise bandwidth, bins (Harris 1978)
+MAX_SIDELOBE = 1.6  # power one bin away from what is below, to its peak: 1/π² of a sine
 
 
 @dataclass(frozen=True)
@@ -74,7 +73,9 @@ def strongest(
     level = float(np.median(density[inside]) / np.log(2)) if inside.any() else 0.0
     if level <= 0:
         return None
-    candidates = inside & _lines(density, _spectrum(record, rate, tapered=True)[1], level)
+    tapered = _spectrum(record, rate, tapered=True)[1]
+    leakage = _leakage(record, rate, lowest, frequency)
+    candidates = inside & _not_sidelobes(density, tapered, level, leakage)
     for line in taken:
         candidates &= density > n / (2 * rate) * line.leaks(frequency, n / rate) ** 2
     if not candidates.any():
@@ -118,15 +119,27 @@ def _spectrum(record: Array, rate: float, *, tapered: bool = False) -> tuple[Arr
     return rfftfreq(count, 1 / rate), density
 
 
-def _lines(density: Array, tapered: Array, noise: float) -> NDArray[np.bool_]:
-    """Where a peak would be no sidelobe, (m,): by the power within a bin without and with taper.
+def _not_sidelobes(
+    density: Array, tapered: Array, noise: float, leakage: Array
+) -> NDArray[np.bool_]:
+    """Where a peak would be no sidelobe of what is below the search, (m,).
 
-    `noise`: the mean of the density without any line.
+    It is higher than such `leakage` may be, or as high in the tapered record; an oscillation that
+    decays at once is not. `noise`: the mean of the density without any line.
     """
     width = 2 * OVERSAMPLING + 1
     about = np.pad(density, OVERSAMPLING, mode="edge")
     highest = np.lib.stride_tricks.sliding_window_view(about, width).max(axis=1)
-    return np.asarray(tapered - HANN_NOISE * noise > MIN_TAPERED * (highest - noise))
+    as_high = tapered - HANN_NOISE * noise > MIN_TAPERED * (highest - noise)
+    return np.asarray(as_high | (density > leakage))
+
+
+def _leakage(record: Array, rate: float, lowest: float, frequency: Array) -> Array:
+    """The largest density that what is below the search may have at some frequencies, (m,)."""
+    bins, density = _spectrum(record, rate)
+    peak = int(np.argmax(np.where(bins < lowest, density, 0.0)))
+    apart = np.maximum((frequency - bins[peak]) * len(record) / rate, 1.0)
+    return np.asarray(MAX_SIDELOBE * density[peak] / apart**2)
 
 
 def _taper(count: int) -> Array:
@@ -209,18 +222,22 @@ def pooled(
     longest = max(len(record) / rate for record, rate in zip(records, rates, strict=True))
     step = 1 / (OVERSAMPLING * longest)
     frequency = np.arange(lowest, min(rates) / 2, step)
-    drop, tapered = np.zeros_like(frequency), np.zeros_like(frequency)
+    drop, tapered, leakage = np.zeros((3, len(frequency)))
     for record, rate in zip(records, rates, strict=True):
         place = np.arange(len(record))
         level = record - np.polyval(np.polyfit(place, record, 1), place)
         ratio, start = np.exp(np.array([-2j * np.pi * step, 2j * np.pi * lowest]) / rate)
         both = np.array([level, level * _taper(len(record))])
         power, own = np.abs(czt(both, len(frequency), ratio, start)) ** 2
-        drop += power * 2 * np.log(2) / np.median(power)
-        tapered += own * 2 * np.log(2) / np.median(power)
+        unit = 2 * np.log(2) / np.median(power)
+        drop += power * unit
+        tapered += own * unit
+        leaks = _leakage(record, rate, lowest, frequency)
+        leakage += leaks * rate * len(record) / 2 * unit
     degrees = 2 * len(records)
     log_p = chi2_logsf(drop, degrees)
-    return frequency, drop, np.where(_lines(drop, tapered, degrees), log_p, 0.0)
+    lines = _not_sidelobes(drop, tapered, degrees, degrees + leakage)
+    return frequency, drop, np.where(lines, log_p, 0.0)
 
 
 def score(drops: Array) -> Array:

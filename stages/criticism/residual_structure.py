@@ -68,7 +68,7 @@ class Functions(Effect):
 
 @dataclass(frozen=True)
 class Fitted:
-    """What residuals are of: one mount, the named effects, and the manoeuvres used, None: all."""
+    """The fit whose residuals are tested: mount, named effects, manoeuvres used (None: all)."""
 
     campaign: Campaign
     named: Sequence[Effect]
@@ -150,15 +150,17 @@ def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
         explained = [_explained(without([*left_out, name]), remaining[0]) for name in others]
         left_out.append(others[int(np.argmin(explained))])
         remaining = found(left_out)
+    if remaining:
+        return ()
     for name in left_out[:-1]:
         fewer = [other for other in left_out if other != name]
-        if not remaining and not found(fewer):
+        if not found(fewer):
             left_out = fewer
-    return () if remaining else tuple(left_out)
+    return tuple(left_out)
 
 
 def _explained(fitted: Fitted, test: Structure) -> float:
-    """The reduction of χ² by a structure as it was fitted, but for its size."""
+    """The reduction of χ² by a structure of this shape, its amplitude estimated again."""
     chosen, values = test.values
     assert test.equations is not None  # it is detected
     structure = test.equations.tested.functions[:, chosen] @ values
@@ -288,13 +290,13 @@ SCAN_UNITS = {"time": "Hz", "change": "s", "angle": "cycles per revolution"}
 
 NOT_NOISE = _("The residuals of the {sensors} are not noise: {description} ({p_value}).")
 ALSO = _("The structure shows in {others} too.")
-CARRIED = _("Without {manoeuvres} the tests detect none.")
-NOT_CARRIED = _("No one, two or three manoeuvres carry it alone.")
+CARRIED = _("With {manoeuvres} left out the tests detect none.")
+NOT_CARRIED = _("No small group of manoeuvres was found without which it vanishes.")
 CONSEQUENCE = _(
     "The joint result stands as it is: no effect by name is added to it for this "
     "sensor, and its sigmas do not allow for the structure."
 )
-ACTION = _("Look in the picture of the residuals for what they depend on.")
+ACTION = _("Inspect the picture of the residuals for what they depend on.")
 ACTION_IF_CARRIED = _("Look at the picture of the residuals; record {manoeuvres} again.")
 DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is known
     ("time", True): _("about {axis} they oscillate in time, every {period} s"),

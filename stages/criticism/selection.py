@@ -53,7 +53,8 @@ class Selection:
     `evidence`; `families`: its candidates by its name, in the order of
     `SearchedEffect.candidates`; `limits`: the detection limits;
     `rivals`: by effect the random walk that is as likely, and the log odds of the effect;
-    `of_structure`: by effect of both sensors that with the structure in whose residuals it is seen.
+    `of_structure`: by effect of both sensors that is not significant without the sensor whose
+    residuals have a structure, that sensor.
     """
 
     campaign: Campaign
@@ -128,8 +129,9 @@ class Selection:
         for cause in self.named.causes:
             drops = self._drops(cause)
             own = {sensor: drops.pop(sensor) for sensor in sensors}
-            if self.sensor(cause) not in own and sum(drops.values()) < cause.threshold:
-                of_structure[cause.effect] = max(own, key=lambda sensor: own[sensor])
+            seen = max(own.values()) > 0 and self.sensor(cause) not in own
+            if seen and sum(drops.values()) < cause.threshold:
+                of_structure[cause.effect] = max(own, key=own.__getitem__)
         moved = replace(self, of_structure=of_structure)
         causes = tuple(
             replace(cause, verdict=UNKNOWN_STRUCTURE) if moved.sensor(cause) in sensors else cause
@@ -138,11 +140,21 @@ class Selection:
         return replace(moved, named=replace(self.named, causes=causes))
 
     def _drops(self, cause: Cause) -> dict[str, float]:
-        """The reduction of χ² of each sensor by a cause, given the other causes."""
+        """The reduction of χ² by a cause in each sensor whose readings it changes, else 0.
+
+        Given the other causes, and in units of the noise that the search found.
+        """
         others = [i for c in self.named.causes if c is not cause for i in c.columns]
         evidence = self.evidence.given(list(dict.fromkeys(others)))
-        drops = (sensor.drop(cause.columns)[0] for sensor in evidence.sensors)
-        return dict(zip(evidence.labels, drops, strict=True))
+        if self.named.excesses:
+            evidence = evidence.scaled(self.named.excesses)
+        raw = evidence.raw
+        acts = [
+            raw is None or bool((raw[number, list(cause.columns)] > 0).any())
+            for number in range(len(evidence.sensors))
+        ]
+        drops = [sensor.drop(cause.columns)[0] for sensor in evidence.sensors]
+        return dict(zip(evidence.labels, np.where(acts, drops, 0.0).tolist(), strict=True))
 
     def sensor(self, cause: Cause) -> str:
         """The sensor that determines a cause best, or whose structure it resembles."""

@@ -39,7 +39,7 @@ MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed sp
 SPOILS = 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
-TURNED = "mounting_shift"  # turns the axes of both sensors, whichever shows it
+MOUNTING_SHIFT = "mounting_shift"  # turns the axes of both sensors, whichever shows it
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
 
 DONE = {
@@ -51,6 +51,8 @@ DONE = {
     LEFT_OUT: _("The manoeuvres concerned are left out of the estimates."),
     NONE: _("Nothing was done about it."),
 }
+ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
+RESULTS = {"gyro": _("gyros"), "accel": _("accelerometers")}
 IN_COVARIANCE = _("The covariance of the result includes it.")
 HARMLESS = _("Nothing need be done about it for this result.")
 
@@ -71,7 +73,7 @@ class Cause:
 
     `moves`: largest shift of a parameter of the result that it causes or, undone, caused, in its
     sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns;
-    `modelled`: those of them in the model of whose result it is, where it is not in both.
+    `modelled`: those of them whose result has it in its model.
     """
 
     members: tuple[Explained, ...]
@@ -84,8 +86,13 @@ class Cause:
     modelled: frozenset[str] = frozenset()
 
     def of(self, sensor: str) -> Cause:
-        """What it is for the result of one sensor."""
-        return replace(self, cure=MODELLED) if sensor in self.modelled else self
+        """What it is for the result of one sensor, with its consequences there."""
+        members = tuple(
+            replace(member, consequences=tuple(_of_sensor(member.consequences, sensor)))
+            for member in self.members
+        )
+        cure = MODELLED if sensor in self.modelled else self.cure
+        return replace(self, members=members, cure=cure)
 
     @property
     def main(self) -> Hypothesis:
@@ -219,6 +226,8 @@ class Evidence:
             done = HARMLESS
         sensors = tuple(dict.fromkeys(result.sensor for result in own))
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
+        if cure == NONE and modelled:
+            done = ONLY_MODELLED.format(sensors=" ".join(RESULTS[sensor] for sensor in modelled))
         return Cause(members, sensors, cure, done, moves, drop, _gain(main, drop), modelled)
 
     def _own(self, cause: Hypothesis) -> Iterator[SensorResult]:
@@ -228,7 +237,7 @@ class Evidence:
                 continue
             if self._in_turns(cause) and sensor == "accel":
                 continue  # no mean of theirs is of a turn
-            of_both = cause.sensor is None or cause.cause == TURNED
+            of_both = cause.sensor is None or cause.cause == MOUNTING_SHIFT
             if of_both or cause.sensor == sensor or cause.causes & result.effects.keys():
                 yield result
 
@@ -271,23 +280,27 @@ class Evidence:
     ) -> tuple[str, float | None, float | None]:
         if cause.id in self.walks:
             return MODELLED, None, None
-        moves = [move for result in own if (move := result.moves(cause.causes)) is not None]
-        if cause.row.get("moves") is not None:
-            moves.append(float(cause.row["moves"]))
         modelled = [result for result in own if result.models(cause.causes)]
         others = [result for result in own if result not in modelled]
-        kept = [result for result in others if result.shows(cause.causes)]
-        if cause.cause == TURNED:
-            kept = others
+        turned = cause.cause == MOUNTING_SHIFT
+        kept = others if turned else [each for each in others if each.shows(cause.causes)]
+        moves = [move for result in kept or own if (move := result.moves(cause.causes)) is not None]
+        if cause.row.get("moves") is not None:
+            moves.append(float(cause.row["moves"]))
+        if turned:
             moves += _moved_by_turning(modelled, others)
         drops = [result.drop for result in modelled if result.drop is not None]
         largest = max(moves, default=None)
         if modelled and not kept:
             return MODELLED, largest, max(drops, default=None)
-        if kept and all(result.covers_misfit for result in kept):
+        if kept and not turned and all(result.covers_misfit for result in kept):
             # What manoeuvres differ by is in the sigmas, so the shift is measured in these.
             return (MODELLED if modelled else NONE), largest, max(drops, default=None)
         return NONE, largest, None
+
+
+def _of_sensor(findings: Sequence[Hypothesis], sensor: str) -> Iterator[Hypothesis]:
+    return (each for each in findings if each.sensor in (None, sensor))
 
 
 def _moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
@@ -302,12 +315,12 @@ def _moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
 def _moved_by_turning(
     modelled: Sequence[SensorResult], others: Sequence[SensorResult]
 ) -> list[float]:
-    """By how many sigma the case's turning moves cross-axis terms of another sensor at most.
+    """Upper bound, in sigma, of the change of cross-axis terms of the other sensor.
 
-    Its turns may all be before or all after it, so that its terms hold for one of the two mountings
-    and its residuals show nothing.
+    All its rotations may be before or all after the shift: then its terms hold for one of the two
+    mountings, and its residuals show nothing.
     """
-    angle = max((result.angle(TURNED) for result in modelled), default=0.0)
+    angle = max((result.angle(MOUNTING_SHIFT) for result in modelled), default=0.0)
     sigmas = [result.cross_sigma for result in others]
     return [angle / sigma for sigma in sigmas if sigma and angle]
 

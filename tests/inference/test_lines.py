@@ -49,3 +49,12 @@ def test_sidelobes_of_what_swings_below_the_search_are_no_lines(slow):
     line = strongest(records[0] + 3 * np.sin(2 * np.pi * 30.07 * time), 100.0, 2.0)
     assert line is not None and line.p_value < 1e-6
     assert abs(line.frequency - 30.07) < 4 * line.sigma_frequency
+
+
+@pytest.mark.parametrize("seconds", [0.5, 1.0, 3.0])
+def test_an_oscillation_that_decays_is_no_sidelobe(seconds):
+    """As a table rings when it has reached its rate: over before a taper lets it in."""
+    rng, time = np.random.default_rng(7), np.arange(590) / 100
+    ringing = 5 * np.exp(-time / seconds) * np.sin(2 * np.pi * 8 * time)
+    line = strongest(ringing + rng.standard_normal(len(time)), 100.0, 2.0)
+    assert line is not None and line.p_value < 1e-6 and abs(line.frequency - 8) < 0.3

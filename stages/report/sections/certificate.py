@@ -222,9 +222,10 @@ def _known(tables: Tables) -> Iterator[tuple[str, str, str]]:
         yield capital(term("gravity")), text, gravity["origin"]
     if latitude := known.get("latitude"):
         spread = DEGREES.of(COVERAGE_FACTOR * latitude["sigma"])
-        text = f"{numbers.fixed(DEGREES.of(latitude['value']), 4)}°"
-        text += f", U = {numbers.significant(spread, 2)}°"
-        yield capital(term("latitude")), text, latitude["origin"]
+        value, error = numbers.with_sigma(
+            DEGREES.of(latitude["value"]), spread, numbers.decimals_of(spread)
+        )
+        yield capital(term("latitude")), f"{value}°, U = {error}°", latitude["origin"]
     sources = {row["source"] for row in tables.rows("uncertainty_budget")}
     for quantity, source in TABLE_ERRORS.items():
         row = known.get(quantity)
