@@ -17,7 +17,7 @@ OVERSAMPLING = 2  # the search steps by half a bin, so that no line lies between
 MAX_LEAKAGE = 0.05  # of the amplitude of a removed line, one bin away from it
 MIN_TAPERED = 0.4  # least ratio of peak powers, less the noise, with and without a Hann window
 HANN_NOISE = 1.5  # its equivalent noise bandwidth, bins (Harris 1978)
-MAX_SIDELOBE = 8.0  # power one bin away from what is below, to its peak: 1/π² of a sine, 8 of a decay
+MAX_SIDELOBE = 8.0  # power a bin away from what is below, to its peak: 1/π² of a sine, 8 of a decay
 
 
 @dataclass(frozen=True)
