@@ -299,9 +299,9 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
     hypotheses = [h for h in hypotheses if h.cause not in CIRCUMSTANCES]
     touched: dict[object, frozenset[str]] = {}
     for h in hypotheses:
-        touched[_kind(h)] = touched.get(_kind(h), frozenset()) | h.manoeuvres
+        touched[_group(h)] = touched.get(_group(h), frozenset()) | h.manoeuvres
     explained = {
-        h.id: [o for o in hypotheses if explains(h, o) and _reaches(h, o, touched[_kind(h)])]
+        h.id: [o for o in hypotheses if explains(h, o) and _reaches(h, o, touched[_group(h)])]
         for h in hypotheses
     }
     by_strength = sorted(hypotheses, key=lambda h: (len(explained[h.id]), _rank(h)), reverse=True)
@@ -316,7 +316,7 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
             yield Explained(root, own)
 
 
-def _kind(fault: Hypothesis) -> object:
+def _group(fault: Hypothesis) -> object:
     """What equal faults have in common."""
     return fault.stage, fault.cause, fault.mount, fault.sensor
 

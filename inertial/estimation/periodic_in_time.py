@@ -74,7 +74,7 @@ def strongest(
     if level <= 0:
         return None
     tapered = _spectrum(record, rate, tapered=True)[1]
-    leakage = _leakage(record, rate, lowest, frequency)
+    leakage = _leakage(frequency, density, lowest, n / rate, frequency)
     candidates = inside & _not_sidelobes(density, tapered, level, leakage)
     for line in taken:
         candidates &= density > n / (2 * rate) * line.leaks(frequency, n / rate) ** 2
@@ -134,11 +134,13 @@ def _not_sidelobes(
     return np.asarray(as_high | (density > leakage))
 
 
-def _leakage(record: Array, rate: float, lowest: float, frequency: Array) -> Array:
-    """The largest density that what is below the search may have at some frequencies, (m,)."""
-    bins, density = _spectrum(record, rate)
+def _leakage(bins: Array, density: Array, lowest: float, seconds: float, at: Array) -> Array:
+    """The largest density that what is below the search may have `at` frequencies, (m,), Hz.
+
+    `bins`, `density`: the spectrum of the record, which lasts for `seconds`.
+    """
     peak = int(np.argmax(np.where(bins < lowest, density, 0.0)))
-    apart = np.maximum((frequency - bins[peak]) * len(record) / rate, 1.0)
+    apart = np.maximum((at - bins[peak]) * seconds, 1.0)
     return np.asarray(MAX_SIDELOBE * density[peak] / apart**2)
 
 
@@ -232,7 +234,8 @@ def pooled(
         unit = 2 * np.log(2) / np.median(power)
         drop += power * unit
         tapered += own * unit
-        leaks = _leakage(record, rate, lowest, frequency)
+        seconds = len(record) / rate
+        leaks = _leakage(*_spectrum(record, rate), lowest, seconds, frequency)
         leakage += leaks * rate * len(record) / 2 * unit
     degrees = 2 * len(records)
     log_p = chi2_logsf(drop, degrees)

@@ -22,6 +22,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
+from stages.diagnosis.decision import SENSORS
 from stages.diagnosis.sensor_results import SensorResult
 
 REPAIRED, MODELLED, CURVE, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
@@ -52,7 +53,6 @@ DONE = {
     NONE: _("Nothing was done about it."),
 }
 ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
-RESULTS = {"gyro": _("gyros"), "accel": _("accelerometers")}
 IN_COVARIANCE = _("The covariance of the result includes it.")
 HARMLESS = _("Nothing need be done about it for this result.")
 
@@ -219,15 +219,15 @@ class Evidence:
         main = max(members, key=lambda m: m.cause.row["severity"]).cause
         own = list(self._own(main))
         cure, moves, drop = self._cure(main, own, members)
+        modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
         done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
         if main.id in self.walks:
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
             done = HARMLESS
+        elif cure == NONE and modelled:
+            done = ONLY_MODELLED.format(sensors=_(" and ").join(SENSORS[s] for s in modelled))
         sensors = tuple(dict.fromkeys(result.sensor for result in own))
-        modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
-        if cure == NONE and modelled:
-            done = ONLY_MODELLED.format(sensors=" ".join(RESULTS[sensor] for sensor in modelled))
         return Cause(members, sensors, cure, done, moves, drop, _gain(main, drop), modelled)
 
     def _own(self, cause: Hypothesis) -> Iterator[SensorResult]:

@@ -73,6 +73,11 @@ def test_a_fault_explains_only_the_structure_that_its_manoeuvres_carry(carrying,
     assert ("unknown_structure" not in causes(*each, structure)) == explained
 
 
+def test_a_jump_within_a_rest_may_be_a_shift_of_the_case():
+    jump = finding("segment", "bias_jump", "accel", **of("y-up"))
+    assert causes(jump, effect("mounting_shift", "accel")) == {"mounting_shift": {"bias_jump"}}
+
+
 def test_an_effect_explains_the_position_that_it_looks_like():
     off = finding("accelerometer", "table_position_error", "accel")
     quadratic = effect("accel_quadratic", "accel", "one_of_class", "accel_scale_asymmetry")
