@@ -102,12 +102,13 @@ def _start(log: LogTruth) -> float:
     return float(2 * log.time[0] - log.time[1])
 
 
-def courses(plan: str) -> dict[str, list[Course]]:
+def courses(plan: str, seed: int) -> dict[str, list[Course]]:
     """Of each effect that a plan shows one for each value of its scan, of typical sizes.
 
-    The k-th size of a course is the k-th parameter of the model in its typical size.
+    The k-th size of a course is the k-th parameter of the model in its typical size. `seed`: of
+    the campaign in which they are sought: azimuths that the plan does not state are drawn by it.
     """
-    document = PLANS[plan]()
+    document = PLANS[plan](seed=seed)
     campaign = laboratory.perform(laboratory.specify(document))
     started = {log: _start(truth) for log, truth in campaign.truth.items()}
     document["receiver"]["rate_hz"] = RATE

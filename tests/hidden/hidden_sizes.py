@@ -178,7 +178,7 @@ def _made(plan: str) -> Reference:
     campaign, degrees = campaign_of(data).without_random_walks(), data.noise.degrees
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
     families = {name: tuple(one) for name, one in campaign.candidates(in_blocks).items()}
-    made = courses(plan)
+    made = courses(plan, SEED)
     every = [course for of_effect in made.values() for course in of_effect]
     said, asked = evidence_of(campaign, families, degrees, every)
     law = law_of(said, asked, LEVEL)
