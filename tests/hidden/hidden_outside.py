@@ -10,13 +10,19 @@ from hidden_elsewhere import Random, between, direction
 from hidden_sizes import reference
 
 import laboratory
+from inertial.effects.law import ALL, law_name
+from inertial.physics.laws import AXES
 
 Document = dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Outside:
-    """What is in no catalogue. `key`: the parameter that is its size, where it has a ratio."""
+    """What is in no catalogue.
+
+    `hidden`: the names that are true of it, laws of the right form among them; `key`: the
+    parameter that is its size, where it has a ratio.
+    """
 
     name: str
     hidden: tuple[str, ...]
@@ -34,10 +40,15 @@ class Outside:
         return {self.name: own | {self.key: [factor * value for value in own[self.key]]}}
 
 
+def of_time(*families: str) -> tuple[str, ...]:
+    """The names of laws of the gyros in time, of one axis or of all."""
+    return tuple(law_name("gyro", axis, one, "time") for one in families for axis in (*AXES, ALL))
+
+
 OUTSIDE: tuple[Outside, ...] = (
     Outside(
         "gyro_telegraph",
-        (),
+        of_time("telegraph"),
         lambda r, s, span: {
             "gyro_telegraph": {
                 "height_deg_h": (s * direction(r)).tolist(),
@@ -48,7 +59,7 @@ OUTSIDE: tuple[Outside, ...] = (
     ),
     Outside(
         "gyro_cubic_drift",
-        (),
+        of_time("power", "polynomial"),
         lambda r, s, span: {"gyro_cubic_drift": {"k_deg_h_h3": (s * direction(r)).tolist()}},
         "k_deg_h_h3",
     ),
