@@ -13,6 +13,7 @@ from inertial.effects.accel_hysteresis import AccelHysteresis
 from inertial.effects.accel_quadratic import AccelQuadratic
 from inertial.effects.accel_saturation import AccelSaturation
 from inertial.effects.accel_scale_asymmetry import AccelScaleAsymmetry
+from inertial.effects.accel_scale_ramp import AccelScaleRamp
 from inertial.effects.accel_scale_temperature import AccelScaleTemperature
 from inertial.effects.accel_vibration_rectification import AccelVibrationRectification
 from inertial.effects.accel_warm_up import AccelWarmUp
@@ -35,6 +36,7 @@ from inertial.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
 from inertial.effects.gyro_scale_cubic import GyroScaleCubic
 from inertial.effects.gyro_scale_g_dependence import GyroScaleGDependence
 from inertial.effects.gyro_scale_quadratic import GyroScaleQuadratic
+from inertial.effects.gyro_scale_ramp import GyroScaleRamp
 from inertial.effects.gyro_scale_temperature import GyroScaleTemperature
 from inertial.effects.gyro_warm_up import GyroWarmUp
 from inertial.effects.heading_error import HeadingError
@@ -69,6 +71,7 @@ CATALOGUE: dict[str, Effect] = {
         GyroScaleCubic(),
         GyroScaleGDependence(),
         GyroBiasRamp(),
+        GyroScaleRamp(),
         GyroWarmUp(),
         GyroBiasTemperature(),
         GyroScaleTemperature(),
@@ -85,6 +88,7 @@ CATALOGUE: dict[str, Effect] = {
         AccelCrossProducts(),
         AccelScaleAsymmetry(),
         AccelBiasRamp(),
+        AccelScaleRamp(),
         AccelWarmUp(),
         AccelBiasTemperature(),
         AccelScaleTemperature(),

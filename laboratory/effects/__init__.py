@@ -16,6 +16,7 @@ from laboratory.effects.accel_hysteresis import AccelHysteresis
 from laboratory.effects.accel_quadratic import AccelQuadratic
 from laboratory.effects.accel_saturation import AccelSaturation
 from laboratory.effects.accel_scale_asymmetry import AccelScaleAsymmetry
+from laboratory.effects.accel_scale_ramp import AccelScaleRamp
 from laboratory.effects.accel_scale_temperature import AccelScaleTemperature
 from laboratory.effects.accel_vibration_rectification import AccelVibrationRectification
 from laboratory.effects.accel_warm_up import AccelWarmUp
@@ -31,6 +32,7 @@ from laboratory.effects.gyro_anisoelasticity import GyroAnisoelasticity
 from laboratory.effects.gyro_bias_jump import GyroBiasJump
 from laboratory.effects.gyro_bias_ramp import GyroBiasRamp
 from laboratory.effects.gyro_bias_temperature import GyroBiasTemperature
+from laboratory.effects.gyro_coefficient_drift import GyroCoefficientDrift
 from laboratory.effects.gyro_cubic_drift import GyroCubicDrift
 from laboratory.effects.gyro_dead_band import GyroDeadBand
 from laboratory.effects.gyro_disturbance import GyroDisturbance
@@ -46,9 +48,9 @@ from laboratory.effects.gyro_remanence import GyroRemanence
 from laboratory.effects.gyro_saturation import GyroSaturation
 from laboratory.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
 from laboratory.effects.gyro_scale_cubic import GyroScaleCubic
-from laboratory.effects.gyro_scale_drift import GyroScaleDrift
 from laboratory.effects.gyro_scale_g_dependence import GyroScaleGDependence
 from laboratory.effects.gyro_scale_quadratic import GyroScaleQuadratic
+from laboratory.effects.gyro_scale_ramp import GyroScaleRamp
 from laboratory.effects.gyro_scale_temperature import GyroScaleTemperature
 from laboratory.effects.gyro_stray_field import GyroStrayField
 from laboratory.effects.gyro_telegraph import GyroTelegraph
@@ -110,7 +112,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_scale_cubic": GyroScaleCubic.specified,
     "gyro_scale_g_dependence": GyroScaleGDependence.specified,
     "gyro_scale_temperature": GyroScaleTemperature.specified,
-    "gyro_scale_drift": GyroScaleDrift.specified,
+    "gyro_scale_ramp": GyroScaleRamp.specified,
     "gyro_rate_power": GyroRatePower.specified,
     "gyro_stray_field": GyroStrayField.specified,
     "gyro_dead_band": GyroDeadBand.specified,
@@ -119,6 +121,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_late_drift": GyroLateDrift.specified,
     "gyro_warm_up": GyroWarmUp.specified,
     "gyro_bias_temperature": GyroBiasTemperature.specified,
+    "gyro_coefficient_drift": GyroCoefficientDrift.specified,
     "gyro_temperature_rate": GyroTemperatureRate.specified,
     "gyro_bias_jump": GyroBiasJump.specified,
     "gyro_disturbance": GyroDisturbance.specified,
@@ -139,6 +142,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "accel_cubic": AccelCubic.specified,
     "accel_cross_products": AccelCrossProducts.specified,
     "accel_scale_asymmetry": AccelScaleAsymmetry.specified,
+    "accel_scale_ramp": AccelScaleRamp.specified,
     "accel_scale_temperature": AccelScaleTemperature.specified,
     "accel_bias_ramp": AccelBiasRamp.specified,
     "accel_warm_up": AccelWarmUp.specified,

@@ -2,6 +2,7 @@
 
 import chain
 import pytest
+from hidden_plans import rates
 
 WALK = {"gyro_rate_random_walk_deg_h_sqrt_h": 0.4}
 G_SENSITIVITY = {"matrix_deg_h_g": [[1.4, 0, 0], [0, -1.0, 0], [0, 0, 1.2]]}
@@ -59,3 +60,22 @@ def test_a_ramp_of_one_gyro_is_no_walk_of_all(seed):
     assert finding["verdict"] in CLEAR and finding["cause"] in ("gyro_bias_ramp", "gyro_warm_up")
     assert "gyro_bias_ramp" in set(results["criticism/members"]["effect"])
     assert results["criticism/random_walks"].empty
+
+
+@pytest.mark.parametrize(
+    ("sensor", "axis"), [("gyro", 1), pytest.param("accel", 2, marks=pytest.mark.slow)]
+)
+def test_a_scale_factor_that_drifts_beside_a_rising_temperature_may_be_either(sensor, axis):
+    drift = [300 * (i == axis) for i in range(3)]
+    document = rates(seed=3, effects={f"{sensor}_scale_ramp": {"k_ppm_h": drift}})
+    document["temperature"] = {"start_deg_c": 22, "slope_k_h": 15}
+    results = chain.in_memory_of(document, "criticism", chain.BESIDE)
+    (finding,) = results["criticism/findings"].to_dict("records")
+    either = {f"{sensor}_scale_ramp", f"{sensor}_scale_temperature"}
+    assert finding["verdict"] == "one_of_class"
+    assert either <= set(results["criticism/members"]["effect"])
+    # 300 ppm/h in 15 K/h are 20 ppm/K.
+    size = 300e-6 / 3600 if finding["cause"].endswith("ramp") else 20e-6
+    effects = results["criticism/effects"].set_index(["effect", "parameter"])
+    found = effects.loc[finding["cause"], f"k_{'xyz'[axis]}"]
+    assert abs(found["value"] - size) < 3.5 * found["sigma"]

@@ -116,8 +116,9 @@ def test_a_family_acts_with_the_middle_of_its_candidates(motion):
 
 BLIND = {
     "clock": {
-        "gyro_bias_ramp", "gyro_warm_up", "gyro_bias_jump",
-        "accel_bias_ramp", "accel_warm_up", "accel_bias_jump", "mounting_shift",
+        "gyro_bias_ramp", "gyro_scale_ramp", "gyro_warm_up", "gyro_bias_jump",
+        "accel_bias_ramp", "accel_scale_ramp", "accel_warm_up", "accel_bias_jump",
+        "mounting_shift",
     },
     "temperature": {
         "gyro_bias_temperature", "gyro_scale_temperature",

@@ -358,6 +358,7 @@ BY_AXIS = {
     "gyro_scale_cubic": lambda k, i: k[i] * RATE[i] ** 3,
     "gyro_scale_g_dependence": lambda k, i: k[i] * RATE[i] * FORCE[i],
     "gyro_bias_ramp": lambda k, i: k[i] * 700.0,
+    "gyro_scale_ramp": lambda k, i: k[i] * 700.0 * RATE[i],
     "gyro_bias_temperature": lambda k, i: k[i] * 4.0,
     "gyro_scale_temperature": lambda k, i: k[i] * 4.0 * RATE[i],
     "accel_quadratic": lambda k, i: k[i] * FORCE[i] ** 2,
@@ -367,6 +368,7 @@ BY_AXIS = {
         k[3 * i + n] * FORCE[one] * FORCE[other] for n, (one, other) in enumerate(PAIRS)
     ),
     "accel_bias_ramp": lambda k, i: k[i] * 700.0,
+    "accel_scale_ramp": lambda k, i: k[i] * 700.0 * FORCE[i],
     "accel_bias_temperature": lambda k, i: k[i] * 4.0,
     "accel_scale_temperature": lambda k, i: k[i] * 4.0 * FORCE[i],
 }

@@ -71,7 +71,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     ),
     "gyro_anisoelasticity": ({"k_deg_h_g2": ZERO}, {"k_deg_h_g2": [100] * 3}),
     "gyro_remanence": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
-    "gyro_scale_drift": ({"k_ppm_h": ZERO}, {"k_ppm_h": [1e4] * 3}),
+    "gyro_scale_ramp": ({"k_ppm_h": ZERO}, {"k_ppm_h": [1e4] * 3}),
     "gyro_rate_power": (
         {"at_10_deg_s_deg_h": ZERO, "power": 1.5},
         {"at_10_deg_s_deg_h": ONE, "power": 1.5},
@@ -80,6 +80,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"size_deg_h": ZERO, "order": 2.4, "phase_deg": 40},
         {"size_deg_h": ONE, "order": 2.4, "phase_deg": 40},
     ),
+    "gyro_coefficient_drift": ({"k_deg_h_k_h": ZERO}, {"k_deg_h_k_h": [1e4] * 3}),
     "gyro_temperature_rate": ({"k_deg_h_k_min": ZERO}, {"k_deg_h_k_min": [100] * 3}),
     "cyclic_drift": (
         {"gyro_deg_h": ZERO, "period_s": 20, "phase_deg": 40},
@@ -116,6 +117,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"matrix_micro_g_g2": [[50] * 3] * 3},
     ),
     "accel_scale_asymmetry": ({"asymmetry_micro_g_g": ZERO}, {"asymmetry_micro_g_g": ONE}),
+    "accel_scale_ramp": ({"k_ppm_h": ZERO}, {"k_ppm_h": [1e4] * 3}),
     "accel_scale_temperature": ({"k_ppm_k": ZERO}, {"k_ppm_k": ONE}),
     "accel_bias_ramp": ({"ramp_m_s2_h": ZERO}, {"ramp_m_s2_h": ONE}),
     "accel_warm_up": (

@@ -321,10 +321,22 @@ def test_a_bias_follows_the_rate_of_the_temperature(performed: Performed) -> Non
 def test_a_scale_factor_drifts_with_time(performed: Performed) -> None:
     """3600 ppm/h are 1 ppm/s: at 100 s 100 ppm of what the earth turns."""
     plan = [rest(name=name, seconds=20) for name in ("one", "two")]
-    recording = performed(*plan, effects={"gyro_scale_drift": {"k_ppm_h": [0, 0, 3600]}})
+    drift = {"k_ppm_h": [0, 0, 3600]}
+    recording = performed(*plan, effects={"gyro_scale_ramp": drift, "accel_scale_ramp": drift})
     middle = recording.truth["two"].time[1:] - 0.005
     off = deviation(recording, "two", "gyro")[:, 2]
     assert off == pytest.approx(1e-6 * middle * UP, rel=1e-5)
+    off = deviation(recording, "two", "accelerometer")[:, 2]
+    assert off == pytest.approx(1e-6 * middle * GRAVITY, rel=1e-5)
+
+
+def test_a_temperature_coefficient_drifts_with_time(performed: Performed) -> None:
+    """2 °/h per K and hour, 10 K above the reference: at 18 s 0.1 °/h."""
+    effects = {"gyro_coefficient_drift": {"k_deg_h_k_h": [0, 0, 2]}}
+    recording = performed(rest(), effects=effects, also=WARM)
+    middle = recording.truth["still"].time[1:] - 0.005
+    off = deviation(recording, "still", "gyro")[:, 2]
+    assert off == pytest.approx(20 * DEG_H * middle / 3600, rel=1e-5)
 
 
 def test_a_stray_field_goes_with_the_angle_of_a_turn(performed: Performed) -> None:

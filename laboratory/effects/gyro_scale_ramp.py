@@ -6,7 +6,7 @@ from laboratory.truth import Truth
 from laboratory.units import HOUR, PPM
 
 
-class GyroScaleDrift(ArrayEffect):
+class GyroScaleRamp(ArrayEffect):
     """ω̃_i += k_i t ω_i, t since the campaign's first sample: a light source ages.
 
     value: k, (3,), 1/s.

@@ -1,0 +1,44 @@
+"""A scale factor of the accelerometers that drifts evenly."""
+
+from dataclasses import replace
+
+from inertial.physics.drift import without_clock
+from inertial.physics.effect import (
+    Array,
+    Effect,
+    Parameter,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+)
+from inertial.physics.motion import Motion
+from inertial.text.messages import _
+from inertial.text.units import HOUR
+
+
+class AccelScaleRamp(Effect):
+    """f̃_i += k_i t f_i, with t since the first sample of all logs.
+
+    Told from a bias that drifts by the axis up and down, each at several times. Where the
+    temperature rises all the time it is not told from the temperature.
+    """
+
+    name = "accel_scale_ramp"
+    cause = _("the scale factor of the accelerometers drifts, as the sensor warms up or ages")
+    source = "IEEE Std 1293-2018, stability of bias and scale factor"
+    parameters = tuple(
+        Parameter(
+            f"k_{axis}", "1/s", 1e-5 / HOUR, _("of the {axis} accelerometer, per second", axis=axis)
+        )
+        for axis in "xyz"
+    )
+    terms = on_each_axis("accel", "k_{i}", "t * f_{i}")
+    sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        change = values * truth.force * motion.time[:, None]
+        return replace(reading, accel=reading.accel + change)

@@ -1,0 +1,42 @@
+"""A scale factor of the gyros that drifts evenly."""
+
+from dataclasses import replace
+
+from inertial.physics.drift import without_clock
+from inertial.physics.effect import (
+    Array,
+    Effect,
+    Parameter,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+)
+from inertial.physics.motion import Motion
+from inertial.text.messages import _
+from inertial.text.units import HOUR
+
+
+class GyroScaleRamp(Effect):
+    """ω̃_i += k_i t ω_i, with t since the first sample of all logs.
+
+    Shown by turns about one axis at several times. Where the temperature rises all the time it is
+    not told from the temperature; a bias that drifts is the same in turns of both directions.
+    """
+
+    name = "gyro_scale_ramp"
+    cause = _("the scale factor of the gyros drifts, as the sensor warms up or ages")
+    source = "IEEE Std 952-1997, scale factor errors: instability"
+    parameters = tuple(
+        Parameter(f"k_{axis}", "1/s", 1e-5 / HOUR, _("of the {axis} gyro, per second", axis=axis))
+        for axis in "xyz"
+    )
+    terms = on_each_axis("gyro", "k_{i}", "t * w_{i}")
+    sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
+
+    def blind(self, motion: Motion) -> str:
+        return without_clock(motion)
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        change = values * truth.rate * motion.time[:, None]
+        return replace(reading, gyro=reading.gyro + change)
