@@ -82,7 +82,7 @@ def test_a_power_of_the_rate():
     assert sizes.loc["k_y", "value"] / DEGREE_PER_HOUR == pytest.approx(1.0, abs=0.1)
 
 
-@pytest.mark.parametrize("walk", [0.0, 0.3])
+@pytest.mark.parametrize("walk", [0.0, pytest.param(0.3, marks=pytest.mark.slow)])
 def test_a_clean_campaign_and_a_random_walk_have_no_law(walk):
     document = PLANS["positions"](seed=99)
     document["noise"] = document["noise"] | {"gyro_rate_random_walk_deg_h_sqrt_h": walk}
