@@ -21,6 +21,8 @@ from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
+EQUAL = np.ones(3)
+
 
 def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion:
     """A static position as one stretch of time, about its middle `time`, s."""
@@ -49,7 +51,9 @@ def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) 
     up, north = solution.upright(m), solution.north(set_position)
     gyro, site = solution.gyro, solution.site
     assert gyro is not None  # else nothing is simulated
-    angle = measured_angles(turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned)
+    angle = measured_angles(
+        turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned, 1 / turn.density
+    )
     rate = angle / turn.seconds
     # The table is at rest before and after, so that the acceleration integrates to zero.
     edges = np.concatenate([[0.0], (rate[1:] + rate[:-1]) / 2, [0.0]])
@@ -67,20 +71,30 @@ def measured_angles(
     gyro: Triad,
     site: Site,
     at_middle: Callable[[Array], Array],
+    weight: Array = EQUAL,
 ) -> Array:
     """The angle of the table in each stretch as measured by the gyros, (k,), rad.
 
-    The earth's rate is subtracted in the direction that follows from the angle so far; `at_middle`
-    converts the angles of the stretches to that of the table at the middle of each.
+    As in the equations of a turn: else an effect that every calibration takes up, such as gyros
+    that are mounted askew, would differ from the parameters that take it up by the noise of the
+    angles. The earth's rate is subtracted in the direction that follows from the angle so far.
+
+    Parameters
+    ----------
+    at_middle : converts the angles of the stretches to that of the table at the middle of each
+    weight : (3,), of the channels, over their white noise; not finite where one is not recorded
     """
-    inverse = np.linalg.inv(gyro.matrix)
-    truth = (sums - np.outer(seconds, gyro.bias)) @ inverse.T
+    known = np.isfinite(weight) & np.isfinite(sums).all(axis=0)
+    weight = np.where(known, weight, 0.0)
+    along = weight * (gyro.matrix @ about)
+    read = np.where(known, sums, 0.0) - np.outer(seconds, gyro.bias)
     level = site.earth_level * np.nan_to_num(north)
-    angle = truth @ about
-    for _unused in range(2):
+    angle = np.zeros(len(sums))
+    for _unused in range(3):
         middle = at_middle(angle)
         earth = site.earth_up * turned_all(up, about, middle) + turned_all(level, about, middle)
-        angle = truth @ about - earth @ about * seconds
+        sensed = read - earth * seconds[:, None] @ gyro.matrix.T
+        angle = (sensed * weight) @ along / (along @ along)
     return np.asarray(angle)
 
 

@@ -286,7 +286,7 @@ def _lines(
     limit = chi2_isf(LINE_LEVEL / len(density), degrees) / degrees
     lines = density > limit * beside
     variances: Array | None = None
-    leaked = _leaked_into(bins, density, beside, lines)
+    leaked = _leaked_into(bins, density, beside, lines, within)
     for _ in range(LINE_ROUNDS):
         used = within & ~leaked
         likelihood = Likelihood.of(bins, lowest, channel, used)
@@ -296,7 +296,7 @@ def _lines(
         found = density > limit * np.maximum(beside, expected)
         if np.array_equal(found, lines):
             break
-        lines, leaked = found, _leaked_into(bins, density, beside, found)
+        lines, leaked = found, _leaked_into(bins, density, beside, found, within)
     ratio, count = _by_half_octave(
         bins.frequency[used], density[used] / expected[used], degrees[used]
     )
@@ -305,11 +305,13 @@ def _lines(
     return lines, leaked, float(np.max(np.abs(ratio - 1) / accepted))
 
 
-def _leaked_into(bins: Bins, density: Array, beside: Array, lines: Booleans) -> Booleans:
+def _leaked_into(
+    bins: Bins, density: Array, beside: Array, lines: Booleans, within: Booleans
+) -> Booleans:
     """The bins with oscillations, and those into which too much of one leaks.
 
     The transform has no taper: of the power of an oscillation in a block, a coefficient k steps
-    off has 2 / (π k)² on average.
+    off has 2 / (π k)² on average. Where that would leave next to nothing of the band, it stays.
     """
     result = lines.copy()
     tolerated = MAX_LEAKED * beside * np.sqrt(2 / bins.degrees)
@@ -318,7 +320,7 @@ def _leaked_into(bins: Bins, density: Array, beside: Array, lines: Booleans) -> 
         apart = np.maximum(np.abs(bins.frequency - bins.frequency[i]), bins.spacing)
         leaked = power * bins.spacing * 2 / (np.pi * apart) ** 2
         result |= (bins.level == bins.level[i]) & (leaked > tolerated)
-    if np.sum(~result) < 2 * NEIGHBOURS:
+    if np.sum(within & ~result) < 2 * NEIGHBOURS:
         return lines
     return result
 

@@ -36,7 +36,10 @@ def test_the_kinds_are_drawn_as_often_as_is_wanted():
 
 @pytest.mark.parametrize(
     "plan",
-    [pytest.param(p, marks=() if p == "positions" else pytest.mark.slow) for p in hidden_plans.PLANS],
+    [
+        pytest.param(p, marks=() if p == "positions" else pytest.mark.slow)
+        for p in hidden_plans.PLANS
+    ],
 )
 def test_a_plan_shows_what_is_hidden_in_it(plan):
     """What is hidden there is seen, and noise alone makes a name of it as often as allowed."""
