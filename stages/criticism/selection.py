@@ -257,7 +257,7 @@ def select_effects(
         if (gyro, accel) != selection.random_walks:
             again = with_walks((gyro, accel)) if gyro or accel else without
             selection = replace(again, alternatives=selection.alternatives, rivals=selection.rivals)
-    selection = _with_rivals(selection)
+    selection = _with_further_jumps(_with_rivals(selection))
     if not any(selection.random_walks):
         return replace(selection, alternatives=())
     named = _members(selection)
@@ -318,22 +318,53 @@ def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
 
 def _with_rivals(selection: Selection) -> Selection:
     """The same with each random walk in the class of the effect that is as likely."""
-
-    def joined(cause: Cause) -> Cause:
-        if cause.effect not in selection.rivals:
-            return cause
-        walk, odds = selection.rivals[cause.effect]
-        share = 1 / (1 + float(np.exp(odds)))
-        return replace(
-            cause,
-            verdict=ONE_OF_CLASS if cause.verdict == FOUND else cause.verdict,
-            members=(*cause.members, walk),
-            weights=(*(weight * (1 - share) for weight in cause.weights), share),
-            captured=(*cause.captured, 1.0),
-        )
-
-    causes = tuple(joined(cause) for cause in selection.named.causes)
+    causes = tuple(
+        _or(cause, *selection.rivals[cause.effect]) if cause.effect in selection.rivals else cause
+        for cause in selection.named.causes
+    )
     return replace(selection, named=replace(selection.named, causes=causes))
+
+
+def _or(cause: Cause, rival: str, odds: float) -> Cause:
+    """A cause with another one in its class, against which it has these log odds."""
+    share = 1 / (1 + float(np.exp(odds)))
+    return replace(
+        cause,
+        verdict=ONE_OF_CLASS if cause.verdict == FOUND else cause.verdict,
+        members=(*cause.members, rival),
+        weights=(*(weight * (1 - share) for weight in cause.weights), share),
+        captured=(*cause.captured, 1.0),
+    )
+
+
+def _with_further_jumps(selection: Selection) -> Selection:
+    """The same; what a further jump of a bias that jumped explains as well may be one.
+
+    The search has one jump for each sensor, so a second one would be taken for any effect that
+    resembles it. Where it is clearly likelier, the bias jumps without a law: then no other effect
+    of that sensor is certain.
+    """
+    jumps = {sensor: f"{sensor}_bias_jump" for sensor in SENSORS}
+    named = {cause.effect for cause in selection.named.causes}
+    causes, without_a_law = [], set()
+    for cause in selection.named.causes:
+        sensor = selection.sensor(cause)
+        jump = jumps[sensor]
+        if jump in named and jump not in cause.members and cause.effect in selection.families:
+            start = walk_odds.Explained(0.0, selection.equations_without([cause.effect]))
+            odds = selection.explained([cause.effect], start) - selection.explained([jump], start)
+            if odds < -MAX_LOG_ODDS:
+                without_a_law.add(sensor)
+            elif odds < MAX_LOG_ODDS:
+                cause = _or(cause, jump, odds)
+        causes.append(cause)
+    kept = tuple(
+        replace(cause, verdict=UNKNOWN_STRUCTURE)
+        if selection.sensor(cause) in without_a_law and cause.effect not in jumps.values()
+        else cause
+        for cause in causes
+    )
+    return replace(selection, named=replace(selection.named, causes=kept))
 
 
 def _replacing_walk(selection: Selection, number: int) -> float:

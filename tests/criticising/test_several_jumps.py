@@ -1,0 +1,34 @@
+"""A bias that jumps to and fro has a jump, and no effect that a further jump resembles."""
+
+from dataclasses import replace
+
+import chain
+import numpy as np
+
+import laboratory
+
+COUNT = 1.52587890625e-6  # m/s, of the demo's accelerometers
+G = 9.80665
+STEP_S = 0.01
+
+
+def test_a_second_jump_is_no_shift_of_the_case_and_no_size_effect():
+    """±40 µg on x for 100 s on average: once they were a jump, a shift by 11″ and 4 mm."""
+    recording = laboratory.perform(laboratory.specify(chain.demo(seed=3, effects={})))
+    random = np.random.default_rng(8)
+    switches = np.cumsum(random.exponential(100, 100))
+    logs = {}
+    for log, records in recording.records.items():
+        time = (records.stamps - recording.start) / 1e9
+        level = 40e-6 * G * (2 * (np.searchsorted(switches, time) % 2) - 1)
+        counts = records.counts.copy()
+        carried = np.rint(np.cumsum(level) * STEP_S / COUNT)
+        counts[:, 0] += np.diff(carried, prepend=0.0).astype(counts.dtype)
+        logs[log] = replace(records, counts=counts)
+    results = chain.in_memory(replace(recording, records=logs), "criticism", chain.BESIDE)
+    findings = results["criticism/findings"].set_index("cause")["verdict"]
+    assert findings["accel_random_walk"] == "unknown_structure"
+    clear = findings[findings.isin(["found", "one_of_class"])]
+    assert set(clear.index) <= {"accel_bias_jump"}
+    members = set(results["criticism/members"]["effect"])
+    assert {"mounting_shift", "size_effect"} <= members  # with which the data are consistent
