@@ -16,7 +16,8 @@ from inertial.model_selection.splitting import MIN_SEPARATION, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
-from stages.criticism.selection import Selection, evidence_of
+from stages.criticism.effect_selection import evidence_of
+from stages.criticism.selection import Selection
 
 # ---- Manoeuvres that a laboratory might add: copies of those performed, to predict their value.
 #

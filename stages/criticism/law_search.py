@@ -29,12 +29,8 @@ from inertial.physics import laws
 from inertial.physics.effect import Array, Effect
 from stages.criticism.bias_drift import WALK_WAVES, half_waves
 from stages.criticism.residual_structure import MIN_INFORMATION, PRIOR_SIGMA, Functions
-from stages.criticism.selection import (
-    MAX_LOG_ODDS,
-    SENSORS,
-    Selection,
-    walk_name,
-)
+from stages.criticism.rivals import MAX_LOG_ODDS
+from stages.criticism.selection import SENSORS, Selection, walk_name
 
 AXES = "xyz"
 TELEGRAPH = ("telegraph", "time")

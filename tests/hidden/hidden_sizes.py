@@ -24,7 +24,7 @@ from inertial.model_selection.naming import law_of
 from inertial.model_selection.null_simulation import Chance, power
 from inertial.physics.effect import Effect
 from inertial.tables.code import code_of, hash_of
-from stages.criticism.selection import evidence_of
+from stages.criticism.effect_selection import evidence_of
 from stages.criticism.stage import BLOCKS_SHARE
 
 SEED = 9_999

@@ -40,12 +40,8 @@ from injections import known_effect
 from injections.rewritten_logs import held, lines_of, rewritten, unit_of, write
 from laboratory.effects import EFFECTS
 from laboratory.sensor import Sensors, Triad
-from stages.criticism.selection import (
-    Selection,
-    evidence_of,
-    scatter_tests_of,
-    select_with_scatter,
-)
+from stages.criticism.effect_selection import evidence_of, scatter_tests_of, select_with_scatter
+from stages.criticism.selection import Selection
 
 SEED = 104_729
 KEPT = chain.ROOT / "data/derived/injections/as-it-is"

@@ -24,7 +24,7 @@ from inertial.campaign.scatter_of_positions import PRIOR_SIZE, likely_walk, scat
 from inertial.estimation.probability import chi2_sf, f_isf, f_sf
 from inertial.estimation.scatter_by_hand import Scatter, likeliest
 from inertial.physics.effect import Effect
-from stages.criticism.selection import evidence_of, scatter_tests_of
+from stages.criticism.effect_selection import evidence_of, scatter_tests_of
 
 SENSORS = ("gyro", "accel")
 SCALES = (-3.0, 3.0)  # natural logarithms of a common factor of all scatters

@@ -1,0 +1,178 @@
+"""What else may be behind a named effect: a random walk of the biases, or a further jump.
+
+A random walk of a bias may be mistaken for effects, or they for it: a jump, a ramp, any drift. So
+the two explanations are compared by their likelihoods. With an effect that a random walk describes
+as well the data are no more than consistent, for a random walk follows no law that could be tested.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.campaign.effect_evidence import evidence
+from inertial.campaign.equations import Campaign
+from inertial.effects import TEMPERATURE_MODELS
+from inertial.model_selection import walk_odds
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause
+from stages.criticism.bias_drift import drift_name, likely_random_walk, walk_evidence
+from stages.criticism.selection import SENSORS, Selection, walk_name
+
+MAX_LOG_ODDS = 3.0  # of two explanations that are as likely
+MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
+MIN_TEMPERATURE_SNR = 8.0  # beside a random walk, of functions of temperature that are certain
+
+
+def weighed(law: Selection, walk: Selection, number: int) -> Selection:
+    """The likelier of effects without and with a random walk of one sensor, or both as a class.
+
+    Where they are alike a single effect keeps its name and the random walk joins its class; of
+    several effects the random walk is the simpler, and they are what it may be instead. One that
+    stands for no effect must be clearly likelier than none.
+    """
+    walk = replace(walk, alternatives=law.alternatives, rivals=law.rivals)
+    odds = _log_odds(law, walk, SENSORS[number])
+    kept = {cause.effect for cause in walk.named.causes}
+    only = [cause for cause in law.named.causes if cause.effect not in kept]
+    if drift_name(SENSORS[number]) in {cause.effect for cause in only}:
+        return walk  # a drift without a law has none that could be weighed
+    if odds > (MAX_LOG_ODDS if only else -MAX_LOG_ODDS):
+        return law
+    if odds < -MAX_LOG_ODDS:
+        return walk
+    if odds > 0 and len(only) == 1:
+        return replace(law, rivals={**law.rivals, only[0].effect: (walk_name(number), odds)})
+    members = [member for cause in only for member in cause.members]
+    return replace(walk, alternatives=tuple(dict.fromkeys([*law.alternatives, *members])))
+
+
+def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
+    """Of the effects without a random walk of a sensor against those with it."""
+    kept = {cause.effect for cause in walk.named.causes}
+    only = [cause.effect for cause in law.named.causes if cause.effect not in kept]
+    others = {cause.effect for cause in law.named.causes}
+    beside = [cause.effect for cause in walk.named.causes if cause.effect not in others]
+    start = law.equations_without(only)
+    walking = walk_odds.walk(start, law.half_waves(sensor))
+    # Of all its waves: without the fast ones the evidence against a walk would be incomplete.
+    known = [effect for effect in law.fitted if effect.name not in only]
+    walking = replace(walking, log_evidence=walk_evidence(law.campaign, sensor, known))
+    nothing = walk_odds.Explained(0.0, start)
+    # A walk is as likely beforehand as any one effect: each further cause is penalised for having
+    # been chosen.
+    further = (len(only) - len(beside) - 1) * float(np.log(len(law.families)))
+    return law.explained(only, nothing) - law.explained(beside, walking) - max(further, 0.0)
+
+
+def with_rivals(selection: Selection) -> Selection:
+    """The same with each random walk in the class of the effect that is as likely."""
+    causes = tuple(
+        _or(cause, *selection.rivals[cause.effect]) if cause.effect in selection.rivals else cause
+        for cause in selection.named.causes
+    )
+    return replace(selection, named=replace(selection.named, causes=causes))
+
+
+def _or(cause: Cause, rival: str, odds: float) -> Cause:
+    """A cause with another one in its class, against which it has these log odds."""
+    share = 1 / (1 + float(np.exp(odds)))
+    return replace(
+        cause,
+        verdict=ONE_OF_CLASS if cause.verdict == FOUND else cause.verdict,
+        members=(*cause.members, rival),
+        weights=(*(weight * (1 - share) for weight in cause.weights), share),
+        captured=(*cause.captured, 1.0),
+    )
+
+
+def with_further_jumps(selection: Selection) -> Selection:
+    """The same; what a further jump of a bias that jumped explains as well may be one.
+
+    The search has one jump for each sensor, so a second one would be taken for any effect that
+    resembles it. Where it is clearly likelier, the bias jumps without a law: then no other effect
+    of that sensor is certain.
+    """
+    jumps = {sensor: f"{sensor}_bias_jump" for sensor in SENSORS}
+    named = {cause.effect for cause in selection.named.causes}
+    causes, without_a_law = [], set()
+    for cause in selection.named.causes:
+        sensor = selection.sensor(cause)
+        jump = jumps[sensor]
+        if jump in named and jump not in cause.members and cause.effect in selection.families:
+            start = walk_odds.Explained(0.0, selection.equations_without([cause.effect]))
+            odds = selection.explained([cause.effect], start) - selection.explained([jump], start)
+            if odds < -MAX_LOG_ODDS:
+                without_a_law.add(sensor)
+            elif odds < MAX_LOG_ODDS:
+                cause = _or(cause, jump, odds)
+        causes.append(cause)
+    kept = tuple(
+        replace(cause, verdict=UNKNOWN_STRUCTURE)
+        if selection.sensor(cause) in without_a_law and cause.effect not in jumps.values()
+        else cause
+        for cause in causes
+    )
+    return replace(selection, named=replace(selection.named, causes=kept))
+
+
+def replacing_walk(selection: Selection, number: int) -> float:
+    """The most likely random walk of a sensor in place of effects that it explains as well.
+
+    These may be one of the named effects of the sensor or all of them; 0: none.
+    """
+    sensor = SENSORS[number]
+    own = [c.effect for c in selection.named.causes if selection.sensor(c) == sensor]
+    for replaced in [[effect] for effect in own] + [own] * (len(own) > 1):
+        start = selection.equations_without(replaced)
+        walking = walk_odds.walk(start, selection.half_waves(sensor)).log_evidence
+        law = selection.explained(replaced, walk_odds.Explained(0.0, start))
+        if law - walking < MAX_LOG_ODDS:
+            others = [effect for effect in selection.effects if effect.name not in replaced]
+            if size := likely_random_walk(selection.campaign, sensor, others):
+                return size
+    return 0.0
+
+
+def members_of(selection: Selection) -> tuple[str, ...]:
+    members = [member for cause in selection.named.causes for member in cause.members]
+    return tuple(dict.fromkeys(members))
+
+
+def consistent_with_walks(selection: Selection) -> Selection:
+    """The same; a cause that a random walk describes as well is consistent with the data only."""
+    resembling = dict(
+        zip(_effects(selection), _resembling_walks(selection.campaign, selection), strict=True)
+    )
+    causes = tuple(
+        replace(cause, verdict=UNKNOWN_STRUCTURE) if resembling.get(place) else cause
+        for place, cause in enumerate(selection.named.causes)
+    )
+    return replace(selection, named=replace(selection.named, causes=causes))
+
+
+def _effects(selection: Selection) -> list[int]:
+    """Which of the causes are effects of the catalogue, not drifts without a law."""
+    causes = selection.named.causes
+    return [place for place, cause in enumerate(causes) if cause.effect in selection.families]
+
+
+def _resembling_walks(with_walk: Campaign, selection: Selection) -> list[bool]:
+    """Whether random walks leave little of the information of each named effect."""
+    named = selection.effects
+    if not named:
+        return []
+    totals = [
+        evidence(campaign, named).total
+        for campaign in (with_walk, with_walk.without_random_walks())
+    ]
+    column = {name: i for i, name in enumerate(totals[0].names)}
+    result = []
+    for place, effect in zip(_effects(selection), named, strict=True):
+        own = [column[name] for name in effect.columns if name in column]
+        values = np.nan_to_num(selection.named.causes[place].values)
+        remaining, whole = (
+            values @ total.information[np.ix_(own, own)] @ values for total in totals
+        )
+        # A walk that follows a measured temperature by chance leaves nothing of its functions.
+        most = MIN_TEMPERATURE_SNR**2 if effect.name in TEMPERATURE_MODELS else np.inf
+        result.append(bool(remaining < min(MAX_WALK_SHARE * float(whole), most)))
+    return result
