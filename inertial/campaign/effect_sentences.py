@@ -7,6 +7,7 @@ from inertial.model_selection.cause import FOUND, ONE_OF_CLASS
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, with_sigma
+from inertial.text.parameters import sign_of
 from inertial.text.units import quantity
 
 MIN_SIGMAS = 3.0  # from which a parameter is given in a sentence, if any reaches it
@@ -82,4 +83,4 @@ def _number(parameter: Estimated) -> str:
     unit = quantity(parameter.name, parameter.unit).laboratory
     sigma = unit.of(parameter.sigma or 0.0)
     value = " ± ".join(with_sigma(unit.of(parameter.value or 0.0), sigma, decimals_of(sigma)))
-    return f"{parameter.name} = {value} {unit.name}"
+    return f"{sign_of(parameter.name)} = {value} {unit.name}"

@@ -38,7 +38,17 @@ BIAS, SCALE, CROSS, MOUNTING, SYMMETRIC = (
     for kind in ("bias", "scale", "cross", "mounting", "symmetric")
 )
 
+# Letters that parameters of effects are written with where a person reads them.
+LETTERS = {"theta": "θ", "phi": "φ", "tau": "τ", "delta": "δ"}
+LETTERS |= {"dphi": "Δφ", "dpsi": "Δψ", "dg": "Δg"}
+
 JOINT, EXTENDED = "joint", "extended"  # results: of the joint fit, with the unmodelled effects
 FREE = "free_positions"  # of static positions of unknown attitude
 STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}  # by the sensor as columns call it
 SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}
+
+
+def sign_of(parameter: str) -> str:
+    """A parameter of an effect as it is written: θ_x for theta_x, Δφ for dphi."""
+    letter, underscore, axes = parameter.partition("_")
+    return LETTERS.get(letter, letter) + underscore + axes

@@ -16,6 +16,7 @@ from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant
+from inertial.text.parameters import sign_of
 from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
 from stages.criticism.law_sentences import law_sentence
@@ -106,7 +107,7 @@ def explanation(effect: Effect, reason: str, blind: str) -> str | None:
 def limit_sentence(effect: Effect, limit: Visible, why: str | None) -> str:
     """From which size on a parameter is detected, or `why` it is not observable."""
     parameter = effect.parameters[limit.parameter]
-    title = f"{in_words(effect.name)}, {parameter.name}"
+    title = f"{in_words(effect.name)}, {sign_of(parameter.name)}"
     if why is not None:
         return NO_LIMIT.format(parameter=title, reason=why)
     unit = quantity(parameter.name, parameter.unit).laboratory

@@ -9,7 +9,7 @@ from inertial.campaign.records import Part, parts_of
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.messages import _
-from inertial.text.parameters import EXTENDED, JOINT, PARTS, SENSOR_OF, STAGES
+from inertial.text.parameters import EXTENDED, JOINT, PARTS, SENSOR_OF, STAGES, sign_of
 from stages.report.linked import DECISION_TABLES
 from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once
@@ -291,7 +291,7 @@ def by_kind(rows: Iterable[Record]) -> list[Record]:
 def symbol(parameter: str) -> str:
     """The parameter's sign with its axes: b_x, s_x, m_xy; its name where it has none."""
     if parameter not in PARTS:
-        return term(_without_effect(parameter))
+        return term(sign_of(_without_effect(parameter)))
     kind, axes = PARTS[parameter]
     return f"{SYMBOL[kind]}_{axes}"
 

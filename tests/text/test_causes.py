@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from inertial.effects import CATALOGUE
 from inertial.text.cause_names import in_words
+from inertial.text.parameters import sign_of
 
 
 @pytest.mark.parametrize(
@@ -18,3 +20,11 @@ from inertial.text.cause_names import in_words
 )
 def test_names_of_causes(cause: str, words: str) -> None:
     assert in_words(cause) == words
+
+
+def test_no_letter_of_a_parameter_is_spelled_out_where_it_is_read():
+    """Words (north, frequency) stay; Greek letters and differences are signs."""
+    words = {"north", "east", "lean", "quarter", "limit", "frequency", "amplitude"}
+    names = {p.name.partition("_")[0] for effect in CATALOGUE.values() for p in effect.parameters}
+    assert {sign_of(name) for name in names if len(name) > 2} - words == {"θ", "φ", "δ", "Δφ", "Δψ"}
+    assert [sign_of(name) for name in ("theta_z", "g_xy", "dg")] == ["θ_z", "g_xy", "Δg"]
