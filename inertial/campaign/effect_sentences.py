@@ -19,7 +19,7 @@ DETECTED_CLASS = _(
 )
 CONSISTENT = _(
     "The data are consistent with {effects}; no more can be said, for the remaining "
-    "residuals, or a random walk, follow no law. As {effect}: {numbers}."
+    "residuals, a random walk or further jumps follow no law. As {effect}: {numbers}."
 )
 NO_NUMBER = _("no parameter by itself")
 

@@ -69,7 +69,11 @@ _KIND = {
         "periodic": ("oscillation", "table_ripple", "table_eccentricity", "table_wobble"),
         "temperature": (
             "temperature_drift",
-            *(f"{s}_{what}" for s in ("gyro", "accel") for what in ("warm_up", "bias_ramp")),
+            *(
+                f"{s}_{what}"
+                for s in ("gyro", "accel")
+                for what in ("warm_up", "bias_ramp", "scale_ramp")
+            ),
             *(f"{s}_temperature" for s in ("gyro", "accel")),
             *(f"{s}_{what}_temperature" for s in ("gyro", "accel") for what in ("bias", "scale")),
         ),

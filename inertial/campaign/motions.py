@@ -75,14 +75,16 @@ def measured_angles(
 ) -> Array:
     """The angle of the table in each stretch as measured by the gyros, (k,), rad.
 
-    As in the equations of a turn: else an effect that every calibration takes up, such as gyros
-    that are mounted askew, would differ from the parameters that take it up by the noise of the
-    angles. The earth's rate is subtracted in the direction that follows from the angle so far.
+    With these weights as in the equations of a turn: else an effect that every calibration takes
+    up, such as gyros that are mounted askew, would differ from the parameters that take it up by
+    the noise of the angles. The earth's rate is subtracted in the direction that follows from the
+    angle so far.
 
     Parameters
     ----------
+    sums : (k, 3), rad, NaN where a channel is not recorded
     at_middle : converts the angles of the stretches to that of the table at the middle of each
-    weight : (3,), of the channels, over their white noise; not finite where one is not recorded
+    weight : (3,), 1 over the white noise of each channel; not finite where it is not known
     """
     known = np.isfinite(weight) & np.isfinite(sums).all(axis=0)
     weight = np.where(known, weight, 0.0)

@@ -311,7 +311,8 @@ def _leaked_into(
     """The bins with oscillations, and those into which too much of one leaks.
 
     The transform has no taper: of the power of an oscillation in a block, a coefficient k steps
-    off has 2 / (π k)² on average. Where that would leave next to nothing of the band, it stays.
+    off has 2 / (π k)² on average. Where fewer bins of the band would be left than the median of
+    neighbours needs, only the bins with oscillations are left out.
     """
     result = lines.copy()
     tolerated = MAX_LEAKED * beside * np.sqrt(2 / bins.degrees)
@@ -320,7 +321,7 @@ def _leaked_into(
         apart = np.maximum(np.abs(bins.frequency - bins.frequency[i]), bins.spacing)
         leaked = power * bins.spacing * 2 / (np.pi * apart) ** 2
         result |= (bins.level == bins.level[i]) & (leaked > tolerated)
-    if np.sum(within & ~result) < 2 * NEIGHBOURS:
+    if np.sum(within & ~result) < NEIGHBOURS:
         return lines
     return result
 

@@ -159,7 +159,8 @@ def steps(motion: Motion, count: int) -> Array:
 def grid(family: str, name: str, motion: Motion, axis: int) -> list[tuple[float, ...]]:
     """The shapes of a family that this motion can distinguish.
 
-    What an effect of the catalogue is, is left out: a straight line, the square of an own force.
+    What an effect of the catalogue is by one state is left out: a straight line, the square of an
+    own force.
     """
     x = state(name, motion, axis)
     low, high = float(np.nanmin(x)), float(np.nanmax(x))

@@ -99,6 +99,7 @@ _BY_UNIT = {
     "1/(rad/s)": Quantity(Unit("ppm/(°/s)", 1e-6 / DEGREE), Unit("1/(rad/s)", 1.0)),
     "1/(rad/s)²": Quantity(Unit("ppm/(°/s)²", 1e-6 / DEGREE**2), Unit("1/(rad/s)²", 1.0)),
     "1/(m/s²)": Quantity(Unit("ppm/g", 1e-6 / STANDARD_GRAVITY), Unit("10⁻⁶ 1/(m/s²)", 1e-6)),
+    "1/s": Quantity(Unit("ppm/h", 1e-6 / HOUR), Unit("10⁻⁹ 1/s", 1e-9)),
     "1/K": Quantity(Unit("ppm/K", 1e-6), Unit("10⁻⁶ 1/K", 1e-6)),
     "1/K²": Quantity(Unit("ppm/K²", 1e-6), Unit("10⁻⁶ 1/K²", 1e-6)),
     "1/K³": Quantity(Unit("ppm/K³", 1e-6), Unit("10⁻⁶ 1/K³", 1e-6)),

@@ -38,7 +38,8 @@ CONSEQUENCE = _(
     "hold in other motions."
 )
 CONSEQUENCE_WITHOUT_LAW = _(
-    "The joint estimate allows for it as a random walk or as a scatter of the manoeuvres."
+    "The joint estimate allows for a random walk, or a scatter of the manoeuvres, "
+    "where there is one."
 )
 
 PER_LOG = {

@@ -1,7 +1,8 @@
 """Selection of the unmodelled effects of one mount from its block means.
 
 Where a variable is scanned the selection is repeated with finer values about its first estimate.
-The random walk of a bias is re-estimated given the named effects, see `rivals`.
+The random walk of a bias is estimated again given the named effects, which are weighed against it
+and against further jumps, see `rivals`.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -31,7 +32,7 @@ from stages.criticism.rivals import (
     replacing_walk,
     weighed,
     with_further_jumps,
-    with_rivals,
+    with_rival_walks,
 )
 from stages.criticism.selection import SENSORS, Selection
 
@@ -127,7 +128,7 @@ def select_effects(
         if (gyro, accel) != selection.random_walks:
             again = with_walks((gyro, accel)) if gyro or accel else without
             selection = replace(again, alternatives=selection.alternatives, rivals=selection.rivals)
-    selection = with_further_jumps(with_rivals(selection))
+    selection = with_further_jumps(with_rival_walks(selection))
     if not any(selection.random_walks):
         return replace(selection, alternatives=())
     named = members_of(selection)

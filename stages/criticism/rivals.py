@@ -1,8 +1,9 @@
-"""What else may be behind a named effect: a random walk of the biases, or a further jump.
+"""What else may be behind a named effect: a random walk of the biases, or further jumps of one.
 
 A random walk of a bias may be mistaken for effects, or they for it: a jump, a ramp, any drift. So
 the two explanations are compared by their likelihoods. With an effect that a random walk describes
 as well the data are no more than consistent, for a random walk follows no law that could be tested.
+So it is with an effect that further jumps of a bias describe as well, where one jump is named.
 """
 
 from dataclasses import replace
@@ -11,13 +12,15 @@ import numpy as np
 
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
-from inertial.effects import TEMPERATURE_MODELS
+from inertial.effects import CATALOGUE, TEMPERATURE_MODELS
 from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause
 from stages.criticism.bias_drift import drift_name, likely_random_walk, walk_evidence
 from stages.criticism.selection import SENSORS, Selection, walk_name
 
 MAX_LOG_ODDS = 3.0  # of two explanations that are as likely
+MAX_FURTHER_JUMPS = 6  # of a bias: two of them look like any effect of one manoeuvre
+MIN_INFORMATION = 1e-6  # share of what a jump has by itself: less is rounding
 MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
 MIN_TEMPERATURE_SNR = 8.0  # beside a random walk, of functions of temperature that are certain
 
@@ -63,55 +66,70 @@ def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
     return law.explained(only, nothing) - law.explained(beside, walking) - max(further, 0.0)
 
 
-def with_rivals(selection: Selection) -> Selection:
+def with_rival_walks(selection: Selection) -> Selection:
     """The same with each random walk in the class of the effect that is as likely."""
+
+    def joined(cause: Cause) -> Cause:
+        if cause.effect not in selection.rivals:
+            return cause
+        walk, odds = selection.rivals[cause.effect]
+        share = 1 / (1 + float(np.exp(odds)))
+        return replace(
+            cause,
+            verdict=ONE_OF_CLASS if cause.verdict == FOUND else cause.verdict,
+            members=(*cause.members, walk),
+            weights=(*(weight * (1 - share) for weight in cause.weights), share),
+            captured=(*cause.captured, 1.0),
+        )
+
+    causes = tuple(joined(cause) for cause in selection.named.causes)
+    return replace(selection, named=replace(selection.named, causes=causes))
+
+
+def with_further_jumps(selection: Selection) -> Selection:
+    """The same; what further jumps of a bias that jumped explain as well is not certain.
+
+    The search has one jump for each sensor, so others would be taken for any effect that resembles
+    them, or what they leave at other times than those of the scan. They are in no class, for no
+    model has a second one.
+    """
+    named = {cause.effect for cause in selection.named.causes}
+    jumping = {sensor: f"{sensor}_bias_jump" for sensor in SENSORS}
+    jumping = {sensor: jump for sensor, jump in jumping.items() if jump in named}
+    doubtful: set[str] = set()
+    found = -1
+    while len(doubtful) > found:  # what stood for a jump hides it no longer
+        found = len(doubtful)
+        for cause in selection.named.causes:
+            jump = jumping.get(selection.sensor(cause))
+            own = jump in cause.members or cause.effect not in CATALOGUE
+            if jump and not own and cause.effect not in doubtful:
+                rest = selection.equations_without({*doubtful, cause.effect})
+                effect = selection.explained([cause.effect], walk_odds.Explained(0.0, rest))
+                if effect - _log_evidence_of_jumps(selection, jump, rest) < MAX_LOG_ODDS:
+                    doubtful.add(cause.effect)
     causes = tuple(
-        _or(cause, *selection.rivals[cause.effect]) if cause.effect in selection.rivals else cause
+        replace(cause, verdict=UNKNOWN_STRUCTURE) if cause.effect in doubtful else cause
         for cause in selection.named.causes
     )
     return replace(selection, named=replace(selection.named, causes=causes))
 
 
-def _or(cause: Cause, rival: str, odds: float) -> Cause:
-    """A cause with another one in its class, against which it has these log odds."""
-    share = 1 / (1 + float(np.exp(odds)))
-    return replace(
-        cause,
-        verdict=ONE_OF_CLASS if cause.verdict == FOUND else cause.verdict,
-        members=(*cause.members, rival),
-        weights=(*(weight * (1 - share) for weight in cause.weights), share),
-        captured=(*cause.captured, 1.0),
-    )
-
-
-def with_further_jumps(selection: Selection) -> Selection:
-    """The same; what a further jump of a bias that jumped explains as well may be one.
-
-    The search has one jump for each sensor, so a second one would be taken for any effect that
-    resembles it. Where it is clearly likelier, the bias jumps without a law: then no other effect
-    of that sensor is certain.
-    """
-    jumps = {sensor: f"{sensor}_bias_jump" for sensor in SENSORS}
-    named = {cause.effect for cause in selection.named.causes}
-    causes, without_a_law = [], set()
-    for cause in selection.named.causes:
-        sensor = selection.sensor(cause)
-        jump = jumps[sensor]
-        if jump in named and jump not in cause.members and cause.effect in selection.families:
-            start = walk_odds.Explained(0.0, selection.equations_without([cause.effect]))
-            odds = selection.explained([cause.effect], start) - selection.explained([jump], start)
-            if odds < -MAX_LOG_ODDS:
-                without_a_law.add(sensor)
-            elif odds < MAX_LOG_ODDS:
-                cause = _or(cause, jump, odds)
-        causes.append(cause)
-    kept = tuple(
-        replace(cause, verdict=UNKNOWN_STRUCTURE)
-        if selection.sensor(cause) in without_a_law and cause.effect not in jumps.values()
-        else cause
-        for cause in causes
-    )
-    return replace(selection, named=replace(selection.named, causes=kept))
+def _log_evidence_of_jumps(selection: Selection, jump: str, rest: walk_odds.Equations) -> float:
+    """Of as many further jumps as are likeliest, each given those before."""
+    searched = next(one for one in selection.searched if one.name == jump)
+    whole = np.diag(selection.evidence.observable().total.information)
+    evidence = best = 0.0
+    for _ in range(MAX_FURTHER_JUMPS):
+        remains = np.diag(rest.information) > MIN_INFORMATION * whole  # not of one that is there
+        new = [i for i, one in enumerate(searched.candidates) if remains[list(one)].all()]
+        if not new:
+            break
+        candidates = [searched.candidates[i] for i in new]
+        law = walk_odds.law(rest, candidates, selection.prior(searched)[new])
+        evidence, rest = evidence + law.log_evidence, law.rest
+        best = max(best, evidence)
+    return best
 
 
 def replacing_walk(selection: Selection, number: int) -> float:

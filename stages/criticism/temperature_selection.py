@@ -149,7 +149,10 @@ def _weighed(functions: Selection, plain: Selection) -> Selection:
             verdict=ONE_OF_CLASS if cause.verdict == FOUND else cause.verdict,
             members=(*cause.members, *rivals),
             member_values=(*cause.member_values, *(0 for _ in rivals)),
-            weights=(1 - share, *(share / len(rivals) for _ in rivals)),
+            weights=(
+                *(weight * (1 - share) for weight in cause.weights),
+                *(share / len(rivals) for _ in rivals),
+            ),
             captured=(*cause.captured, *(1.0 for _ in rivals)),
         )
 

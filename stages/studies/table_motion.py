@@ -203,9 +203,8 @@ def motion_of(
     earth = data.earth
     north = position_of(m, data.heading).north
     horizontal = float(np.linalg.norm(cross(m.up, about)))  # 0 where the axis is upright
-    sensed = np.where(np.isfinite(increments), increments, gyros.triad.bias * step)
     measured = measured_angles(
-        sensed,
+        increments,
         np.full(len(time), step),
         about,
         m.up,

@@ -10,6 +10,8 @@ import laboratory
 COUNT = 1.52587890625e-6  # m/s, of the demo's accelerometers
 G = 9.80665
 STEP_S = 0.01
+CLEAR = ("found", "one_of_class")
+JUMP, BESIDE = {"size_micro_g": [80, 0, 0], "at_s": 1000}, {"k2_micro_g_g2": [0, 200, 0]}
 
 
 def test_a_second_jump_is_no_shift_of_the_case_and_no_size_effect():
@@ -28,7 +30,15 @@ def test_a_second_jump_is_no_shift_of_the_case_and_no_size_effect():
     results = chain.in_memory(replace(recording, records=logs), "criticism", chain.BESIDE)
     findings = results["criticism/findings"].set_index("cause")["verdict"]
     assert findings["accel_random_walk"] == "unknown_structure"
-    clear = findings[findings.isin(["found", "one_of_class"])]
-    assert set(clear.index) <= {"accel_bias_jump"}
+    assert findings[findings.isin(CLEAR)].index.tolist() == ["accel_bias_jump"]
     members = set(results["criticism/members"]["effect"])
     assert {"mounting_shift", "size_effect"} <= members  # with which the data are consistent
+
+
+def test_a_true_effect_beside_one_true_jump_stays_certain():
+    document = chain.demo(seed=8, effects={"accel_bias_jump": JUMP, "accel_quadratic": BESIDE})
+    results = chain.in_memory_of(document, "criticism", chain.BESIDE)
+    findings = results["criticism/findings"]
+    assert findings["verdict"].isin(CLEAR).all() and len(findings) == 2
+    members = set(results["criticism/members"]["effect"])
+    assert members == {"accel_bias_jump", "accel_quadratic", "accel_scale_asymmetry"}

@@ -153,6 +153,17 @@ def test_an_oscillation_is_marked_and_changes_no_term(amplitude, frequency):
     assert not result.terms["quantisation"].detected
 
 
+def test_a_line_that_leaks_into_every_bin_leaves_a_fit():
+    """A hum of 1,000 times the noise of a sample: what it leaks exceeds the noise everywhere."""
+    chance = np.random.default_rng(6)
+    quiet = noise(SAMPLES, INTERVAL, chance, white_noise=1.0)
+    time = np.arange(SAMPLES) * INTERVAL
+    hum = 1e3 / np.sqrt(INTERVAL) * np.sin(2 * np.pi * 0.3 * time)
+    result = found(quiet + hum)
+    assert (result.lines[:, 0] < 0.3).any() and (result.lines[:, 1] > 0.3).any()
+    assert np.isfinite(result.terms["white_noise"].upper)
+
+
 def test_what_a_low_pass_filter_takes_is_not_fitted():
     chance = np.random.default_rng(7)
     rates = noise(2 * SAMPLES, INTERVAL, chance, white_noise=1.0, bias_instability=1.0)

@@ -7,6 +7,7 @@ import pytest
 from inertial.effects import CATALOGUE
 from inertial.text.cause_names import in_words
 from inertial.text.parameters import sign_of
+from inertial.text.units import quantity
 
 
 @pytest.mark.parametrize(
@@ -20,6 +21,13 @@ from inertial.text.parameters import sign_of
 )
 def test_names_of_causes(cause: str, words: str) -> None:
     assert in_words(cause) == words
+
+
+def test_every_unit_of_an_effect_has_one_of_the_laboratory():
+    units = {parameter.unit for effect in CATALOGUE.values() for parameter in effect.parameters}
+    written = {unit: quantity("", unit).laboratory.name for unit in units - {"Hz", "1", "s"}}
+    assert not {unit for unit, name in written.items() if unit == name}
+    assert written["1/s"] == "ppm/h"
 
 
 def test_no_letter_of_a_parameter_is_spelled_out_where_it_is_read():
