@@ -592,7 +592,7 @@ def test_the_rate_of_a_clock_by_stamps_of_arrival_is_in_the_scale_factors(tmp_pa
     known = chain.run(exact, tmp_path / "exact/derived").parameters("gyroscope")
     turns = [m for m in told(exact)["plan"] if m["do"] == "turn"]
     scales, pulls = [f"scale_{axis}" for axis in "xyz"], []
-    for seed in range(4):
+    for seed in range(2):
         random = np.random.default_rng(seed)
         raw = tmp_path / f"raw-{seed}"
         raw.mkdir()
@@ -616,8 +616,8 @@ def test_the_rate_of_a_clock_by_stamps_of_arrival_is_in_the_scale_factors(tmp_pa
             added = np.sqrt(joint.loc[scale, "sigma"] ** 2 - known.loc[scale, "sigma"] ** 2)
             assert added == pytest.approx(expected, rel=0.25)
             pulls.append((joint.loc[scale, "value"] - known.loc[scale, "value"]) / expected)
-    # Twelve pulls: their rms scatters by 20 %.
-    assert 0.5 < np.sqrt(np.mean(np.square(pulls))) < 1.6
+    # Six pulls: their rms scatters by 29 %.
+    assert 0.4 < np.sqrt(np.mean(np.square(pulls))) < 1.9
     assert np.abs(pulls).max() < MAX_SIGMA
 
 

@@ -17,7 +17,11 @@ def swaying(channel, log):
 
 
 @pytest.mark.parametrize(
-    ("channel", "manoeuvre"), [("accel_y", "x-forward"), ("accel_z", "y-backward")]
+    ("channel", "manoeuvre"),
+    [
+        ("accel_y", "x-forward"),
+        pytest.param("accel_z", "y-backward", marks=pytest.mark.slow),
+    ],
 )
 def test_a_structure_of_one_manoeuvre_is_said_to_be_there(channel, manoeuvre):
     results = swaying(channel, f"{manoeuvre}.asc")
