@@ -120,6 +120,17 @@ def test_what_is_hidden_is_named_alone_with_its_number(criticised, effect):
             assert 3 < abs(hidden) / found["detection_limit"] < 30
 
 
+def test_a_time_at_which_nothing_shows_an_effect_is_uncertain():
+    """A rotation about y while y is vertical: accelerometers show it in the next position."""
+    shift = {"rotation_arcsec": [0, 30, 0], "at_s": 1250}
+    document = chain.demo(seed=6, effects={"mounting_shift": shift})
+    effects = chain.in_memory_of(document, "criticism", NOT_NEEDED)["criticism/effects"]
+    found = effects.set_index(["effect", "parameter"]).loc["mounting_shift"]
+    off = found["value"] - {"theta_x": 0.0, "theta_y": np.radians(30 / 3600), "t0": 1250.0}
+    assert (off.abs() < 3 * found["sigma"])[["theta_x", "theta_y", "t0"]].all()
+    assert 50 < found.loc["t0", "sigma"] < 250  # of 360 s, evenly: 104 s
+
+
 def test_the_manoeuvre_that_splits_a_class_is_named(criticised):
     """With positions up, down and level only, the square and the size of the force are one."""
     (cause,) = criticised("accel_quadratic", 51)["criticism/findings"].to_dict("records")

@@ -279,12 +279,9 @@ class BlockResults:
             limit, fitted = limits.get(parameter.name), float(plain[i]) if known else None
             parameters.append(Estimated(*described, estimate, sigma, limit, fitted))
         if effect.scan is not None and effect.name in self.causes:
-            scan, at = effect.scan, effect.at or 0.0
-            family = self.selection.families[effect.name]
-            distances = [abs((candidate.at or 0.0) - at) for candidate in family]
-            step = min(filter(None, distances), default=0.0)
-            sigma = step / 12**0.5 if scan.between else None  # uniform within a step
-            parameters.append(Estimated(scan.name, scan.unit, scan.meaning, at, sigma))
+            scan = effect.scan
+            sigma = self.selection.scan_sigma(self.causes[effect.name]) if scan.between else None
+            parameters.append(Estimated(scan.name, scan.unit, scan.meaning, effect.at, sigma))
         elif effect.name in TEMPERATURE_MODELS or effect.name in LAWS:
             parameters += [
                 Estimated(one.name, one.unit, one.meaning, one.value)

@@ -111,15 +111,29 @@ class Selection:
         )
         return replace(moved, named=replace(self.named, causes=causes))
 
-    def _drops(self, cause: Cause) -> dict[str, float]:
-        """The reduction of χ² by a cause in each sensor whose readings it changes, else 0.
+    def scan_sigma(self, cause: Cause) -> float:
+        """What the scanned value of a cause is uncertain by, about the one that is best.
 
-        Given the other causes, and in units of the noise that the search found.
+        A time at which nothing is excited is as likely as its neighbours, so all values of the scan
+        count, with their likelihood and the share of the range that each stands for.
         """
+        searched = next(one for one in self.searched if one.name == cause.effect)
+        total = self._beside_others(cause).total
+        drops = np.array([total.drop(columns)[0] for columns in searched.candidates])
+        at = np.array([one.at for one in self.families[cause.effect]], np.float64)
+        weights = self.prior(searched) * np.exp((drops - drops.max()) / 2)
+        squares = (at - at[cause.value]) ** 2 + np.gradient(at) ** 2 / 12  # uniform within a step
+        return float(np.sqrt(np.average(squares, weights=weights)))
+
+    def _beside_others(self, cause: Cause) -> Evidence:
+        """The evidence given the other causes, in units of the noise that the search found."""
         others = [i for c in self.named.causes if c is not cause for i in c.columns]
         evidence = self.evidence.given(list(dict.fromkeys(others)))
-        if self.named.excesses:
-            evidence = evidence.scaled(self.named.excesses)
+        return evidence.scaled(self.named.excesses) if self.named.excesses else evidence
+
+    def _drops(self, cause: Cause) -> dict[str, float]:
+        """The reduction of χ² by a cause in each sensor whose readings it changes, else 0."""
+        evidence = self._beside_others(cause)
         raw = evidence.raw
         acts = [
             raw is None or bool((raw[number, list(cause.columns)] > 0).any())
