@@ -121,9 +121,10 @@ class Selection:
         total = self._beside_others(cause).total
         drops = np.array([total.drop(columns)[0] for columns in searched.candidates])
         at = np.array([one.at for one in self.families[cause.effect]], np.float64)
-        weights = self.prior(searched) * np.exp((drops - drops.max()) / 2)
-        squares = (at - at[cause.value]) ** 2 + np.gradient(at) ** 2 / 12  # uniform within a step
-        return float(np.sqrt(np.average(squares, weights=weights)))
+        step = self.prior(searched) if len(at) > 1 else np.zeros(1)
+        squares = (at - at[cause.value]) ** 2 + step**2 / 12  # uniform within a step
+        likely = step * np.exp((drops - drops.max()) / 2)
+        return float(np.sqrt(likely @ squares / likely.sum())) if likely.any() else 0.0
 
     def _beside_others(self, cause: Cause) -> Evidence:
         """The evidence given the other causes, in units of the noise that the search found."""
