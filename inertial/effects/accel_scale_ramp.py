@@ -35,6 +35,7 @@ class AccelScaleRamp(Effect):
     )
     terms = on_each_axis("accel", "k_{i}", "t * f_{i}")
     sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
+    thinkable = 4.0  # 200 ppm/K that warms by 10 K in an hour
 
     def blind(self, motion: Motion) -> str:
         return without_clock(motion)

@@ -33,6 +33,7 @@ class GyroScaleRamp(Effect):
     )
     terms = on_each_axis("gyro", "k_{i}", "t * w_{i}")
     sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
+    thinkable = 4.0  # 200 ppm/K that warms by 10 K in an hour
 
     def blind(self, motion: Motion) -> str:
         return without_clock(motion)

@@ -5,7 +5,7 @@ The random walk of a bias is estimated again given the named effects, which are 
 and against further jumps, see `rivals`.
 """
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +13,7 @@ import numpy as np
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.scatter_of_positions import scattered
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, Named
 from inertial.model_selection.detection_limits import visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.naming import causes, law_of, with_given
@@ -161,6 +162,7 @@ def _select(
         if min_snr:
             break
         min_snr = MIN_THIRD_SEARCH_SNR
+    named = replace(named, causes=tuple(_thinkable(named, rest, searched, families)))
     if given and equations.sensors:
         column = {name: i for i, name in enumerate(equations.names)}
         before = [
@@ -170,6 +172,42 @@ def _select(
         named, searched = with_given(equations, named, before), [*searched, *before]
         families |= {effect.name: (effect,) for effect in given}
     return Selection(campaign, (), equations, searched, families, named, limits)
+
+
+def _thinkable(
+    named: Named,
+    rest: Evidence,
+    searched: Sequence[SearchedEffect],
+    families: Mapping[str, Sequence[Effect]],
+) -> Iterator[Cause]:
+    """The causes without members that would have to be larger than any that is thinkable."""
+    columns = {one.name: one.candidates for one in searched}
+
+    def fits(cause: Cause, name: str, value: int) -> bool:
+        if name not in families or name == cause.effect:
+            return True
+        effect, own = families[name][value], columns[name][value]
+        others = (i for other in named.causes if other is not cause for i in other.columns)
+        values, _ = rest.total.estimate(list(dict.fromkeys([*own, *others])))
+        largest = [effect.largest_of(parameter) for parameter in effect.parameters]
+        return bool(np.all(np.nan_to_num(np.abs(values[: len(own)])) <= largest))
+
+    for cause in named.causes:
+        pairs = zip(cause.members, cause.member_values, strict=True)
+        kept = [i for i, (name, value) in enumerate(pairs) if fits(cause, name, value)]
+        if len(kept) < len(cause.members):
+            weights = np.array([cause.weights[i] for i in kept])
+            cause = replace(
+                cause,
+                verdict=FOUND
+                if len(kept) == 1 and cause.verdict == ONE_OF_CLASS
+                else cause.verdict,
+                members=tuple(cause.members[i] for i in kept),
+                member_values=tuple(cause.member_values[i] for i in kept),
+                weights=tuple((weights / weights.sum()).tolist()),
+                captured=tuple(cause.captured[i] for i in kept),
+            )
+        yield cause
 
 
 def _evidence_given(

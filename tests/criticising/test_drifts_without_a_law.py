@@ -79,3 +79,12 @@ def test_a_scale_factor_that_drifts_beside_a_rising_temperature_may_be_either(se
     effects = results["criticism/effects"].set_index(["effect", "parameter"])
     found = effects.loc[finding["cause"], f"k_{'xyz'[axis]}"]
     assert abs(found["value"] - size) < 3.5 * found["sigma"]
+
+
+def test_an_asymmetry_is_no_ramp_of_an_unthinkable_size():
+    """Turns both ways a minute apart: 2 × 400 ppm would be a drift by 40,000 ppm/h."""
+    effects = {"gyro_scale_asymmetry": {"asymmetry_ppm": [150, -400, 250]}}
+    results = chain.in_memory_of(chain.short(effects=effects), "criticism", chain.BESIDE)
+    (finding,) = results["criticism/findings"].to_dict("records")
+    assert (finding["cause"], finding["verdict"]) == ("gyro_scale_asymmetry", "found")
+    assert results["criticism/members"]["effect"].tolist() == ["gyro_scale_asymmetry"]
