@@ -1,12 +1,14 @@
 """What drifts by no law is said to do so, and does not spoil the name of what has one."""
 
 import chain
+import numpy as np
 import pytest
 from hidden_plans import rates
 
 WALK = {"gyro_rate_random_walk_deg_h_sqrt_h": 0.4}
 G_SENSITIVITY = {"matrix_deg_h_g": [[1.4, 0, 0], [0, -1.0, 0], [0, 0, 1.2]]}
 CLEAR = ("found", "one_of_class")
+DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
 
 
 def criticised(seed, effects, noise):
@@ -37,19 +39,15 @@ def test_a_random_walk_beside_an_effect_is_estimated_and_takes_no_name(walking):
 
 
 @pytest.mark.slow
-def test_telegraph_noise_is_no_jump_and_its_structure_is_shown():
+def test_telegraph_noise_is_no_jump_but_a_law_of_two_levels():
     effects = {"gyro_telegraph": {"height_deg_h": [2.0, 0, 0], "dwell_s": 400}}
     results = criticised(4, effects, {})
-    findings = results["criticism/findings"]
-    assert not findings["verdict"].isin(CLEAR).any()
-    structure = findings.set_index("cause").loc["unknown_structure"]
-    assert structure["sensor"] == "gyro" and "are not noise: about x" in structure["sentence"]
-    # Only that axis jumps, and there is something to be seen.
-    points = results["criticism/structure_points"]
-    off = points[(points["sensor"] == "gyro") & (points["axis"] == "x")]
-    assert len(off)
-    assert (off["residual"].abs() > 5 * off["sigma"]).any()
+    (finding,) = results["criticism/findings"].to_dict("records")
+    assert (finding["cause"], finding["verdict"]) == ("gyro_x_telegraph_of_time", "law")
     assert not results["criticism/scores"].set_index("effect").loc["gyro_bias_jump", "named"]
+    sizes = results["criticism/effects"].set_index(["effect", "parameter"]).loc[finding["cause"]]
+    (between,) = sizes["value"][sizes.index.str.startswith("k")] / DEGREE_PER_HOUR
+    assert abs(abs(between) - 4.0) < 0.2  # from −2 to 2 °/h
 
 
 @pytest.mark.parametrize("seed", [1801, pytest.param(102, marks=pytest.mark.slow)])

@@ -108,7 +108,7 @@ def test_nothing_is_named_where_nothing_is_hidden():
 )
 def test_a_single_effect_is_named_with_its_class(number):
     one = draw(number, size)
-    assert one.kind == "single" and min(one.ratios.values()) >= 10
+    assert one.kind == "single" and min(one.ratios.values()) > 9.9
     outcome = run(one)
     assert class_right(outcome), outcome["named"]
     assert outcome["on_disk"] == one.on_disk and outcome["limits"]["limit"] > 0.99
