@@ -39,8 +39,10 @@ BIAS, SCALE, CROSS, MOUNTING, SYMMETRIC = (
 )
 
 # Letters that parameters of effects are written with where a person reads them.
-LETTERS = {"theta": "θ", "phi": "φ", "tau": "τ", "delta": "δ"}
-LETTERS |= {"dphi": "Δφ", "dpsi": "Δψ", "dg": "Δg"}
+LETTERS = {
+    **{"theta": "θ", "phi": "φ", "tau": "τ", "delta": "δ"},
+    **{"dphi": "Δφ", "dpsi": "Δψ", "dg": "Δg"},
+}
 
 JOINT, EXTENDED = "joint", "extended"  # results: of the joint fit, with the unmodelled effects
 FREE = "free_positions"  # of static positions of unknown attitude

@@ -39,6 +39,7 @@ from stages.criticism.selection import SENSORS, Selection
 
 FINER_STEPS = 4  # of the second search in each interval of the first
 MIN_THIRD_SEARCH_SNR = 20.0  # from which a third search is finer still
+UNTHINKABLE_SIGMAS = 3.0  # by which a size is beyond all that is thinkable
 MAX_ROUNDS = 3  # of the scatter of positions by hand and the effects
 
 
@@ -49,7 +50,7 @@ def select_with_scatter(
     noise_degrees: float,
     given: Sequence[Effect] = (),
 ) -> Selection:
-    """The same with the scatter of positions by hand, which is smaller once effects are named.
+    """As `select_effects`, with the scatter of positions by hand, smaller once effects are named.
 
     A scatter may be all effect: so in each sensor where none is named beside it, that which takes
     most of it away is tested against it. `given`: effects that are named before the search.
@@ -188,9 +189,10 @@ def _thinkable(
             return True
         effect, own = families[name][value], columns[name][value]
         others = (i for other in named.causes if other is not cause for i in other.columns)
-        values, _ = rest.total.estimate(list(dict.fromkeys([*own, *others])))
+        values, covariance = rest.total.estimate(list(dict.fromkeys([*own, *others])))
+        least = np.abs(values) - UNTHINKABLE_SIGMAS * np.sqrt(np.diag(covariance))
         largest = [effect.largest_of(parameter) for parameter in effect.parameters]
-        return bool(np.all(np.nan_to_num(np.abs(values[: len(own)])) <= largest))
+        return not bool((least[: len(own)] > largest).any())
 
     for cause in named.causes:
         pairs = zip(cause.members, cause.member_values, strict=True)

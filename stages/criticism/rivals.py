@@ -102,8 +102,9 @@ def with_further_jumps(selection: Selection) -> Selection:
         found = len(doubtful)
         for cause in selection.named.causes:
             jump = jumping.get(selection.sensor(cause))
-            own = jump in cause.members or cause.effect not in CATALOGUE
-            if jump and not own and cause.effect not in doubtful:
+            if jump is None or jump in cause.members or cause.effect not in CATALOGUE:
+                continue
+            if cause.effect not in doubtful:
                 rest = selection.equations_without({*doubtful, cause.effect})
                 effect = selection.explained([cause.effect], walk_odds.Explained(0.0, rest))
                 if effect - _log_evidence_of_jumps(selection, jump, rest) < MAX_LOG_ODDS:
