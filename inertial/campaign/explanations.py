@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from inertial.campaign.hypotheses import MAX_CARRYING, MODEL, POSITIONS, Hypothesis
+from inertial.campaign.hypotheses import LAW, MAX_CARRYING, MODEL, POSITIONS, Hypothesis
 
 Where = Callable[[Hypothesis, Hypothesis], bool]
 
@@ -220,7 +220,8 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
 
 
 def _in_proportion(effect: Hypothesis) -> bool:
-    return not IN_PROPORTION.isdisjoint(effect.causes)
+    """Whether it changes readings in proportion, or by a law that may be any change of one log."""
+    return effect.verdict == LAW or not IN_PROPORTION.isdisjoint(effect.causes)
 
 
 def _rank(hypothesis: Hypothesis) -> int:

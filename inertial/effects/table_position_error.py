@@ -29,6 +29,7 @@ class TablePositionError(Effect):
         for i, which in ((1, "first"), (2, "second"))
     )
     sizes = of_tables(ARC_SECOND, 2, 30)
+    thinkable = 1000.0  # a person who sets it may be degrees off
     scan = Scan("position", "1", _("place of the position among those of the plan"), between=False)
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:

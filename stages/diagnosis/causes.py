@@ -52,6 +52,9 @@ DONE = {
     LEFT_OUT: _("The manoeuvres concerned are left out of the estimates."),
     NONE: _("Nothing was done about it."),
 }
+OWN_ERROR = _(
+    "{manoeuvre} has an unknown error of its own in the model, so that it moves no parameter."
+)
 ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
 IN_COVARIANCE = _("The covariance of the result includes it.")
 HARMLESS = _("Nothing need be done about it for this result.")
@@ -73,7 +76,8 @@ class Cause:
 
     `moves`: largest shift of a parameter of the result that it causes or, undone, caused, in its
     sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns;
-    `modelled`: those of them whose result has it in its model.
+    `modelled`: those of them whose result has it in its model; `freed`: the manoeuvre whose own
+    error it is there.
     """
 
     members: tuple[Explained, ...]
@@ -84,6 +88,7 @@ class Cause:
     held_out_drop: float | None = None
     gain: str | None = None
     modelled: frozenset[str] = frozenset()
+    freed: str | None = None
 
     def of(self, sensor: str) -> Cause:
         """What it is for the result of one sensor, with its consequences there."""
@@ -101,6 +106,11 @@ class Cause:
             (member.cause for member in self.members),
             key=lambda h: (h.row["severity"], abs(h.row["size"] or 0.0)),
         )
+
+    @property
+    def manoeuvre(self) -> str | None:
+        """The manoeuvre concerned, if it is one."""
+        return self.main.manoeuvre or self.freed
 
     @property
     def id(self) -> str:
@@ -143,7 +153,7 @@ class Cause:
         names = names[:MOST_MEMBERS] if self.verdict == ONE_OF_CLASS else ()
         words = _(" or ").join(in_words(name) for name in names or (self.main.cause,))
         axis = self.main.axis
-        place = self.main.manoeuvre
+        place = self.manoeuvre
         words += _(" of the {axis} axis", axis=axis) if axis and self._one_axis() else ""
         return words + (_(" ({place})", place=place) if place else "")
 
@@ -170,7 +180,7 @@ class Cause:
             "sensor": main.sensor,
             "axis": (main.axis if self._one_axis() else None) or size.axis,
             "log": main.row["log"] if len(self.members) == 1 else None,
-            "manoeuvre": main.manoeuvre if len(self.members) == 1 else None,
+            "manoeuvre": self.manoeuvre if len(self.members) == 1 else None,
             "count": count,
             "sentence": sentence,
             "size": size.value,
@@ -219,16 +229,19 @@ class Evidence:
         main = max(members, key=lambda m: m.cause.row["severity"]).cause
         own = list(self._own(main))
         cure, moves, drop = self._cure(main, own, members)
+        freed = next(filter(None, (result.decision.freed.get(main.id) for result in own)), None)
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
         done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
         if main.id in self.walks:
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
             done = HARMLESS
+        elif freed:
+            done = OWN_ERROR.format(manoeuvre=freed)
         elif cure == NONE and modelled:
             done = ONLY_MODELLED.format(sensors=_(" and ").join(SENSORS[s] for s in modelled))
         sensors = tuple(dict.fromkeys(result.sensor for result in own))
-        return Cause(members, sensors, cure, done, moves, drop, _gain(main, drop), modelled)
+        return Cause(members, sensors, cure, done, moves, drop, _gain(main, drop), modelled, freed)
 
     def _own(self, cause: Hypothesis) -> Iterator[SensorResult]:
         """The results that a cause concerns: of its sensor, and where the model has its effect."""
@@ -282,7 +295,8 @@ class Evidence:
             return MODELLED, None, None
         modelled = [result for result in own if result.models(cause.causes)]
         others = [result for result in own if result not in modelled]
-        turned = cause.cause == MOUNTING_SHIFT
+        freed = any(cause.id in result.decision.freed for result in modelled)
+        turned = cause.cause == MOUNTING_SHIFT and not freed
         kept = others if turned else [each for each in others if each.shows(cause.causes)]
         moves = [move for result in kept or own if (move := result.moves(cause.causes)) is not None]
         if cause.row.get("moves") is not None:

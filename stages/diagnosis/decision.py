@@ -2,11 +2,12 @@
 
 One with effects does where it predicts the manoeuvres not used in its fit better than the joint
 one, no finding shows that the model is still incomplete, no effect rests on a single manoeuvre, and
-no parameter is lost.
+no parameter is lost. What a single manoeuvre alone shows may be that manoeuvre's own error as well:
+with an unknown of its own it moves nothing, whatever it is.
 """
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from inertial.campaign.records import Row
 from inertial.text.cause_names import in_words
@@ -59,11 +60,15 @@ OTHER_MEMBERS = _(
 class Decision:
     """Which candidate counts for a sensor, and why.
 
-    `method`: joint, or that of the most probable candidate with effects; `reason`: a sentence.
+    `method`: joint, or that of the most probable candidate with effects; `reason`: a sentence;
+    `freed`: by finding the manoeuvre whose own error it is in this candidate; `alike`: methods of
+    candidates whose effects the same manoeuvres carry, which for all others say the same.
     """
 
     method: str
     reason: str
+    freed: Mapping[str, str] = field(default_factory=dict)
+    alike: frozenset[str] = frozenset()
 
 
 def alarms_of(findings: Iterable[Row], mount: str, sensor: str) -> list[Row]:
@@ -99,27 +104,34 @@ def decided(
     causes = _listed([alarm["cause"] for alarm in alarms])
     if not determined:
         return Decision(JOINT, NO_JOINT.format(sensors=sensors))
+
+    def effects_of(candidate: Row) -> list[Row]:
+        return [row for row in effects if row["method"] == candidate["method"]]
+
     best = likeliest(candidates)
     if best is None:
         reason = DOUBTFUL if alarms else NO_EFFECT
         return Decision(JOINT, reason.format(sensors=sensors, causes=causes))
-    own = [row for row in effects if row["method"] == best["method"]]
+    carried = _carriers(effects_of(best))
+    alike = [one for one in candidates if carried and _carriers(effects_of(one)) == carried]
+    best = likeliest(one for one in alike if _freed(effects_of(one))) or best
+    own = effects_of(best)
     names = _listed([row["effect"] for row in own])
     others = _other_members(own, effects)
     if against := _against(best, own, causes):
         kept = KEPT.format(sensors=sensors, effects=names, reason=against)
         return Decision(JOINT, kept + others)
     if freed := _freed(own):
-        manoeuvres = ", ".join(dict.fromkeys(freed))
+        manoeuvres = ", ".join(dict.fromkeys(freed.values()))
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
-    else:
-        drop, expected = best["drop"], best["snr_squared"]
-        reason = REPLACED.format(
-            sensors=sensors,
-            effects=names,
-            drop=significant(drop),
-            expected=significant(expected),
-        )
+        same = frozenset(one["method"] for one in alike)
+        return Decision(best["method"], reason + others, freed, same)
+    reason = REPLACED.format(
+        sensors=sensors,
+        effects=names,
+        drop=significant(best["drop"]),
+        expected=significant(best["snr_squared"]),
+    )
     return Decision(best["method"], reason + others)
 
 
@@ -147,15 +159,21 @@ def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
     return ""
 
 
-def _freed(effects: Sequence[Row]) -> list[str]:
-    """The manoeuvres whose own errors these effects are; none where any is something else.
+def _freed(effects: Sequence[Row]) -> Mapping[str, str]:
+    """By finding the manoeuvre whose own error it is; none where any is something else.
 
     Such an effect cannot be predicted from other manoeuvres, and need not be: in the model it only
     gives its manoeuvre an unknown of its own, so that it no longer moves the parameters.
     """
-    if any(r["effect"] not in OF_ONE_MANOEUVRE or not r["carried_by"] for r in effects):
-        return []
-    return [row["carried_by"] for row in effects]
+    if any(row["effect"] not in OF_ONE_MANOEUVRE for row in effects):
+        return {}
+    return _carriers(effects)
+
+
+def _carriers(effects: Sequence[Row]) -> Mapping[str, str]:
+    """By finding the manoeuvre that alone carries it; none where any is carried by several."""
+    carriers = {row["finding"]: row["carried_by"] for row in effects}
+    return carriers if all(carriers.values()) else {}
 
 
 def _other_members(own: Sequence[Row], effects: Sequence[Row]) -> str:

@@ -236,10 +236,14 @@ class Estimated:
 
 
 def _competing(candidates: Sequence[Row], decision: Decision) -> dict[str, float]:
-    """The probabilities of the members of a class by method; of the joint result nothing else."""
+    """The probabilities of the members of a class that say something else, by method.
+
+    Of the joint result nothing does.
+    """
     if decision.method == JOINT:
         return {}
-    return {row["method"]: row["probability"] for row in candidates if row["probability"] > 0}
+    competing = [row for row in candidates if row["method"] not in decision.alike]
+    return {row["method"]: row["probability"] for row in competing if row["probability"] > 0}
 
 
 def _place(row: Row) -> tuple[str, str]:

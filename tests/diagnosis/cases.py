@@ -428,8 +428,10 @@ CASES: tuple[Case, ...] = (
     Case(
         "one-brief-rest-off",
         brief,
+        # The first of all: a shift in the fixture after it does the same.
         (cause(POSITION, "accel", manoeuvre="x-up"),),
         accel=LIMITED,
+        gyro=HARMLESS | LIMITED,
         hidden=set_off("x-up", "+x", 3600 * ARC_SECOND),
     ),
     Case(

@@ -61,6 +61,25 @@ def test_an_effect_of_one_manoeuvre_needs_no_other_to_predict_it():
     assert decided([JOINT, candidate()], both).method == "extended"
 
 
+def test_what_one_manoeuvre_alone_shows_may_be_its_own_error_whatever_else_it_may_be():
+    """A shift after the first rest, or that rest is off: for all others that is the same."""
+    rows = [
+        JOINT,
+        candidate(probability=0.6),
+        candidate("member_1", probability=0.3),
+        candidate("member_2", probability=0.1),
+    ]
+    shift = effect("mounting_shift", "x-up")
+    off = effect("table_position_error", "x-up", method="member_1")
+    another = effect("table_position_error", "x-down", method="member_2")
+    decision = decided(rows, [shift, off, another])
+    assert (decision.method, decision.freed) == ("member_1", {"criticism/1": "x-up"})
+    assert decision.alike == {"extended", "member_1"}  # not of another manoeuvre
+    assert "Instead of set position that is off it may be shift of the IMU" in decision.reason
+    # Half way of the campaign a shift is no single manoeuvre's error.
+    assert decided(rows, [effect("mounting_shift"), off, another]).method == "extended"
+
+
 def test_a_sensor_that_shows_no_effect_keeps_its_result():
     alone = candidate("joint", sensor="accel", drop=None)
     decision = decided([alone], [])

@@ -136,6 +136,20 @@ def test_from_what_a_fault_spoils_no_effect_is_named_until_it_is_set_right(more,
     )
 
 
+@pytest.mark.parametrize(
+    ("found", "explained"),
+    [
+        (effect("accel_y_telegraph_of_time", "accel", "law"), True),  # two levels: of that log
+        (effect("accel_scale_asymmetry", "accel"), True),
+        (effect("accel_bias_ramp", "accel"), False),
+        (effect("gyro_y_cubic_of_time", "gyro", "law"), False),
+    ],
+)
+def test_a_clock_that_is_wrong_explains_what_is_in_proportion_and_laws(found, explained):
+    clock = finding("quality", "clock_scale", "accel")
+    assert (found.cause not in causes(clock, found)) == explained
+
+
 def test_a_temperature_that_changes_is_no_fault():
     assert causes(finding("quality", "temperature_drift")) == {}
 
