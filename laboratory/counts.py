@@ -1,4 +1,4 @@
-"""Increments of an IMU: whole counts, the rounding error is carried to the next sample."""
+"""Increments of an IMU as whole counts; what one leaves over is in the next, or is lost."""
 
 import numpy as np
 
@@ -13,3 +13,9 @@ def count(running: Array, size: float | Array) -> Counts:
     """
     whole = np.rint(running / size).astype(np.int64)
     return np.diff(whole, axis=0, prepend=np.zeros((1, *whole.shape[1:]), dtype=np.int64))
+
+
+def rounded(running: Array, size: float | Array) -> Counts:
+    """counts_k = round((S_k − S_{k−1}) / q): each reading by itself, as a converter has it."""
+    increments = np.diff(running, axis=0, prepend=np.zeros((1, *running.shape[1:])))
+    return np.rint(increments / size).astype(np.int64)

@@ -7,7 +7,6 @@ from functools import reduce
 import numpy as np
 
 from laboratory.arrays import Array, Counts
-from laboratory.counts import count
 from laboratory.effects.effect import Effect
 from laboratory.gps_time import NANOSECONDS
 from laboratory.instants import NODES_PER_INTERVAL, Instants
@@ -129,8 +128,8 @@ def record_log(
         table_angle=None if encoder is None else encoder.readings(np.concatenate(scale)),
         noiseless=noiseless,
         noisy=noisy,
-        accelerometer=count(noisy.accelerometer, receiver.accelerometer_count),
-        gyro=count(noisy.gyro, receiver.gyro_count),
+        accelerometer=receiver.counted(noisy.accelerometer, receiver.accelerometer_count),
+        gyro=receiver.counted(noisy.gyro, receiver.gyro_count),
         rows=rows,
     )
 

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from laboratory import columns, rawimu
-from laboratory.arrays import Array
+from laboratory.arrays import Array, Counts
+from laboratory.counts import count, rounded
 from laboratory.gps_time import NANOSECONDS
 from laboratory.rawimu import Samples
 from laboratory.records import Records
@@ -27,6 +28,7 @@ class Receiver:
     line_end: bytes
     encoder: bool  # whether the angle of the table is a column
     imu_type: int  # by NovAtel's list; in the messages with X
+    carries: bool = True  # whether what a count leaves over goes into the next
 
     @classmethod
     def specified(cls, written: Mapping[str, Any], encoder: bool = False) -> "Receiver":
@@ -40,12 +42,17 @@ class Receiver:
             {"crlf": b"\r\n", "lf": b"\n"}[written["line_end"]],
             encoder,
             written.get("imu_type", 0),
+            written.get("carries", True),
         )
 
     @property
     def interval(self) -> float:
         """Time from sample to sample by its own clock, s."""
         return self.step / NANOSECONDS
+
+    def counted(self, running: Array, size: float) -> Counts:
+        """The counts of each sample, by the running integral of the reading, (n, 3)."""
+        return count(running, size) if self.carries else rounded(running, size)
 
     def records(self, samples: Samples, temperature: Array, table_angle: Array | None) -> Records:
         """A log before any fault; temperature: (n,), K; table_angle: (n,), rad, if recorded."""

@@ -211,8 +211,11 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
     if _uncertain(other):
         return _explains_uncertain(cause, other)
     if other.named:
-        spoils = cause.cause in SPOILING and _unresolved(cause) and same_sensor(cause, other)
-        return spoils and (cause.cause != "clock_scale" or _in_proportion(other))
+        if not _unresolved(cause) or not same_sensor(cause, other):
+            return False
+        if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
+            return other.cause == "oscillation"
+        return cause.cause in SPOILING and (cause.cause != "clock_scale" or _in_proportion(other))
     return any(
         cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
         for rule in EXPLANATIONS

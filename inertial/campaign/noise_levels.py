@@ -4,6 +4,9 @@ A level is known to some per cent only, and a sensor alone has the same in every
 level that is common to the campaign is taken, but for a manoeuvre and phase whose own level differs
 from it by more than chance: there the table, or the air, adds to the noise.
 
+Where counts are coarse beside the noise, and do not carry over what they leave, the mean of a
+manoeuvre is off by their rounding however long it is; a level beside its own holds that.
+
 Beside the common level of a channel stand the bias instability and the random walk that the static
 stretches show. From here they enter the covariance of every estimate, and from nowhere else.
 """
@@ -45,11 +48,14 @@ def drift_of(terms: NoiseTerms) -> dict[str, float]:
 
 
 def effective_levels(
-    noise: pd.DataFrame, drifts: Mapping[str, Mapping[str, float]] | None = None
+    noise: pd.DataFrame,
+    drifts: Mapping[str, Mapping[str, float]] | None = None,
+    rounding: Mapping[tuple[str, str, str], float] | None = None,
 ) -> pd.DataFrame:
     """The table of effective levels, by the levels of all manoeuvres.
 
-    `drifts`: see `drift_of`, by channel.
+    `drifts`: see `drift_of`, by channel; `rounding`: what coarse counts add, by manoeuvre, phase
+    and channel; a channel that stands still in a manoeuvre has no level there, but this.
 
     The common variance is the mean of theirs, weighted with w = (N/σ)², their relative precision,
     for else a level that came out low would weigh more for it. Then the common level has the
@@ -59,6 +65,7 @@ def effective_levels(
     for row in rows_of(noise):
         by_channel.setdefault(row["channel"], []).append(row)
     rows: list[Row] = []
+    rounding = dict(rounding or {})
     for channel, own in by_channel.items():
         white, sigma = np.array([(row["white_noise"], row["sigma"]) for row in own]).T
         weight = (white / sigma) ** 2
@@ -77,6 +84,7 @@ def effective_levels(
             rows.append(
                 {key: row[key] for key in ("manoeuvre", "phase", "channel", "per_sample")}
                 | {"measured": row["white_noise"]}
+                | {"rounding": rounding.pop((row["manoeuvre"], row["phase"], channel), None)}
                 | common
                 | (
                     {"white_noise": row["white_noise"], "sigma": row["sigma"], "source": OWN}
@@ -85,6 +93,9 @@ def effective_levels(
                     else {}
                 )
             )
+        for key in [key for key in rounding if key[-1] == channel]:
+            place = dict(zip(("manoeuvre", "phase", "channel"), key, strict=True))
+            rows.append(place | common | {"rounding": rounding[key]})
     return pd.DataFrame(rows, columns=LEVEL_COLUMNS) if rows else tables.LEVELS.empty()
 
 
@@ -129,7 +140,12 @@ class NoiseLevels:
     def of_samples(self, manoeuvre: str, phase: str, channels: Sequence[str]) -> Array:
         """The standard deviation of the samples of some channels; NaN where nothing is known."""
         rows = [self._rows.get((manoeuvre, phase, channel)) for channel in channels]
-        return np.array([np.nan if row is None else row["per_sample"] for row in rows])
+        return np.array([np.nan if row is None else row["per_sample"] for row in rows], np.float64)
+
+    def rounded(self, sensor: str) -> int:
+        """How many means of the channels of a sensor are off by rounding of coarse counts."""
+        own = (row for key, row in self._rows.items() if key[-1].startswith(sensor))
+        return sum(row["rounding"] is not None for row in own)
 
     def drift(self, sensor: str) -> MeasuredDrift:
         """The drift of the biases of a sensor, `gyro` or `accel`, by the noise at rest."""
@@ -144,7 +160,7 @@ class NoiseLevels:
 
     def _oscillates(self, manoeuvre: str, channel: str) -> bool:
         row = self._rows.get((manoeuvre, "steady", channel))
-        if row is None or channel not in self._at_rest:
+        if row is None or row["measured"] is None or channel not in self._at_rest:
             return False
         return _ratio(row) > MIN_SCATTER_RATIO * self._at_rest[channel]
 
@@ -153,14 +169,16 @@ class NoiseLevels:
         """The usual scatter of the samples of each channel at rest, in its white noise per √s."""
         rests: dict[str, list[float]] = {}
         for (_, phase, channel), row in self._rows.items():
-            if phase == "rest":
+            if phase == "rest" and row["measured"] is not None:
                 rests.setdefault(channel, []).append(_ratio(row))
         return {channel: float(np.median(ratios)) for channel, ratios in rests.items()}
 
     def _level(self, manoeuvre: str, phase: str, channel: str) -> float:
         common = self._rows.get((None, None, channel))
         row = self._rows.get((manoeuvre, phase, channel), common)
-        return np.nan if row is None else float(row["white_noise"])
+        if row is None:
+            return np.nan
+        return float(np.hypot(row["white_noise"], row["rounding"] or 0.0))
 
 
 def _ratio(row: Row) -> float:

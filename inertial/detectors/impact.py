@@ -67,7 +67,7 @@ class Impact(Detector):
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         noise = np.fmax(log.noise, np.nan_to_num(log.quantum))
-        known = [i for i in range(6) if np.isfinite(noise[i])]
+        known = [i for i in range(6) if np.isfinite(noise[i]) and noise[i] > 0]
         if not np.isfinite(log.interval) or len(known) < MIN_CHANNELS:
             return
         rough = np.full((len(piece), 6), np.nan)

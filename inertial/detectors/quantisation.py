@@ -95,7 +95,7 @@ class Quantisation(Detector):
         else:
             consequence = _(
                 "The noise is {noise} steps, so a mean of any length may be off by {off} "
-                "{unit}: so uncertain is the bias, whatever its sigma says.",
+                "{unit}; the sigmas include it.",
                 noise=significant(facts.noise, 2),
                 off=significant(scale * off, 2),
                 unit=unit,
@@ -136,7 +136,7 @@ def _of_channel(piece: Piece, log: Log, i: int) -> Event | None:
     if times == 1 and not coarse:
         return None
     variance = float(np.mean(blocks[~fine] ** 2) / 2) if coarse else (roughness(values) / step) ** 2
-    noise = noise_before_rounding(variance) if coarse else float(np.sqrt(variance))
+    noise = float(noise_before_rounding(variance)) if coarse else float(np.sqrt(variance))
     return piece.event(
         int(places[0]),
         int(places[-1]) + 1,

@@ -79,7 +79,7 @@ NOISE_TERMS = Table(
 )
 LEVELS = Table(
     "levels",
-    3,
+    4,
     (
         Column("manoeuvre", TEXT, "", "as in noise; none: all that have no row", nullable=True),
         Column("phase", TEXT, "", "rest or steady; none as manoeuvre", nullable=True),
@@ -94,6 +94,13 @@ LEVELS = Table(
             " which a sample counts as 1 s: stated; residuals: next to 0, for a scatter shows it",
         ),
         Column("degrees", DOUBLE, "1", "degrees of freedom of white_noise"),
+        Column(
+            "rounding",
+            DOUBLE,
+            "rad/√s, m/s/√s",
+            "beside white_noise: what makes a mean of all of it as uncertain as coarse counts do",
+            nullable=True,
+        ),
         Column("measured", DOUBLE, "rad/√s, m/s/√s", "as in noise", nullable=True),
         Column("per_sample", DOUBLE, "rad/s, m/s²", "as in noise", nullable=True),
         Column(

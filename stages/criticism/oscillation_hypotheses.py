@@ -114,7 +114,10 @@ class Hypothesis:
 
 
 def hypotheses_of(detection: Detection, turns: Sequence[SteadyTurn]) -> list[Hypothesis]:
-    """The likeliest hypothesis of each effect, the likeliest of all first."""
+    """The likeliest hypothesis of each effect, the likeliest of all first.
+
+    None where no turn has half a period of it, so that it can be removed from none.
+    """
     every = [Probe(turn) for turn in turns]
     known = [probe for probe in every if np.isfinite(probe.turn.rate)]
     paces = _different([probe.turn.hertz(1.0) for probe in known])
@@ -137,7 +140,7 @@ def hypotheses_of(detection: Detection, turns: Sequence[SteadyTurn]) -> list[Hyp
         at_least = max((one.score for one in found), default=-np.inf) + MIN_LOG_ODDS
         in_angle = _best(known, ANGLE, orders)
         found += [one for one in in_angle if one.axis == TABLE or one.score > at_least]
-    found.sort(key=lambda one: one.score)
+    found = sorted((one for one in found if one.frequencies), key=lambda one: one.score)
     of_effect = {one.effect: one for one in found}
     likeliest = [one for one in reversed(found) if of_effect[one.effect] is one]
     # As likely in time as against the angle, one phase against the angle in all turns comes first.

@@ -282,7 +282,7 @@ def _searched(searches: dict[Removed, Search], favoured: str) -> SearchResult:
     first = current = searches[()]
     oscillations: list[Oscillation] = []
     removed: Removed = ()
-    while current.largest and len(oscillations) < MAX_OSCILLATIONS:
+    while current.largest and current.hypotheses and len(oscillations) < MAX_OSCILLATIONS:
         hypotheses = favouring(current.hypotheses, favoured)
         p_value, lowest, level = current.largest.p_value, current.lowest, current.level
         oscillations.append(oscillation_of(hypotheses, p_value, current.turns, lowest, level))
@@ -301,7 +301,7 @@ def _searched(searches: dict[Removed, Search], favoured: str) -> SearchResult:
         current.orders,
         current.detections,
         sigmas,
-        truncated=current.largest is not None,
+        truncated=bool(current.hypotheses),
     )
 
 

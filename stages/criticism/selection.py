@@ -111,6 +111,20 @@ class Selection:
         )
         return replace(moved, named=replace(self.named, causes=causes))
 
+    def consistent_with_rounding(self, means: Mapping[str, int]) -> "Selection":
+        """The same; what coarse counts alone may bring forth is no certain name.
+
+        means : by sensor how many of its means are off by the rounding of their readings, each by
+            up to √2 of its sigma, for the error is a sine of the input and not drawn by chance
+        """
+
+        def weighed(cause: Cause) -> Cause:
+            rounded = cause.snr**2 < 2 * means.get(self.sensor(cause), 0)
+            return replace(cause, verdict=UNKNOWN_STRUCTURE) if rounded else cause
+
+        causes = tuple(map(weighed, self.named.causes))
+        return replace(self, named=replace(self.named, causes=causes))
+
     def scan_sigma(self, cause: Cause) -> float:
         """What the scanned value of a cause is uncertain by, about the one that is best.
 

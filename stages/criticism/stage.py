@@ -89,6 +89,7 @@ def _of_mount(
     levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
     selection, tested = with_laws(selection, tested, campaign, in_blocks, *levels, degrees)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
+    selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
     plans = {} if data.by_hand else extended_plans(data.plan, data.performed, quiet)
     extended = {name: partial(_with, plan, data) for name, plan in plans.items()}

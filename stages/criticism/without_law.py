@@ -2,7 +2,8 @@
 
 A bias that changes by no law shows in several ways: the estimate finds a random walk, the tests a
 structure of the residuals in time, and the search effects or half waves that resemble it a little.
-These are one finding, and what they resemble is what the data are consistent with.
+These are one finding, and what they resemble is what the data are consistent with. A structure that
+few manoeuvres carry is no random walk, which is in all of them.
 """
 
 from collections.abc import Collection, Mapping
@@ -12,7 +13,7 @@ from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause
 from stages.criticism.bias_drift import drift_name
 from stages.criticism.finding_rows import finding_id
 from stages.criticism.residual_structure import CAUSE as STRUCTURE
-from stages.criticism.residual_structure import Tested
+from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.selection import SENSORS, Selection, walk_name
 
 OF_WALKS = ("time", "change")  # structures that a bias without a law has, whatever its course
@@ -51,7 +52,7 @@ def without_law(selection: Selection, walks: Collection[str], tested: Tested) ->
     drifts = {cause.effect for cause in selection.named.causes}
     for number, sensor in enumerate(SENSORS):
         kinds = {test.kind for test in tested.of(sensor)}
-        if sensor in walks and kinds <= set(OF_WALKS):
+        if sensor in walks and kinds <= set(OF_WALKS) and not carrying(tested, sensor):
             owner[sensor] = walk_name(number)
         elif kinds:
             owner[sensor] = f"{STRUCTURE}/{sensor}"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from inertial.campaign.explanations import Explained
+from inertial.campaign.explanations import MIN_SPOILING, Explained
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,
@@ -40,6 +40,7 @@ MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed sp
 SPOILS = 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
+QUANTISATION = "quantisation"
 MOUNTING_SHIFT = "mounting_shift"  # turns the axes of both sensors, whichever shows it
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
 
@@ -232,7 +233,7 @@ class Evidence:
         freed = next(filter(None, (result.decision.freed.get(main.id) for result in own)), None)
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
         done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
-        if main.id in self.walks:
+        if main.id in self.walks or _rounds(main):
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
             done = HARMLESS
@@ -274,7 +275,7 @@ class Evidence:
             return self._cure_of_effect(cause, own)
         if cause.cause == CLOCK and cause.sensor == "accel":
             return NONE, _moved_by_clock(1e-6 * abs(cause.row["size"]), own), None
-        if cause.stage == COUNTS:  # M holds it
+        if cause.stage == COUNTS or _rounds(cause):  # in M, or in the covariance
             return MODELLED, None, None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
@@ -311,6 +312,11 @@ class Evidence:
             # What manoeuvres differ by is in the sigmas, so the shift is measured in these.
             return (MODELLED if modelled else NONE), largest, max(drops, default=None)
         return NONE, largest, None
+
+
+def _rounds(cause: Hypothesis) -> bool:
+    """Whether it is counts that are so coarse that means are off by their rounding."""
+    return cause.cause == QUANTISATION and int(cause.row["severity"]) >= MIN_SPOILING
 
 
 def _of_sensor(findings: Sequence[Hypothesis], sensor: str) -> Iterator[Hypothesis]:

@@ -1,6 +1,6 @@
 """White noise of every channel in every manoeuvre, and all terms of the noise at rest."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, pairwise, product
 from typing import Any
 
@@ -13,6 +13,7 @@ from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
 from inertial.estimation.spectrum import band_levels, white_level
+from inertial.signal.scatter import noise_before_rounding, rounded_mean, smallest_step
 from inertial.tables.stage import Stage, Tables
 from stages.noise.declared import DECLARED
 from stages.noise.static_stretches import SENSORS, StaticStretches
@@ -22,6 +23,8 @@ Array = NDArray[np.float64]
 MAX_SAMPLES = 32768  # of one periodogram: bounds the memory of a long log
 PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
 MIN_SAMPLES = 16  # fewer give no level
+MAX_COARSE_VARIANCE = 0.5  # steps²: rounding alone makes up to a quarter
+MIN_ROUNDED_MEAN = 1e-3  # steps
 _Level = tuple[str, str, str]  # manoeuvre, phase, channel
 LEAST_SIGMA = {"accel": 1e-6, "gyro": 1e-8}  # m/s² and rad/s: no mean is known better
 
@@ -32,6 +35,7 @@ def noise(
     clocks: pd.DataFrame,
     gaps: pd.DataFrame,
     sensors: pd.DataFrame,
+    carried: frozenset[tuple[str, str]],
     of_means: Sequence[Row],
     *,
     from_hz: float,
@@ -39,6 +43,7 @@ def noise(
 ) -> Tables:
     """White noise by manoeuvre, phase (rest or steady) and channel; the terms of each channel.
 
+    carried : logs and sensors whose counts carry over what they leave
     of_means : the levels of means without time
     """
     clock = clocks_of(clocks)
@@ -59,6 +64,7 @@ def noise(
             collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), _Spectra())
             for start in range(0, len(chosen), MAX_SAMPLES):
                 collected.add(chosen[start : start + MAX_SAMPLES], 1 / step, (from_hz, to_hz))
+            collected.carried |= {sensor for sensor in SENSORS if (log, sensor) in carried}
             if row["phase"] != "steady" and len(chosen):
                 static.add((row["manoeuvre"], row["phase"], number), chosen, step)
     rows = [
@@ -68,7 +74,8 @@ def noise(
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
     noises = list(static.noises())
-    levels = effective_levels(measured, dict(chain.from_iterable(n.drifts() for n in noises)))
+    drifts = dict(chain.from_iterable(n.drifts() for n in noises))
+    levels = effective_levels(measured, drifts, _of_rounding(spectra))
     if of_means:
         own = pd.DataFrame(of_means, columns=levels.columns)
         levels = pd.concat([levels, own]) if rows else own
@@ -84,6 +91,12 @@ def noise(
 def _quiet(segments: pd.DataFrame) -> list[Row]:
     """The segments of which the noise is seen: at rest, or at a steady rate."""
     return [row for row in rows_of(segments) if row["phase"] in PHASES]
+
+
+def carried_counts(ranges: pd.DataFrame) -> frozenset[tuple[str, str]]:
+    """Logs and sensors whose counts are increments: what one leaves over is in the next."""
+    own = ranges[ranges["increments"].astype(bool)]
+    return frozenset(zip(own["log"], own["sensor"], strict=True))
 
 
 def levels_of_means(
@@ -144,13 +157,18 @@ def _stated_levels(blocks: pd.DataFrame, mean_sigmas: pd.DataFrame) -> dict[_Lev
 class _Spectra:
     """The band levels of one manoeuvre, piece by piece, for each sensor by itself.
 
-    Accelerometers and gyros may come in records of their own.
+    Accelerometers and gyros may come in records of their own. `steps`: the smallest changes of the
+    channels; `carried`: sensors whose counts carry over what they leave.
     """
 
     def __init__(self) -> None:
         self.levels: dict[str, list[Array]] = {}
         self.squares = np.zeros(6)
+        self.sums = np.zeros(6)
         self.samples: dict[str, int] = {}
+        self.seconds: dict[str, float] = {}
+        self.steps = np.full(6, np.inf)
+        self.carried: set[str] = set()
 
     def add(self, values: Array, rate: float, band: tuple[float, float]) -> None:
         for sensor, columns in SENSORS.items():
@@ -161,7 +179,11 @@ class _Spectra:
                 levels = band_levels(np.where(whole, part, 0.0), rate, band)
                 self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))
                 self.squares[columns] += np.var(part, axis=0) * len(part)
+                self.sums[columns] += part.sum(axis=0)
                 self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
+                self.seconds[sensor] = self.seconds.get(sensor, 0.0) + len(part) / rate
+                steps = [smallest_step(channel) for channel in part.T]
+                self.steps[columns] = np.minimum(self.steps[columns], steps)
 
     def rows(self, manoeuvre: str, phase: str) -> Iterator[dict[str, Any]]:
         for sensor, levels in self.levels.items():
@@ -178,6 +200,44 @@ class _Spectra:
                         "per_sample": float(np.sqrt(square / self.samples[sensor])),
                         "samples": self.samples[sensor],
                     }
+
+
+def _of_rounding(spectra: Mapping[tuple[str, str], _Spectra]) -> dict[_Level, float]:
+    """What the rounding of readings adds to the level of each manoeuvre, phase and channel.
+
+    The mean of a manoeuvre is off by the same however long it is; so is the sigma that this level
+    gives it. Means that are alike are off by the same, so each of k of them has √k of it. The
+    variance of rounded readings depends on where the truth lies between two steps, so the noise is
+    that of the mean variance of all rests, but where a manoeuvre clearly shakes.
+    """
+    found: dict[_Level, float] = {}
+    steps = np.min([one.steps for one in spectra.values()], axis=0, initial=np.inf)
+    for place in np.flatnonzero(np.isfinite(steps)):
+        channel, step = tables.CHANNELS[place], float(steps[place])
+        sensor = channel.partition("_")[0]
+        own = {
+            key: one
+            for key, one in spectra.items()
+            if sensor in one.samples and sensor not in one.carried
+        }
+        if not own:
+            continue
+        count = np.array([one.samples[sensor] for one in own.values()])
+        seconds = np.array([one.seconds[sensor] for one in own.values()])
+        spread, mean = (
+            np.array([getattr(one, name)[place] for one in own.values()]) / count / step**power
+            for name, power in (("squares", 2), ("sums", 1))
+        )
+        coarse = spread < MAX_COARSE_VARIANCE
+        resting = coarse & np.array([phase == "rest" for _manoeuvre, phase in own])
+        shared = np.mean(spread, where=resting if resting.any() else coarse) if coarse.any() else 0
+        off = rounded_mean(noise_before_rounding(np.where(coarse, shared, spread)))
+        apart = np.abs(mean - mean[:, None])
+        alike = np.sum(np.cos(2 * np.pi * np.minimum(apart, 0.25)), axis=1)
+        level = off * step * np.sqrt(alike * seconds)
+        kept = zip(own, off, level.tolist(), strict=True)
+        found |= {(*key, channel): size for key, one, size in kept if one > MIN_ROUNDED_MEAN}
+    return found
 
 
 def _unbroken(
@@ -210,5 +270,9 @@ def _unbroken(
 STAGE = Stage(
     noise,
     DECLARED,
-    gathers={"masked_samples": MaskedSamples, "of_means": levels_of_means},
+    gathers={
+        "masked_samples": MaskedSamples,
+        "carried": carried_counts,
+        "of_means": levels_of_means,
+    },
 )

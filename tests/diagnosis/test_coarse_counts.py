@@ -1,0 +1,76 @@
+"""Counts that are coarse beside the noise, and do not carry over what they leave."""
+
+from itertools import product
+
+import chain
+import numpy as np
+import pytest
+from judge import parameters_of
+
+from inertial.signal.scatter import noise_before_rounding, rounded_mean
+
+SEEDS = (1801, 1802, 1803)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1, 0.2, 0.3])
+def test_the_mean_of_rounded_readings_is_off_however_many_they_are(noise):
+    random = np.random.default_rng(4)
+    truth = random.uniform(size=2000)
+    readings = np.rint(truth[:, None] + random.normal(0, noise, (2000, 4000)))
+    off = np.std(readings.mean(axis=1) - truth)
+    assert off == pytest.approx(rounded_mean(noise), rel=0.05, abs=3e-3)
+    assert noise_before_rounding(np.mean(readings.var(axis=1))) == pytest.approx(noise, abs=0.01)
+
+
+def rounded(seed: int, noise: float, *, carries: bool) -> dict:
+    """The short campaign as columns of counts, the noise of a sample being `noise` of them."""
+    document = chain.short(seed=seed)
+    document["receiver"] |= {"message": "columns", "line_end": "lf", "carries": carries}
+    document["receiver"]["gyro_count_rad"] = 3.5e-5 * 0.01 / noise
+    document["receiver"]["accelerometer_count_m_s"] = 1.07e-3 * 0.01 / noise
+    document["campaign"]["instrument"] = {"name": "made up"}
+    return document
+
+
+@pytest.fixture(scope="module", params=[0.3, 0.15])
+def results(request):
+    """Of each seed what was hidden and what came of it."""
+    documents = [rounded(seed, request.param, carries=False) for seed in SEEDS]
+    return [(one, chain.in_memory_of(one, "diagnosis", chain.BESIDE)) for one in documents]
+
+
+def test_they_are_the_only_cause_and_the_result_stays_usable(results):
+    """Once effects of the gyros were "found" at 10 sigma, and of accelerometers beside them."""
+    for _, tables in results:
+        causes = tables["diagnosis/causes"]
+        assert set(causes["cause"]) == {"quantisation"} and set(causes["sensor"]) == {
+            "gyro",
+            "accel",
+        }
+        assert set(tables["diagnosis/verdict"]["verdict"]) == {"usable_within_limits"}
+
+
+def test_the_sigmas_hold_what_rounding_makes_the_means_uncertain_by(results):
+    pulls = []
+    for document, tables in results:
+        result = tables["diagnosis/result"].set_index(["sensor", "parameter"])
+        for sensor, truth in parameters_of(document).items():
+            own = result.loc[sensor]
+            own = own.loc[list(truth)]
+            pulls += [*((own["value"] - list(truth.values())) / own["sigma"])]
+    assert np.max(np.abs(pulls)) < 4 and 0.2 < np.sqrt(np.mean(np.square(pulls))) < 1.3
+
+
+def test_counts_that_carry_lose_nothing():
+    """A receiver of increments says so; what it rounds is in the next count."""
+    levels = chain.in_memory_of(chain.short(), "noise")["noise/levels"]
+    assert levels["rounding"].isna().all()
+
+
+def test_a_level_of_its_own_for_each_mean_that_rounding_reaches(results):
+    _, tables = results[0]
+    levels = tables["noise/levels"].dropna(subset="rounding")
+    rests = tables["segment/segments"].query("phase == 'rest'")["manoeuvre"]
+    channels = tables["noise/levels"]["channel"].unique()
+    known = set(zip(levels["manoeuvre"], levels["channel"], strict=True))
+    assert set(product(rests, channels)) <= known
