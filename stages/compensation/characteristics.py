@@ -183,7 +183,7 @@ def least_changes(
     for row in rows_of(steps):
         channel, step = f"{row['sensor']}_{row['axis']}", float(row["resolution"])
         if channel in squares.index:
-            noise = noise_before_rounding(float(squares[channel]) / step**2)
+            noise = float(noise_before_rounding(float(squares[channel]) / step**2))
             if least := step * least_by_counts(noise):
                 found[row["sensor"], row["axis"]] = least
     return found
