@@ -19,7 +19,7 @@ from hidden_ways import ABSORBED, MATES, POSITIVE, WAYS, absorbed
 
 from inertial.effects import CATALOGUE
 
-SEED = 2087  # of all draws; no draw of it was looked at while the pipeline was written
+SEED = 2113  # of all draws; no draw of it was looked at while the pipeline was written
 RATIOS = (5.0, 6.0, 8.0, 10.0, 15.0)
 BANDS = {"6 to 12": (6.0, 12.0), "12 to 40": (12.0, 40.0)}
 # A quarter clean, 35 % singles, 15 % decoys, 15 % several, 10 % outside, well mixed.
