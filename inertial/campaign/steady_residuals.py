@@ -1,7 +1,7 @@
 """The steady parts of rotations, sample by sample: gyro residuals, and the angle of the table."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -10,9 +10,10 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
+from inertial.estimation.noise_shape import noise_shape
 from inertial.estimation.periodic_in_angle import Course
 from inertial.estimation.periodic_in_time import Line
-from inertial.estimation.spectrum import band_levels, white_level
+from inertial.estimation.spectrum import WHITE, NoiseShape, band_levels, white_level
 from inertial.tables import AXES, GYRO
 from inertial.tables.parquet import Stream
 
@@ -40,6 +41,7 @@ class SteadyTurn:
     averaged : whether a sample is the mean of the rate over its interval, an increment
     tilted : whether gravity rotates in the case
     stated : rad, signed, that the table is stated to turn from rest to rest; NaN where it is not
+    shapes : of the noise about each axis of the case
     """
 
     name: str
@@ -52,6 +54,7 @@ class SteadyTurn:
     tilted: bool
     start: float = np.nan
     stated: float = np.nan
+    shapes: Sequence[NoiseShape] = (WHITE,) * len(AXES)
 
     @property
     def rate(self) -> float:
@@ -78,19 +81,23 @@ class SteadyTurn:
         """The residual rate about an axis of the case, a unit vector, (n,), rad/s."""
         return np.asarray(self.truth @ direction)
 
-    def sigma(self, direction: Array) -> float:
-        """White noise of a sample about an axis of the case, rad/s."""
-        return self.course(direction).sigma
+    def shape(self, direction: Array) -> NoiseShape:
+        """The shape of the noise about an axis of the case, of a unit vector the nearest one."""
+        return self.shapes[int(np.argmax(np.abs(direction)))]
+
+    def sigma(self, direction: Array, frequency: Array | float) -> Array:
+        """Noise of a sample about an axis of the case, were it white as at a frequency, rad/s."""
+        return np.asarray(self.course(direction).sigma * self.shape(direction).at(frequency))
 
     def course(self, direction: Array) -> Course:
         """The residual rate about an axis of the case, against the table's angle."""
         key = direction.tobytes()
         if key not in self._courses:
-            record, rate = self.along(direction), 1 / self.step
-            levels = band_levels(record[:, None], rate, (MIN_WHITE_HZ, rate / 2))
+            record, rate, shape = self.along(direction), 1 / self.step, self.shape(direction)
+            levels = band_levels(record[:, None], rate, (MIN_WHITE_HZ, rate / 2), shape)
             sigma = float(white_level(levels)[0][0] * np.sqrt(rate))
             self._courses[key] = Course(
-                record, self.angle, self.rate, self.step, self.averaged, sigma, self.tilted
+                record, self.angle, self.rate, self.step, self.averaged, sigma, self.tilted, shape
             )
         return self._courses[key]
 
@@ -149,7 +156,23 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
                 np.nan if m.angle is None else m.angle,
             )
         )
-    return steady_parts
+    return [*_with_shapes(steady_parts)]
+
+
+def _with_shapes(turns: Sequence[SteadyTurn]) -> Iterator[SteadyTurn]:
+    """The turns with the shape that the noise of each axis has in all that are sampled alike."""
+    alike: dict[float, list[SteadyTurn]] = {}
+    for turn in turns:
+        alike.setdefault(float(f"{turn.step:.3g}"), []).append(turn)
+    shapes = {
+        step: [
+            noise_shape([turn.truth[:, i] for turn in own], 1 / step, MIN_WHITE_HZ)
+            for i in range(len(AXES))
+        ]
+        for step, own in alike.items()
+    }
+    for turn in turns:
+        yield replace(turn, shapes=shapes[float(f"{turn.step:.3g}")])
 
 
 def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:

@@ -11,6 +11,7 @@ from scipy.ndimage import median_filter
 from scipy.optimize import minimize_scalar
 
 from inertial.estimation.probability import chi2_isf, f_sf
+from inertial.estimation.spectrum import WHITE, NoiseShape
 
 Array = NDArray[np.float64]
 
@@ -42,7 +43,8 @@ class Course:
 
     record : (n,), rad/s; angle : (n,), rad, signed, at the middle of each sample, evenly spaced
     rate : rad/s, signed; step : s, of a sample; averaged : whether a sample is a mean over it
-    sigma : rad/s, white noise of a sample; tilted : whether gravity rotates in body axes
+    sigma : rad/s, noise of a sample, where its `shape` is 1; tilted : whether gravity rotates in
+        body axes
     """
 
     record: Array
@@ -52,6 +54,13 @@ class Course:
     averaged: bool
     sigma: float
     tilted: bool = False
+    shape: NoiseShape = WHITE
+
+    def noise(self, order: Array | float) -> Array:
+        """Noise of a sample if it were white, and everywhere as at an order, rad/s."""
+        return np.asarray(
+            self.sigma * self.shape.at(np.asarray(order) * abs(self.rate) / 2 / np.pi)
+        )
 
     @property
     def turned(self) -> float:
@@ -97,7 +106,8 @@ class Course:
         remainder = self.less_slow(shapes)
         if np.sum(remainder**2) <= MIN_REMAINING_SHARE * np.sum(shapes**2):
             return np.zeros((2, 2)), np.zeros(2)
-        return remainder.T @ remainder / self.sigma**2, remainder.T @ self.rest / self.sigma**2
+        variance = float(self.noise(order)) ** 2
+        return remainder.T @ remainder / variance, remainder.T @ self.rest / variance
 
 
 @dataclass(frozen=True)
@@ -149,8 +159,9 @@ def search(courses: Sequence[Course]) -> Orders:
         for j in np.flatnonzero(orders[:few] < course.highest).tolist():
             information[i, j], product[i, j] = course.normal_equations(float(orders[j]))
         resolved = orders[few:] < course.highest
-        gain = np.where(resolved, course.gain(orders[few:]), 0.0) / course.sigma
-        turned = gain * _transform(course, orders[few:]) / course.sigma
+        noise = course.noise(orders[few:])
+        gain = np.where(resolved, course.gain(orders[few:]), 0.0) / noise
+        turned = gain * _transform(course, orders[few:]) / noise
         information[i, few:] = (len(course.record) * gain**2 / 2)[:, None, None] * np.eye(2)
         product[i, few:] = np.stack([turned.real, turned.imag], axis=-1)
     drop, inverse = _dropped(information.sum(axis=0), product.sum(axis=0))
@@ -405,7 +416,8 @@ def _with_order(courses: Sequence[Course], order: float, values: Array) -> tuple
         change = (
             (course.shapes(order + small) - course.shapes(order - small)) @ values / (2 * small)
         )
-        columns = course.less_slow(np.column_stack([course.shapes(order), change])) / course.sigma
+        columns = course.less_slow(np.column_stack([course.shapes(order), change]))
+        columns /= course.noise(order)
         information += columns.T @ columns
     # The order and the angles differ in size by powers of ten.
     size = np.sqrt(np.diag(information))

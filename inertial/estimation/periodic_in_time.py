@@ -9,6 +9,7 @@ from scipy.linalg import pinvh
 from scipy.optimize import minimize_scalar
 
 from inertial.estimation.probability import chi2_logsf
+from inertial.estimation.spectrum import WHITE, NoiseShape
 
 Array = NDArray[np.float64]
 
@@ -49,14 +50,18 @@ class Taken:
 
 
 def strongest(
-    record: Array, rate: float, lowest: float, taken: Sequence[Taken] = ()
+    record: Array,
+    rate: float,
+    lowest: float,
+    taken: Sequence[Taken] = (),
+    shape: NoiseShape = WHITE,
 ) -> Line | None:
     """The most significant line of a record.
 
-    The periodogram of white noise is exponentially distributed about its level, which is estimated
-    from its median; the p-value is corrected for the search over all bins. A sidelobe of what is
-    below the search is no line: in the record tapered by a Hann window a line is as high, and a
-    sidelobe is not (Harris, Proc. IEEE 66 (1978) 51).
+    The periodogram of noise is exponentially distributed about its level, which is estimated from
+    its median in units of the shape of the noise; the p-value is corrected for the search over all
+    bins. A sidelobe of what is below the search is no line: in the record tapered by a Hann window
+    a line is as high, and a sidelobe is not (Harris, Proc. IEEE 66 (1978) 51).
 
     Parameters
     ----------
@@ -64,41 +69,61 @@ def strongest(
     rate : Hz, samples per second
     lowest : Hz, lower end of the search
     taken : lines that were removed before; their remainders are not detected again
+    shape : of the noise
     """
     n = len(record)
     if n < MIN_SAMPLES:
         return None
     frequency, density = _spectrum(record, rate)
     inside = (frequency >= lowest) & (frequency < rate / 2)
-    level = float(np.median(density[inside]) / np.log(2)) if inside.any() else 0.0
+    noise = shape.at(frequency) ** 2
+    leakage = _leakage(frequency, density, lowest, n / rate, frequency) / noise
+    density = density / noise
+    loud = inside & shape.loud(frequency)
+    level = float(np.median(density[loud]) / np.log(2)) if loud.any() else 0.0
     if level <= 0:
         return None
-    tapered = _spectrum(record, rate, tapered=True)[1]
-    leakage = _leakage(frequency, density, lowest, n / rate, frequency)
+    tapered = _spectrum(record, rate, tapered=True)[1] / noise
     candidates = inside & _not_sidelobes(density, tapered, level, leakage)
     for line in taken:
-        candidates &= density > n / (2 * rate) * line.leaks(frequency, n / rate) ** 2
+        leaks = n / (2 * rate) * line.leaks(frequency, n / rate) ** 2
+        candidates &= density > leaks / noise
     if not candidates.any():
         return None
     peak = int(np.argmax(np.where(candidates, density, 0.0)))
     trials = float(inside.sum())
     p_value = float(-np.expm1(trials * np.log1p(-np.exp(-density[peak] / level))))
-    return near(record, rate, lowest, float(frequency[peak]), p_value)
+    return near(record, rate, lowest, float(frequency[peak]), p_value, shape)
 
 
-def near(record: Array, rate: float, lowest: float, frequency: float, p_value: float) -> Line:
+def near(
+    record: Array,
+    rate: float,
+    lowest: float,
+    frequency: float,
+    p_value: float,
+    shape: NoiseShape = WHITE,
+) -> Line:
     """The line within a bin of a frequency, as `line_at` has it."""
-    return line_at(record, rate, lowest, _refined(record, rate, frequency), p_value)
+    return line_at(record, rate, lowest, _refined(record, rate, frequency), p_value, shape)
 
 
-def line_at(record: Array, rate: float, lowest: float, frequency: float, p_value: float) -> Line:
-    """The line of one frequency; the noise is estimated from `lowest` on, Hz."""
+def line_at(
+    record: Array,
+    rate: float,
+    lowest: float,
+    frequency: float,
+    p_value: float,
+    shape: NoiseShape = WHITE,
+) -> Line:
+    """The line of one frequency; the noise, of a `shape`, is estimated from `lowest` on, Hz."""
     n = len(record)
     # The line itself leaks into all bins, so the noise is estimated without it.
     split = without_line(record, rate, frequency)
     bins, noise = _spectrum(split.less(split.amplitude), rate)
-    inside = (bins >= lowest) & (bins < rate / 2)
-    per_sample = float(np.sqrt(np.median(noise[inside]) / np.log(2) * rate / 2))
+    inside = (bins >= lowest) & (bins < rate / 2) & shape.loud(bins)
+    flat = noise[inside] / shape.at(bins[inside]) ** 2
+    per_sample = float(np.sqrt(np.median(flat) / np.log(2) * rate / 2) * shape.at(frequency))
     # Rife & Boorstyn, IEEE Trans. Inform. Theory 20 (1974) 591: bounds of both.
     sigma_frequency = np.sqrt(6) * per_sample * rate / (np.pi * split.amplitude * n**1.5)
     sigma_amplitude = per_sample * np.sqrt(2 / n)
@@ -203,12 +228,15 @@ def _fitted(record: Array, rate: float, frequency: float) -> tuple[Array, Array]
 
 
 def pooled(
-    records: Sequence[Array], rates: Sequence[float], lowest: float
+    records: Sequence[Array],
+    rates: Sequence[float],
+    lowest: float,
+    shape: NoiseShape = WHITE,
 ) -> tuple[Array, Array, Array]:
     """Search for a line at one frequency in several records, each with a phase of its own.
 
-    The sum of the periodograms of k records of white noise, each over its level, has the
-    chi-squared distribution with 2k degrees of freedom. So a line that is significant in no single
+    The sum of the periodograms of k records of noise, each over its level, has the chi-squared
+    distribution with 2k degrees of freedom. So a line that is significant in no single
     record may be so in all common. The p-value is not corrected for the search.
 
     Returns frequencies, Hz, drop of chi-squared, and natural logarithm of its p-value, (m,) each;
@@ -217,7 +245,7 @@ def pooled(
     Parameters
     ----------
     records : each (n,), samples without gaps; rates : Hz, samples per second
-    lowest : Hz, below which nothing is looked for
+    lowest : Hz, below which nothing is looked for; shape : of the noise
     """
     from scipy.signal import czt  # here, for it loads half of scipy
 
@@ -225,17 +253,18 @@ def pooled(
     step = 1 / (OVERSAMPLING * longest)
     frequency = np.arange(lowest, min(rates) / 2, step)
     drop, tapered, leakage = np.zeros((3, len(frequency)))
+    noise, loud = shape.at(frequency) ** 2, shape.loud(frequency)
     for record, rate in zip(records, rates, strict=True):
         place = np.arange(len(record))
         level = record - np.polyval(np.polyfit(place, record, 1), place)
         ratio, start = np.exp(np.array([-2j * np.pi * step, 2j * np.pi * lowest]) / rate)
         both = np.array([level, level * _taper(len(record))])
-        power, own = np.abs(czt(both, len(frequency), ratio, start)) ** 2
-        unit = 2 * np.log(2) / np.median(power)
+        power, own = np.abs(czt(both, len(frequency), ratio, start)) ** 2 / noise
+        unit = 2 * np.log(2) / np.median(power[loud])
         drop += power * unit
         tapered += own * unit
         seconds = len(record) / rate
-        leaks = _leakage(*_spectrum(record, rate), lowest, seconds, frequency)
+        leaks = _leakage(*_spectrum(record, rate), lowest, seconds, frequency) / noise
         leakage += leaks * rate * len(record) / 2 * unit
     degrees = 2 * len(records)
     log_p = chi2_logsf(drop, degrees)

@@ -1,5 +1,6 @@
 """White noise of a record from its spectrum, and deviations of a steady rate of the table."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -11,11 +12,41 @@ Booleans = NDArray[np.bool_]
 
 MIN_BAND_BINS = 12  # in a shorter record the band extends to half the sample rate
 BINS_PER_INDEPENDENT_BIN = 1.5  # of a Hann window
+FAINT = 0.1  # of the loudest noise of a record
 STEADY_RUNS = 8  # per recorded steady part: runs whose scatter is known to 27 %
 
 
-def band_levels(values: Array, rate: float, band: tuple[float, float]) -> Array:
+@dataclass(frozen=True)
+class NoiseShape:
+    """The amplitude of the noise by frequency, in any unit: (k,) each, Hz ascending.
+
+    Where it is faint, what leaks from elsewhere is louder: it is no less than a share of the most.
+    """
+
+    frequency: Array
+    amplitude: Array
+
+    def at(self, frequency: Array | float) -> Array:
+        """The amplitude at some frequencies, Hz."""
+        return np.asarray(np.maximum(self._between(frequency), FAINT * self.amplitude.max()))
+
+    def loud(self, frequency: Array) -> Booleans:
+        """Where it is not faint, so that a record shows its level."""
+        return np.asarray(self._between(frequency) >= FAINT * self.amplitude.max())
+
+    def _between(self, frequency: Array | float) -> Array:
+        return np.asarray(np.exp(np.interp(frequency, self.frequency, np.log(self.amplitude))))
+
+
+WHITE = NoiseShape(np.ones(1), np.ones(1))
+
+
+def band_levels(
+    values: Array, rate: float, band: tuple[float, float], shape: NoiseShape = WHITE
+) -> Array:
     """The periodogram of each channel within a band, as power density of both sides.
+
+    In units of the square of the shape of the noise, without where that is faint.
 
     Parameters
     ----------
@@ -27,13 +58,26 @@ def band_levels(values: Array, rate: float, band: tuple[float, float]) -> Array:
     -------
     (bins, c), U²/Hz; white noise of random walk N (U/√Hz) has the level N²
     """
+    frequency, density = in_band(values, rate, band)
+    loud = shape.loud(frequency)
+    return np.asarray(density[loud] / shape.at(frequency[loud])[:, None] ** 2)
+
+
+def in_band(values: Array, rate: float, band: tuple[float, float]) -> tuple[Array, Array]:
+    """The frequencies within a band, (bins,), Hz, and the periodogram there, as `band_levels`."""
+    density = periodogram(detrended(values).T, rate).T
+    frequency = np.arange(1, len(density) + 1) * rate / len(values)
+    inside = (frequency >= band[0]) & (frequency <= band[1])
+    inside = inside if inside.sum() >= MIN_BAND_BINS else frequency > frequency[0]
+    return frequency[inside], density[inside]
+
+
+def detrended(values: Array) -> Array:
+    """Columns, (n, c), less their mean and slope."""
     time = np.arange(len(values)) - (len(values) - 1) / 2
     level = values - values.mean(axis=0)
     level -= np.outer(time, time @ level / (time @ time))
-    density = periodogram(level.T, rate).T
-    frequency = np.arange(1, len(density) + 1) * rate / len(values)
-    inside = (frequency >= band[0]) & (frequency <= band[1])
-    return np.asarray(density[inside] if inside.sum() >= MIN_BAND_BINS else density[1:])
+    return np.asarray(level)
 
 
 def periodogram(values: Array, rate: float) -> Array:

@@ -50,7 +50,7 @@ def strongest_lines(turn: SteadyTurn, lowest: float, taken: Sequence[Taken] = ()
     for i, axis in enumerate(AXES):
         if not turn.observes(np.eye(3)[i]):
             continue
-        line = strongest(turn.truth[:, i], 1 / turn.step, lowest, taken)
+        line = strongest(turn.truth[:, i], 1 / turn.step, lowest, taken, turn.shapes[i])
         if line is not None:
             drop = (line.amplitude / line.sigma_amplitude) ** 2
             lines.append(TurnLine(turn.name, axis, turn.whole(line), drop))
@@ -115,12 +115,15 @@ def in_all(
         if len(visible) < 2:
             continue
         frequency, drop, log_p = pooled(
-            [turn.truth[:, i] for turn in visible], [1 / turn.step for turn in visible], lowest
+            [turn.truth[:, i] for turn in visible],
+            [1 / turn.step for turn in visible],
+            lowest,
+            visible[0].shapes[i],
         )
         if not len(frequency):
             continue
         for turn in visible:
-            noise = turn.sigma(np.eye(3)[i]) * np.sqrt(2 / len(turn.truth))
+            noise = turn.sigma(np.eye(3)[i], frequency) * np.sqrt(2 / len(turn.truth))
             for removed in taken[turn.name]:
                 leakage = removed.leaks(frequency, turn.seconds) / noise
                 log_p = np.where(drop > len(visible) * leakage**2, log_p, 0.0)
@@ -152,7 +155,7 @@ def best_orders(
     # What may remain of a line that was removed from any turn is no ripple.
     amplitude = np.sqrt(orders.drop) * np.where(orders.turns > 0, orders.sigma, 0.0)
     for i, turn in enumerate(turns):
-        noise = turn.sigma(turn.about) * np.sqrt(2 / len(turn.truth))
+        noise = turn.sigma(turn.about, orders.hertz[i]) * np.sqrt(2 / len(turn.truth))
         for removed in taken[turn.name]:
             leakage = removed.leaks(orders.hertz[i], turn.seconds)
             leaked[i] += (leakage / noise) ** 2
@@ -221,7 +224,9 @@ def coupled(
     matrix = known[0].matrix
     read = _rms(truth @ matrix.T)
     size = _rms(truth)
-    noise = np.array([[_sigma(turn, i) for i in range(len(AXES))] for turn in known])
+    noise = np.array(
+        [[_sigma(turn, i, frequencies[turn.name]) for i in range(len(AXES))] for turn in known]
+    )
     # What noise leaves of the mean square of k amplitudes scatters by 2 σ²/√k.
     sigma = np.sqrt(2 * np.mean(noise**2, axis=0) / np.sqrt(len(known)))
     axes = []
@@ -256,9 +261,9 @@ def _phasors(turn: SteadyTurn, frequency: float) -> NDArray[np.complex128]:
     return np.array(parts, dtype=np.complex128)
 
 
-def _sigma(turn: SteadyTurn, i: int) -> float:
-    """Standard deviation of either part of an amplitude, rad/s."""
-    return turn.sigma(np.eye(3)[i]) * float(np.sqrt(2 / len(turn.truth)))
+def _sigma(turn: SteadyTurn, i: int, frequency: float) -> float:
+    """Standard deviation of either part of an amplitude at a frequency, Hz, in rad/s."""
+    return float(turn.sigma(np.eye(3)[i], frequency) * np.sqrt(2 / len(turn.truth)))
 
 
 def _tipping(turn: SteadyTurn, size: complex, frequency: float, source: int, i: int) -> float:

@@ -64,19 +64,19 @@ class Probe:
             self.slow = np.linalg.qr(np.column_stack([np.ones(n), self.time]))[0]
         self.rest = turn.truth - self.slow @ (self.slow.T @ turn.truth)
         self.directions = np.array([direction(turn, axis) for axis in TRIED])
-        self.sigmas = np.array(
-            [turn.sigma(along) if turn.observes(along) else np.inf for along in self.directions]
-        )
+        self.seen = np.array([turn.observes(along) for along in self.directions])
 
     def drops(self, frequency: float) -> Array:
         """By a line at a frequency, Hz, or its alias, about each axis of `TRIED`, (4,)."""
-        phase = 2 * np.pi * folded(frequency, self.turn.step) * self.time
+        seen_at = folded(frequency, self.turn.step)
+        phase = 2 * np.pi * seen_at * self.time
         shapes = np.column_stack([np.sin(phase), np.cos(phase)])
         within = self.slow.T @ shapes
         information = shapes.T @ shapes - within.T @ within
         if np.linalg.det(information) <= (MIN_REMAINING_SHARE * len(phase)) ** 2:
             return np.zeros(len(TRIED))
-        parts = (shapes.T @ self.rest) @ self.directions.T / self.sigmas
+        sigmas = [self.turn.sigma(along, seen_at) for along in self.directions]
+        parts = (shapes.T @ self.rest) @ self.directions.T / np.where(self.seen, sigmas, np.inf)
         return np.asarray(np.sum(parts * np.linalg.solve(information, parts), axis=0))
 
     def own_frequency(self, frequency: float) -> float:

@@ -148,7 +148,8 @@ def _lines(turns: Sequence[SteadyTurn], likeliest: Hypothesis, lowest: float) ->
         frequency = likeliest.frequencies.get(turn.name)
         if frequency is None or not turn.observes(along):
             continue
-        line = line_at(turn.along(along), 1 / turn.step, lowest, frequency, 1.0)
+        shape = turn.shape(along)
+        line = line_at(turn.along(along), 1 / turn.step, lowest, frequency, 1.0, shape)
         drop = (line.amplitude / line.sigma_amplitude) ** 2
         searched = min(len(turn.truth) * float(np.exp(-min(drop / 2, 700.0))), 1.0)
         whole = turn.whole(replace(line, p_value=searched))

@@ -12,7 +12,8 @@ from inertial import tables
 from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
-from inertial.estimation.spectrum import band_levels, white_level
+from inertial.estimation.noise_shape import shape_of
+from inertial.estimation.spectrum import NoiseShape, in_band, white_level
 from inertial.signal.scatter import noise_before_rounding, rounded_mean, smallest_step
 from inertial.tables.stage import Stage, Tables
 from stages.noise.declared import DECLARED
@@ -67,10 +68,11 @@ def noise(
             collected.carried |= {sensor for sensor in SENSORS if (log, sensor) in carried}
             if row["phase"] != "steady" and len(chosen):
                 static.add((row["manoeuvre"], row["phase"], number), chosen, step)
+    shapes = _shapes(spectra)
     rows = [
         row | {"data_sheet": sheet[row["channel"]]["white_noise"]}
         for (manoeuvre, phase), collected in spectra.items()
-        for row in collected.rows(manoeuvre, phase)
+        for row in collected.rows(manoeuvre, phase, shapes)
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
     noises = list(static.noises())
@@ -163,6 +165,7 @@ class _Spectra:
 
     def __init__(self) -> None:
         self.levels: dict[str, list[Array]] = {}
+        self.frequencies: dict[str, list[Array]] = {}
         self.squares = np.zeros(6)
         self.sums = np.zeros(6)
         self.samples: dict[str, int] = {}
@@ -176,7 +179,8 @@ class _Spectra:
             part = part[np.isfinite(part).any(axis=1)]
             if len(part) >= MIN_SAMPLES:
                 whole = np.isfinite(part).all(axis=0)
-                levels = band_levels(np.where(whole, part, 0.0), rate, band)
+                frequency, levels = in_band(np.where(whole, part, 0.0), rate, band)
+                self.frequencies.setdefault(sensor, []).append(frequency)
                 self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))
                 self.squares[columns] += np.var(part, axis=0) * len(part)
                 self.sums[columns] += part.sum(axis=0)
@@ -185,9 +189,15 @@ class _Spectra:
                 steps = [smallest_step(channel) for channel in part.T]
                 self.steps[columns] = np.minimum(self.steps[columns], steps)
 
-    def rows(self, manoeuvre: str, phase: str) -> Iterator[dict[str, Any]]:
+    def rows(
+        self, manoeuvre: str, phase: str, shapes: Mapping[str, Sequence[NoiseShape]]
+    ) -> Iterator[dict[str, Any]]:
+        """Of each channel; `shapes`: of the noise of each sensor in all manoeuvres."""
         for sensor, levels in self.levels.items():
-            white, sigma = white_level(np.concatenate(levels))
+            frequency = np.concatenate(self.frequencies[sensor])
+            at = np.array([shape.at(frequency) for shape in shapes[sensor]]).T
+            slow = [float(shape.at(frequency.min())) for shape in shapes[sensor]]
+            white, sigma = white_level(np.concatenate(levels) / at**2) * np.array(slow)
             for i, axis in enumerate(tables.AXES):
                 if white[i] > 0:
                     square = self.squares[SENSORS[sensor]][i]
@@ -200,6 +210,28 @@ class _Spectra:
                         "per_sample": float(np.sqrt(square / self.samples[sensor])),
                         "samples": self.samples[sensor],
                     }
+
+
+def _shapes(spectra: Mapping[tuple[str, str], _Spectra]) -> dict[str, list[NoiseShape]]:
+    """By sensor the shape of the noise of each channel within the band, at rest if there is any.
+
+    A filter in the band takes noise from its upper part; what means are uncertain by is its end.
+    """
+    shapes = {}
+    for sensor in SENSORS:
+        every = {phase: one for (_, phase), one in spectra.items() if sensor in one.levels}
+        own = [
+            one
+            for (_manoeuvre, phase), one in spectra.items()
+            if sensor in one.levels and ("rest" not in every or phase == "rest")
+        ]
+        frequencies = [frequency for one in own for frequency in one.frequencies[sensor]]
+        levels = [np.nan_to_num(level) for one in own for level in one.levels[sensor]]
+        shapes[sensor] = [
+            shape_of(frequencies, [level[:, axis] for level in levels])
+            for axis in range(len(tables.AXES))
+        ]
+    return shapes
 
 
 def _of_rounding(spectra: Mapping[tuple[str, str], _Spectra]) -> dict[_Level, float]:
