@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from math import ceil
 
 import numpy as np
 import pandas as pd
@@ -160,7 +161,10 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
 
 
 def _with_shapes(turns: Sequence[SteadyTurn]) -> Iterator[SteadyTurn]:
-    """The turns with the shape that the noise of each axis has in all that are sampled alike."""
+    """The turns with the shape that the noise of each axis has in all that are sampled alike.
+
+    Without their first samples, in which the filter that such a shape shows still settles.
+    """
     alike: dict[float, list[SteadyTurn]] = {}
     for turn in turns:
         alike.setdefault(float(f"{turn.step:.3g}"), []).append(turn)
@@ -172,7 +176,16 @@ def _with_shapes(turns: Sequence[SteadyTurn]) -> Iterator[SteadyTurn]:
         for step, own in alike.items()
     }
     for turn in turns:
-        yield replace(turn, shapes=shapes[float(f"{turn.step:.3g}")])
+        own = shapes[float(f"{turn.step:.3g}")]
+        first = ceil(max(shape.settling for shape in own) / turn.step)
+        if len(turn.truth) - first >= MIN_SAMPLES:
+            yield replace(
+                turn,
+                truth=turn.truth[first:],
+                angle=turn.angle[first:],
+                start=turn.start + first * turn.step,
+                shapes=own,
+            )
 
 
 def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:

@@ -21,7 +21,7 @@ from inertial.estimation.spectrum import (
 
 Array = NDArray[np.float64]
 
-CELL_BINS = 16.0  # of each record in a cell of the spectrum; a line fills three or four
+CELL_BINS = 8.0  # of each record in a cell of the spectrum; a line fills three or four
 CELL_RATIO = 1.1  # of the ends of a cell, at least
 MAX_CHANCE = 1e-4  # that white noise counts as coloured
 MEDIAN_VARIANCE = 1 / np.log(2) ** 2  # relative, times n, of the median of n exponential bins

@@ -10,9 +10,11 @@ from scipy.fft import rfft
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
-MIN_BAND_BINS = 12  # in a shorter record the band extends to half the sample rate
+MIN_BAND_BINS = 12  # of a shorter record the band extends as far as that
 BINS_PER_INDEPENDENT_BIN = 1.5  # of a Hann window
 FAINT = 0.1  # of the loudest noise of a record
+PASSED = 0.5**0.5  # of the amplitude, at the corner of a filter
+SETTLED = 12.0  # time constants, after which 10⁻⁵ of a step remain
 STEADY_RUNS = 8  # per recorded steady part: runs whose scatter is known to 27 %
 
 
@@ -29,6 +31,14 @@ class NoiseShape:
     def at(self, frequency: Array | float) -> Array:
         """The amplitude at some frequencies, Hz."""
         return np.asarray(np.maximum(self._between(frequency), FAINT * self.amplitude.max()))
+
+    @property
+    def settling(self) -> float:
+        """How long a filter that has this shape settles, s; 0 where it takes no upper part away."""
+        passed = np.flatnonzero(self.amplitude >= PASSED * self.amplitude.max())
+        if passed[-1] == len(self.amplitude) - 1:
+            return 0.0
+        return float(SETTLED / (2 * np.pi * self.frequency[passed[-1]]))
 
     def loud(self, frequency: Array) -> Booleans:
         """Where it is not faint, so that a record shows its level."""
@@ -67,8 +77,9 @@ def in_band(values: Array, rate: float, band: tuple[float, float]) -> tuple[Arra
     """The frequencies within a band, (bins,), Hz, and the periodogram there, as `band_levels`."""
     density = periodogram(detrended(values).T, rate).T
     frequency = np.arange(1, len(density) + 1) * rate / len(values)
-    inside = (frequency >= band[0]) & (frequency <= band[1])
-    inside = inside if inside.sum() >= MIN_BAND_BINS else frequency > frequency[0]
+    first = min(int(np.searchsorted(frequency, band[0])), max(len(frequency) - MIN_BAND_BINS, 1))
+    after = int(np.searchsorted(frequency, band[1], side="right"))
+    inside = slice(first, max(after, first + MIN_BAND_BINS))
     return frequency[inside], density[inside]
 
 

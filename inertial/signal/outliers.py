@@ -38,7 +38,7 @@ MOTION_READINGS = 64  # readings of a block that decides whether the IMU is move
 MIN_MOTION_RATIO = 3.0  # times the scatter of the quiet stretches
 MAX_SPIKE_READINGS = 3  # readings of a spike
 MIN_SLOPE_SCATTER = 3.0  # scatters between the medians before and after
-OFF_SHARE, OFF_OF_WHITE = 0.95, 1.98  # quantile of the distance from the median of nine, in sigma
+OFF_SHARE, OFF_OF_WHITE = 0.99, 2.63  # quantile of the distance from the median of nine, in sigma
 MIN_BEND_SCATTER = 3.0  # scatters by which twice the median between them is off their sum
 MAX_MISSING_INTERVALS = 8  # intervals that are missing: what lies beyond is no neighbour
 # Places beyond the readings of a spike, and what a parabola through them reads in their middle.
@@ -77,9 +77,12 @@ class Channel:
         # scatter there as elsewhere.
         rough = np.abs(values[1:-1] - (values[:-2] + values[2:]) / 2) / np.sqrt(1.5)
         rough = np.pad(rough, 1, mode="edge")
-        rough *= _colour(values, rough, count)
+        colour, faintest = _colour(values, rough, count)
+        rough *= colour
         scatter = _of_readings(
-            _around(_scatter(rough, SCATTER_READINGS, count), least=True), SCATTER_READINGS, values
+            _around(_scatter(rough, SCATTER_READINGS, faintest), least=True),
+            SCATTER_READINGS,
+            values,
         )
         near = _scatter(rough, MOTION_READINGS, count)
         least_near = _of_readings(_around(near, least=True), MOTION_READINGS, values)
@@ -101,17 +104,20 @@ class Channel:
         )
 
 
-def _colour(values: Array, rough: Array, count: float) -> float:
+def _colour(values: Array, rough: Array, count: float) -> tuple[float, float]:
     """How much farther the noise is from its running median than its roughness says, at least 1.
 
-    A filter leaves neighbours alike, but not readings four places apart. Of the quiet blocks, for
-    in a motion by hand it is the motion that is off its median.
+    And the least scatter: a count, or that distance where it is farther. A filter leaves neighbours
+    alike, but not readings four places apart. Of the quiet blocks, for in a motion by hand it is
+    the motion that is off its median.
     """
     scatter = _scatter(rough, SCATTER_READINGS, count)
     off = _in_blocks(np.abs(values - running_median(values)), SCATTER_READINGS)
     place = int(OFF_SHARE * off.shape[1])
     waves = np.partition(off, place, axis=1)[:, place] / OFF_OF_WHITE
-    return max(float(np.quantile(waves / scatter, QUIET_SHARE)), 1.0) if scatter.all() else 1.0
+    if not scatter.all() or (colour := float(np.quantile(waves / scatter, QUIET_SHARE))) <= 1:
+        return 1.0, count
+    return colour, max(count, float(np.quantile(waves, QUIET_SHARE)))
 
 
 def _off(values: Array, least: Array) -> Array:
