@@ -136,4 +136,4 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named():
     assert abs(cross["difference"]) == pytest.approx(np.radians(OFF) / 8, rel=0.3)
     assert cross["extended_sigma"] < cross["joint_sigma"] / 10
     verdict = results["diagnosis/verdict"].set_index("sensor")
-    assert dict(verdict["method"]) == {"gyro": "joint", "accel": "mixture"}
+    assert dict(verdict["method"]) == {"gyro": "joint", "accel": "extended"}

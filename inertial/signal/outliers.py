@@ -38,7 +38,8 @@ MOTION_READINGS = 64  # readings of a block that decides whether the IMU is move
 MIN_MOTION_RATIO = 3.0  # times the scatter of the quiet stretches
 MAX_SPIKE_READINGS = 3  # readings of a spike
 MIN_SLOPE_SCATTER = 3.0  # scatters between the medians before and after
-OFF_SHARE, OFF_OF_WHITE = 0.99, 2.63  # quantile of the distance from the median of nine, in sigma
+OFF_SHARE, OFF_OF_WHITE = 0.95, 1.98  # quantile of the distance from the median of nine, in sigma
+MIN_COLOUR = 1.3  # ratio of scatters; what is less may be the steps of coarse counts
 MIN_BEND_SCATTER = 3.0  # scatters by which twice the median between them is off their sum
 MAX_MISSING_INTERVALS = 8  # intervals that are missing: what lies beyond is no neighbour
 # Places beyond the readings of a spike, and what a parabola through them reads in their middle.
@@ -115,7 +116,8 @@ def _colour(values: Array, rough: Array, count: float) -> tuple[float, float]:
     off = _in_blocks(np.abs(values - running_median(values)), SCATTER_READINGS)
     place = int(OFF_SHARE * off.shape[1])
     waves = np.partition(off, place, axis=1)[:, place] / OFF_OF_WHITE
-    if not scatter.all() or (colour := float(np.quantile(waves / scatter, QUIET_SHARE))) <= 1:
+    colour = float(np.quantile(waves / scatter, QUIET_SHARE)) if scatter.all() else 1.0
+    if colour < MIN_COLOUR:
         return 1.0, count
     return colour, max(count, float(np.quantile(waves, QUIET_SHARE)))
 
