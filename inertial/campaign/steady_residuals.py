@@ -165,18 +165,20 @@ def _with_shapes(turns: Sequence[SteadyTurn]) -> Iterator[SteadyTurn]:
 
     Without their first samples, in which the filter that such a shape shows still settles.
     """
-    alike: dict[float, list[SteadyTurn]] = {}
-    for turn in turns:
-        alike.setdefault(float(f"{turn.step:.3g}"), []).append(turn)
+    rates = np.array([float(f"{1 / turn.step:.3g}") for turn in turns])
     shapes = {
-        step: [
-            noise_shape([turn.truth[:, i] for turn in own], 1 / step, MIN_WHITE_HZ)
+        rate: [
+            noise_shape(
+                [turn.truth[:, i] for turn, own in zip(turns, rates, strict=True) if own == rate],
+                rate,
+                MIN_WHITE_HZ,
+            )
             for i in range(len(AXES))
         ]
-        for step, own in alike.items()
+        for rate in set(rates.tolist())
     }
-    for turn in turns:
-        own = shapes[float(f"{turn.step:.3g}")]
+    for turn, rate in zip(turns, rates.tolist(), strict=True):
+        own = shapes[rate]
         first = ceil(max(shape.settling for shape in own) / turn.step)
         if len(turn.truth) - first >= MIN_SAMPLES:
             yield replace(

@@ -1,8 +1,7 @@
 """White noise of every channel in every manoeuvre, and all terms of the noise at rest."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain, pairwise, product
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,20 +11,16 @@ from inertial import tables
 from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
-from inertial.estimation.noise_shape import shape_of
-from inertial.estimation.spectrum import NoiseShape, in_band, white_level
-from inertial.signal.scatter import noise_before_rounding, rounded_mean, smallest_step
 from inertial.tables.stage import Stage, Tables
 from stages.noise.declared import DECLARED
+from stages.noise.rounding import rounding_levels
+from stages.noise.spectra import Spectra, shapes_of
 from stages.noise.static_stretches import SENSORS, StaticStretches
 
 Array = NDArray[np.float64]
 
 MAX_SAMPLES = 32768  # of one periodogram: bounds the memory of a long log
 PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
-MIN_SAMPLES = 16  # fewer give no level
-MAX_COARSE_VARIANCE = 0.5  # steps²: rounding alone makes up to a quarter
-MIN_ROUNDED_MEAN = 1e-3  # steps
 _Level = tuple[str, str, str]  # manoeuvre, phase, channel
 LEAST_SIGMA = {"accel": 1e-6, "gyro": 1e-8}  # m/s² and rad/s: no mean is known better
 
@@ -50,7 +45,7 @@ def noise(
     clock = clocks_of(clocks)
     sheet = {f"{row['sensor']}_{row['axis']}": row for row in rows_of(sensors)}
     quiet = _quiet(segments)
-    spectra: dict[tuple[str, str], _Spectra] = {}
+    spectra: dict[tuple[str, str], Spectra] = {}
     lengths = [row["to_record"] - row["from_record"] for row in quiet if row["phase"] != "steady"]
     static = StaticStretches(max(lengths, default=0))
     number = 0
@@ -62,13 +57,13 @@ def noise(
                 continue
             inside_it = (record >= row["from_record"]) & (record < row["to_record"])
             chosen = values[inside_it]
-            collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), _Spectra())
+            collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), Spectra())
             for start in range(0, len(chosen), MAX_SAMPLES):
                 collected.add(chosen[start : start + MAX_SAMPLES], 1 / step, (from_hz, to_hz))
             collected.carried |= {sensor for sensor in SENSORS if (log, sensor) in carried}
             if row["phase"] != "steady" and len(chosen):
                 static.add((row["manoeuvre"], row["phase"], number), chosen, step)
-    shapes = _shapes(spectra)
+    shapes = shapes_of(spectra)
     rows = [
         row | {"data_sheet": sheet[row["channel"]]["white_noise"]}
         for (manoeuvre, phase), collected in spectra.items()
@@ -77,7 +72,7 @@ def noise(
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
     noises = list(static.noises())
     drifts = dict(chain.from_iterable(n.drifts() for n in noises))
-    levels = effective_levels(measured, drifts, _of_rounding(spectra))
+    levels = effective_levels(measured, drifts, rounding_levels(spectra))
     if of_means:
         own = pd.DataFrame(of_means, columns=levels.columns)
         levels = pd.concat([levels, own]) if rows else own
@@ -154,122 +149,6 @@ def _stated_levels(blocks: pd.DataFrame, mean_sigmas: pd.DataFrame) -> dict[_Lev
     sums = both.groupby(["manoeuvre", "phase", "channel"])[["count", "square"]].sum()
     levels = (sums["square"] / sums["count"]) ** 0.5
     return dict(zip(levels.index.to_list(), levels.to_list(), strict=True))
-
-
-class _Spectra:
-    """The band levels of one manoeuvre, piece by piece, for each sensor by itself.
-
-    Accelerometers and gyros may come in records of their own. `steps`: the smallest changes of the
-    channels; `carried`: sensors whose counts carry over what they leave.
-    """
-
-    def __init__(self) -> None:
-        self.levels: dict[str, list[Array]] = {}
-        self.frequencies: dict[str, list[Array]] = {}
-        self.squares = np.zeros(6)
-        self.sums = np.zeros(6)
-        self.samples: dict[str, int] = {}
-        self.seconds: dict[str, float] = {}
-        self.steps = np.full(6, np.inf)
-        self.carried: set[str] = set()
-
-    def add(self, values: Array, rate: float, band: tuple[float, float]) -> None:
-        for sensor, columns in SENSORS.items():
-            part = values[:, columns]
-            part = part[np.isfinite(part).any(axis=1)]
-            if len(part) >= MIN_SAMPLES:
-                whole = np.isfinite(part).all(axis=0)
-                frequency, levels = in_band(np.where(whole, part, 0.0), rate, band)
-                self.frequencies.setdefault(sensor, []).append(frequency)
-                self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))
-                self.squares[columns] += np.var(part, axis=0) * len(part)
-                self.sums[columns] += part.sum(axis=0)
-                self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
-                self.seconds[sensor] = self.seconds.get(sensor, 0.0) + len(part) / rate
-                steps = [smallest_step(channel) for channel in part.T]
-                self.steps[columns] = np.minimum(self.steps[columns], steps)
-
-    def rows(
-        self, manoeuvre: str, phase: str, shapes: Mapping[str, Sequence[NoiseShape]]
-    ) -> Iterator[dict[str, Any]]:
-        """Of each channel; `shapes`: of the noise of each sensor in all manoeuvres."""
-        for sensor, levels in self.levels.items():
-            frequency = np.concatenate(self.frequencies[sensor])
-            at = np.array([shape.at(frequency) for shape in shapes[sensor]]).T
-            slow = [float(shape.at(frequency.min())) for shape in shapes[sensor]]
-            white, sigma = white_level(np.concatenate(levels) / at**2) * np.array(slow)
-            for i, axis in enumerate(tables.AXES):
-                if white[i] > 0:
-                    square = self.squares[SENSORS[sensor]][i]
-                    yield {
-                        "manoeuvre": manoeuvre,
-                        "phase": phase,
-                        "channel": f"{sensor}_{axis}",
-                        "white_noise": float(white[i]),
-                        "sigma": float(sigma[i]),
-                        "per_sample": float(np.sqrt(square / self.samples[sensor])),
-                        "samples": self.samples[sensor],
-                    }
-
-
-def _shapes(spectra: Mapping[tuple[str, str], _Spectra]) -> dict[str, list[NoiseShape]]:
-    """By sensor the shape of the noise of each channel within the band, at rest if there is any.
-
-    A filter in the band takes noise from its upper part; what means are uncertain by is its end.
-    """
-    shapes = {}
-    for sensor in SENSORS:
-        every = {phase: one for (_, phase), one in spectra.items() if sensor in one.levels}
-        own = [
-            one
-            for (_manoeuvre, phase), one in spectra.items()
-            if sensor in one.levels and ("rest" not in every or phase == "rest")
-        ]
-        frequencies = [frequency for one in own for frequency in one.frequencies[sensor]]
-        levels = [np.nan_to_num(level) for one in own for level in one.levels[sensor]]
-        shapes[sensor] = [
-            shape_of(frequencies, [level[:, axis] for level in levels])
-            for axis in range(len(tables.AXES))
-        ]
-    return shapes
-
-
-def _of_rounding(spectra: Mapping[tuple[str, str], _Spectra]) -> dict[_Level, float]:
-    """What the rounding of readings adds to the level of each manoeuvre, phase and channel.
-
-    The mean of a manoeuvre is off by the same however long it is; so is the sigma that this level
-    gives it. Means that are alike are off by the same, so each of k of them has √k of it. The
-    variance of rounded readings depends on where the truth lies between two steps, so the noise is
-    that of the mean variance of all rests, but where a manoeuvre clearly shakes.
-    """
-    found: dict[_Level, float] = {}
-    steps = np.min([one.steps for one in spectra.values()], axis=0, initial=np.inf)
-    for place in np.flatnonzero(np.isfinite(steps)):
-        channel, step = tables.CHANNELS[place], float(steps[place])
-        sensor = channel.partition("_")[0]
-        own = {
-            key: one
-            for key, one in spectra.items()
-            if sensor in one.samples and sensor not in one.carried
-        }
-        if not own:
-            continue
-        count = np.array([one.samples[sensor] for one in own.values()])
-        seconds = np.array([one.seconds[sensor] for one in own.values()])
-        spread, mean = (
-            np.array([getattr(one, name)[place] for one in own.values()]) / count / step**power
-            for name, power in (("squares", 2), ("sums", 1))
-        )
-        coarse = spread < MAX_COARSE_VARIANCE
-        resting = coarse & np.array([phase == "rest" for _manoeuvre, phase in own])
-        shared = np.mean(spread, where=resting if resting.any() else coarse) if coarse.any() else 0
-        off = rounded_mean(noise_before_rounding(np.where(coarse, shared, spread)))
-        apart = np.abs(mean - mean[:, None])
-        alike = np.sum(np.cos(2 * np.pi * np.minimum(apart, 0.25)), axis=1)
-        level = off * step * np.sqrt(alike * seconds)
-        kept = zip(own, off, level.tolist(), strict=True)
-        found |= {(*key, channel): size for key, one, size in kept if one > MIN_ROUNDED_MEAN}
-    return found
 
 
 def _unbroken(

@@ -74,3 +74,12 @@ def test_a_level_of_its_own_for_each_mean_that_rounding_reaches(results):
     channels = tables["noise/levels"]["channel"].unique()
     known = set(zip(levels["manoeuvre"], levels["channel"], strict=True))
     assert set(product(rests, channels)) <= known
+
+
+def test_a_channel_that_is_masked_in_one_manoeuvre_has_its_levels_in_the_others():
+    document = rounded(1801, 0.3, carries=False)
+    dead = {"log": "y-backward.asc", "channel": "gyro_x", "line": 100, "samples": 900}
+    document["faults"] = [{"kill": dead | {"reads": "zero"}}]
+    levels = chain.in_memory_of(document, "noise")["noise/levels"]
+    own = levels[levels["channel"] == "gyro_x"].dropna(subset="rounding")
+    assert np.isfinite(own["rounding"]).all() and len(own) > 10

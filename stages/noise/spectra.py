@@ -1,0 +1,94 @@
+"""The spectra of one manoeuvre within the band that tells the white noise, and their shape."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial import tables
+from inertial.estimation.noise_shape import shape_of
+from inertial.estimation.spectrum import NoiseShape, in_band, white_level
+from inertial.signal.scatter import smallest_step
+from stages.noise.static_stretches import SENSORS
+
+Array = NDArray[np.float64]
+
+MIN_SAMPLES = 16  # fewer give no level
+
+
+class Spectra:
+    """The band levels of one manoeuvre, piece by piece, for each sensor by itself.
+
+    Accelerometers and gyros may come in records of their own. `steps`: the smallest changes of the
+    channels; `carried`: sensors whose counts carry over what they leave.
+    """
+
+    def __init__(self) -> None:
+        self.levels: dict[str, list[Array]] = {}
+        self.frequencies: dict[str, list[Array]] = {}
+        self.squares = np.zeros(6)
+        self.sums = np.zeros(6)
+        self.samples: dict[str, int] = {}
+        self.seconds: dict[str, float] = {}
+        self.steps = np.full(6, np.inf)
+        self.carried: set[str] = set()
+
+    def add(self, values: Array, rate: float, band: tuple[float, float]) -> None:
+        """Take an unbroken piece, (n, 6), sampled at `rate`, Hz, in; `band`: Hz, of the levels."""
+        for sensor, columns in SENSORS.items():
+            part = values[:, columns]
+            part = part[np.isfinite(part).any(axis=1)]
+            if len(part) >= MIN_SAMPLES:
+                whole = np.isfinite(part).all(axis=0)
+                frequency, levels = in_band(np.where(whole, part, 0.0), rate, band)
+                self.frequencies.setdefault(sensor, []).append(frequency)
+                self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))
+                self.squares[columns] += np.var(part, axis=0) * len(part)
+                self.sums[columns] += part.sum(axis=0)
+                self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
+                self.seconds[sensor] = self.seconds.get(sensor, 0.0) + len(part) / rate
+                steps = [smallest_step(channel) for channel in part.T]
+                self.steps[columns] = np.minimum(self.steps[columns], steps)
+
+    def rows(
+        self, manoeuvre: str, phase: str, shapes: Mapping[str, Sequence[NoiseShape]]
+    ) -> Iterator[dict[str, Any]]:
+        """Of each channel; `shapes`: of the noise of each sensor in all manoeuvres."""
+        for sensor, levels in self.levels.items():
+            frequency = np.concatenate(self.frequencies[sensor])
+            at = np.array([shape.at(frequency) for shape in shapes[sensor]]).T
+            slow = [float(shape.at(frequency.min())) for shape in shapes[sensor]]
+            white, sigma = white_level(np.concatenate(levels) / at**2) * np.array(slow)
+            for i, axis in enumerate(tables.AXES):
+                if white[i] > 0:
+                    square = self.squares[SENSORS[sensor]][i]
+                    yield {
+                        "manoeuvre": manoeuvre,
+                        "phase": phase,
+                        "channel": f"{sensor}_{axis}",
+                        "white_noise": float(white[i]),
+                        "sigma": float(sigma[i]),
+                        "per_sample": float(np.sqrt(square / self.samples[sensor])),
+                        "samples": self.samples[sensor],
+                    }
+
+
+def shapes_of(spectra: Mapping[tuple[str, str], Spectra]) -> dict[str, list[NoiseShape]]:
+    """By sensor the shape of the noise of each channel within the band, at rest if there is any.
+
+    `spectra`: by manoeuvre and phase. A filter in the band takes noise from its upper part; what
+    means are uncertain by is at its lower end.
+    """
+    shapes = {}
+    for sensor in SENSORS:
+        seen = {key: one for key, one in spectra.items() if sensor in one.levels}
+        resting = [one for (_manoeuvre, phase), one in seen.items() if phase == "rest"]
+        own = resting or [*seen.values()]
+        frequencies = [frequency for one in own for frequency in one.frequencies[sensor]]
+        levels = [np.nan_to_num(level) for one in own for level in one.levels[sensor]]
+        shapes[sensor] = [
+            shape_of(frequencies, [level[:, axis] for level in levels])
+            for axis in range(len(tables.AXES))
+        ]
+    return shapes
