@@ -8,6 +8,8 @@ import pytest
 from judge import parameters_of
 
 from inertial.signal.scatter import noise_before_rounding, rounded_mean
+from stages.noise.rounding import rounding_levels
+from stages.noise.spectra import Spectra
 
 SEEDS = (1801, 1802, 1803)
 
@@ -77,9 +79,12 @@ def test_a_level_of_its_own_for_each_mean_that_rounding_reaches(results):
 
 
 def test_a_channel_that_is_masked_in_one_manoeuvre_has_its_levels_in_the_others():
-    document = rounded(1801, 0.3, carries=False)
-    dead = {"log": "y-backward.asc", "channel": "gyro_x", "line": 100, "samples": 900}
-    document["faults"] = [{"kill": dead | {"reads": "zero"}}]
-    levels = chain.in_memory_of(document, "noise")["noise/levels"]
-    own = levels[levels["channel"] == "gyro_x"].dropna(subset="rounding")
-    assert np.isfinite(own["rounding"]).all() and len(own) > 10
+    random, spectra = np.random.default_rng(6), {}
+    for number in range(4):
+        readings = np.rint(random.normal(random.uniform(size=6), 0.2, (1000, 6)))
+        readings[:, 3] = np.nan if number == 0 else readings[:, 3]
+        spectra[f"m{number}", "rest"] = Spectra()
+        spectra[f"m{number}", "rest"].add(readings, 100.0, (0.5, 5.0))
+    levels = rounding_levels(spectra)
+    assert {key[0] for key in levels if key[2] == "gyro_x"} == {"m1", "m2", "m3"}
+    assert len(levels) == 23 and np.isfinite(list(levels.values())).all()
