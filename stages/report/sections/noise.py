@@ -69,9 +69,9 @@ SECTION = outline.Section(
         "Left to right: quantisation falls with slope −1, white noise (random walk of angle or "
         "velocity) with −½; bias instability is flat, a random walk of the bias rises with +½, "
         "a ramp with +1. Points are the data with their 1-σ interval, lines the sum of the fitted "
-        "terms. Every σ of this report rests on white noise as each manoeuvre has it, and on bias "
-        "instability and random walk where they are certain (p < 0.1 %); the data sheet, dashed, "
-        "is used nowhere."
+        "terms. Every σ of this report rests on white noise as each manoeuvre has it, on bias "
+        "instability and random walk where they are certain (p < 0.1 %), and on the rounding of "
+        "counts that are coarse beside it; the data sheet, dashed, is used nowhere."
     ),
     ("allan", "spectra", "noise_terms", "levels", "sensors", "segments"),
     parts,
