@@ -78,7 +78,8 @@ class Channel:
         # scatter there as elsewhere.
         rough = np.abs(values[1:-1] - (values[:-2] + values[2:]) / 2) / np.sqrt(1.5)
         rough = np.pad(rough, 1, mode="edge")
-        colour, faintest = _colour(values, rough, count)
+        course = running_median(values)
+        colour, faintest = _colour(values - course, rough, count)
         rough *= colour
         scatter = _of_readings(
             _around(_scatter(rough, SCATTER_READINGS, faintest), least=True),
@@ -88,7 +89,7 @@ class Channel:
         near = _scatter(rough, MOTION_READINGS, count)
         least_near = _of_readings(_around(near, least=True), MOTION_READINGS, values)
         least = np.minimum(scatter, least_near)
-        off = _off(values, least)
+        off = _off(values, course, least)
         quiet = max(min(float(np.quantile(near, 0.25)), noise), count)
         # One spike of three readings is no motion yet, nor are several that lie apart.
         pairs = _in_blocks(np.minimum(np.abs(off), np.abs(np.roll(off, 1))), MOTION_READINGS)
@@ -105,7 +106,7 @@ class Channel:
         )
 
 
-def _colour(values: Array, rough: Array, count: float) -> tuple[float, float]:
+def _colour(off: Array, rough: Array, count: float) -> tuple[float, float]:
     """How much farther the noise is from its running median than its roughness says, at least 1.
 
     And the least scatter: a count, or that distance where it is farther. A filter leaves neighbours
@@ -113,17 +114,17 @@ def _colour(values: Array, rough: Array, count: float) -> tuple[float, float]:
     the motion that is off its median.
     """
     scatter = _scatter(rough, SCATTER_READINGS, count)
-    off = _in_blocks(np.abs(values - running_median(values)), SCATTER_READINGS)
-    place = int(OFF_SHARE * off.shape[1])
-    waves = np.partition(off, place, axis=1)[:, place] / OFF_OF_WHITE
+    far = _in_blocks(np.abs(off), SCATTER_READINGS)
+    place = int(OFF_SHARE * far.shape[1])
+    waves = np.partition(far, place, axis=1)[:, place] / OFF_OF_WHITE
     colour = float(np.quantile(waves / scatter, QUIET_SHARE)) if scatter.all() else 1.0
     if colour < MIN_COLOUR:
         return 1.0, count
     return colour, max(count, float(np.quantile(waves, QUIET_SHARE)))
 
 
-def _off(values: Array, least: Array) -> Array:
-    """The distance of readings from their running median, or, on a ramp, from that of the ramp.
+def _off(values: Array, course: Array, least: Array) -> Array:
+    """The distance of readings from their running median `course`, or, on a ramp, from the ramp's.
 
     A spike on a steep ramp moves the median of those beside it by a step of the ramp. So what is
     far off by its scatter, `least`, is compared once more, the slope between the medians before
@@ -132,7 +133,6 @@ def _off(values: Array, least: Array) -> Array:
     five after as well; at the turning point of a bend, such as gravity's while the IMU is tilted
     over, where the median lies inside of the bend, off a parabola through six before and six after.
     """
-    course = running_median(values)
     off = values - course
     half, last = MEDIAN_WIDTH // 2, len(values) - 1
     far = np.flatnonzero(np.abs(off) > MIN_DEVIATION_SCATTER * least)
