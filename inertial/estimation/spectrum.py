@@ -12,7 +12,7 @@ Booleans = NDArray[np.bool_]
 
 MIN_BAND_BINS = 12  # of a shorter record the band extends as far as that
 BINS_PER_INDEPENDENT_BIN = 1.5  # of a Hann window
-FAINT = 0.1  # of the loudest noise of a record
+FAINT = 0.2  # of the loudest noise of a record
 PASSED = 0.5**0.5  # of the amplitude, at the corner of a filter
 SETTLED = 12.0  # time constants, after which 10⁻⁵ of a step remain
 STEADY_RUNS = 8  # per recorded steady part: runs whose scatter is known to 27 %

@@ -98,7 +98,8 @@ class Folded:
         # Of each signature and phase: Σ w·y of what counts, Σ w², Σ w⁴, and the fraction by which
         # what is off is estimated from all of y.
         self.sums = np.zeros((5, len(SIGNATURES), self.places))
-        self.squares = np.zeros((2, len(SIGNATURES)))  # Σ (w·y)² of what counts, and Σ w²
+        # Σ (w·y)² of what counts, Σ w², and the sum of the products of neighbours.
+        self.squares = np.zeros((3, len(SIGNATURES)))
 
     def add(self, time: Array, values: Array) -> None:
         """Consecutive records: stamps, (n,), s, NaN where there is none; readings, (n, 6)."""
@@ -125,7 +126,7 @@ class Folded:
             self._take(number, phase, np.clip(along, -most, most), w2, w2**2, *fraction)
 
     def _take(self, number: int, phase: Integers, counted: Array, w2: Array, *more: Array) -> None:
-        self.squares[:, number] += counted @ counted, w2.sum()
+        self.squares[:, number] += counted @ counted, w2.sum(), counted[:-1] @ counted[1:]
         for k, column in enumerate((counted, w2, *more)):
             self.sums[k, number] += np.bincount(phase, column, self.places)
 
@@ -181,9 +182,7 @@ def glitches(clocks: Mapping[str, Folded]) -> dict[str, tuple[Glitch, ...]]:
 
 
 def _scans(folded: Folded) -> Iterator[_Scan]:
-    # Where readings scatter more than by their median they are less sure.
-    squares, weights = folded.squares
-    excess = np.sqrt(np.fmax(squares / np.where(weights > 0, weights, 1.0), 1.0))
+    squares, weights, products = folded.squares
     for period in PERIODS:
         if period / folded.interval < MIN_PERIOD_SAMPLES:
             continue
@@ -192,6 +191,11 @@ def _scans(folded: Folded) -> Iterator[_Scan]:
         for width in WIDTHS:
             together = np.sum([np.roll(sums, -shift, axis=2) for shift in range(width)], axis=0)
             counted, w2, w4, above, below = np.swapaxes(together, 1, 2)
+            # Where readings scatter more than by their median they are less sure, and two together
+            # where a filter makes neighbours alike.
+            pairs = (width - 1) * np.fmax(products, 0.0)
+            spread = (squares + pairs) / np.where(weights > 0, weights, 1.0)
+            excess = np.sqrt(np.fmax(spread, 1.0))
             with np.errstate(invalid="ignore", divide="ignore"):
                 yield _Scan(
                     period,
