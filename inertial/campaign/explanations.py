@@ -214,12 +214,17 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         if not _unresolved(cause) or not same_sensor(cause, other):
             return False
         if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
-            return other.cause == "oscillation"
+            return other.cause == "oscillation" and _size(other) < _size(cause)
         return cause.cause in SPOILING and (cause.cause != "clock_scale" or _in_proportion(other))
     return any(
         cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
         for rule in EXPLANATIONS
     )
+
+
+def _size(finding: Hypothesis) -> float:
+    """How large it is, in its unit; 0 where that is not known."""
+    return abs(float(finding.row["size"] or 0.0))
 
 
 def _in_proportion(effect: Hypothesis) -> bool:

@@ -150,6 +150,14 @@ def test_a_clock_that_is_wrong_explains_what_is_in_proportion_and_laws(found, ex
     assert (found.cause not in causes(clock, found)) == explained
 
 
+@pytest.mark.parametrize(("amplitude", "explained"), [(3e-5, True), (3e-3, False)])
+def test_coarse_counts_explain_an_oscillation_that_is_smaller_than_they_are(amplitude, explained):
+    coarse, rings = finding("quality", "quantisation", "gyro"), effect("oscillation", "gyro")
+    coarse = replace(coarse, row=coarse.row | {"size": 1e-4})
+    rings = replace(rings, row=rings.row | {"size": amplitude})
+    assert ("oscillation" not in causes(coarse, rings)) == explained
+
+
 def test_a_temperature_that_changes_is_no_fault():
     assert causes(finding("quality", "temperature_drift")) == {}
 
