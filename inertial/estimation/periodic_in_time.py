@@ -93,19 +93,8 @@ def strongest(
     peak = int(np.argmax(np.where(candidates, density, 0.0)))
     trials = float(inside.sum())
     p_value = float(-np.expm1(trials * np.log1p(-np.exp(-density[peak] / level))))
-    return near(record, rate, lowest, float(frequency[peak]), p_value, shape)
-
-
-def near(
-    record: Array,
-    rate: float,
-    lowest: float,
-    frequency: float,
-    p_value: float,
-    shape: NoiseShape = WHITE,
-) -> Line:
-    """The line within a bin of a frequency, as `line_at` has it."""
-    return line_at(record, rate, lowest, _refined(record, rate, frequency), p_value, shape)
+    refined = _refined(record, rate, float(frequency[peak]))
+    return line_at(record, rate, lowest, refined, p_value, shape)
 
 
 def line_at(

@@ -58,8 +58,9 @@ class Spectra:
         for sensor, levels in self.levels.items():
             frequency = np.concatenate(self.frequencies[sensor])
             at = np.array([shape.at(frequency) for shape in shapes[sensor]]).T
-            slow = [float(shape.at(frequency.min())) for shape in shapes[sensor]]
-            white, sigma = white_level(np.concatenate(levels) / at**2) * np.array(slow)
+            slow = np.array([shape.at(frequency.min()) for shape in shapes[sensor]])
+            flat, flat_sigma = white_level(np.concatenate(levels) / at**2)
+            white, sigma = flat * slow, flat_sigma * slow
             for i, axis in enumerate(tables.AXES):
                 if white[i] > 0:
                     square = self.squares[SENSORS[sensor]][i]
