@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import resumable
 from hidden_campaigns import run
-from hidden_draws import draw
+from hidden_draws import draw, numbers_of_each
 from hidden_page import write
 from hidden_plans import PLANS
 from hidden_sizes import code, reference, size
@@ -38,9 +38,8 @@ def main(draws: int, folder: Path) -> None:
     resumable.with_all_stages()
     for plan in PLANS:
         reference(plan)
-    campaigns = resumable.drawn(
-        folder / "campaigns.jsonl", code(), ("number",), campaign, [(n,) for n in range(draws)]
-    )
+    numbers = [(n,) for n in (*range(draws), *numbers_of_each())]
+    campaigns = resumable.drawn(folder / "campaigns.jsonl", code(), ("number",), campaign, numbers)
     key = ("plan", "effect", "ratio")
     tries = resumable.drawn(folder / "statistics.jsonl", code(), key, statistics, list(every_job()))
     sys.stdout.write(write(campaigns, tries))

@@ -3,7 +3,8 @@
 A quarter is clean, and hard to be silent on. A third hides one effect: most in a random
 direction, as large as a signal-to-noise ratio says; some of a physical size; some that are not
 sought in blocks. Decoys hide what every calibration takes up, or one of several that are alike.
-Others hide two or three effects, or what is in no catalogue.
+Others hide two or three effects, or what is in no catalogue. Beside these every effect has
+campaigns of its own, all of which are written and read.
 """
 
 from collections.abc import Callable
@@ -28,6 +29,8 @@ KINDS = tuple(
     for letter in "cscsmdsocsmdscsmdsco"
 )
 CYCLE = len(KINDS)
+EACH, EACH_FROM = 20, 1_000_000  # campaigns of every effect, and the number of the first
+EACH_RATIOS = (5.0, 6.0, 8.0)  # in turn
 COMMON = ("positions", "rates", "positions", "stops", "positions", "positions")  # in turn
 
 Size = Callable[[str, str, float | None, Any], float]
@@ -75,6 +78,9 @@ def draw(number: int, size: Size) -> Draw:
     and the value of what is scanned.
     """
     random = np.random.default_rng([SEED, number])
+    if number >= EACH_FROM:
+        made = _each(number - EACH_FROM, random, size)
+        return Draw(number=number, kind="single", on_disk=True, **made)
     round_, place = divmod(number, CYCLE)
     kind = KINDS[place]
     turn = round_ * KINDS.count(kind) + KINDS[:place].count(kind)  # how many of its kind before
@@ -127,6 +133,18 @@ def _single(turn: int, random: Random, size: Size, number: int) -> dict[str, Any
     name = names[count % len(names)]
     ratio = RATIOS[(count // len(names) + count) % len(RATIOS)]
     plan = _plan_of(name, count, random)
+    return {"plan": plan, "sort": "ratio"} | _hide({name: ("ratio", ratio)}, plan, random, size)
+
+
+def numbers_of_each() -> range:
+    """Of the campaigns that every effect has of its own, one effect after the other."""
+    return range(EACH_FROM, EACH_FROM + EACH * len(WAYS))
+
+
+def _each(turn: int, random: Random, size: Size) -> dict[str, Any]:
+    round_, place = divmod(turn, len(WAYS))
+    name, ratio = list(WAYS)[place], EACH_RATIOS[round_ % len(EACH_RATIOS)]
+    plan = WAYS[name].plans[(round_ // len(EACH_RATIOS)) % len(WAYS[name].plans)]
     return {"plan": plan, "sort": "ratio"} | _hide({name: ("ratio", ratio)}, plan, random, size)
 
 
