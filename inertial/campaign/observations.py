@@ -48,9 +48,9 @@ def campaign_of(data: CampaignData) -> Campaign:
         motion = motions.turning(recorded, turn)
         turns.append(motion)
         if not turn.by_hand:
-            density = data.noise.of(recorded.plan.name, "steady", ACCEL)
+            levels = [data.noise.of(recorded.plan.name, at, ACCEL) for at in ("steady", "rest")]
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
-            parts = _turning(recorded.plan, recorded.blocks, motion, density, edges)
+            parts = _turning(recorded.plan, recorded.blocks, motion, levels, edges)
             static_forces += [(m, replace(part, stretch=turn.stretch), at) for m, part, at in parts]
     handled = data.by_hand is not None  # there the support drifts, not only the bias
     return Campaign(
@@ -100,15 +100,21 @@ def _static_force(position: StaticPosition) -> StaticForce:
 
 
 def _turning(
-    m: Manoeuvre, blocks: Blocks, motion: Motion, density: Array, edges: Sequence[int]
+    m: Manoeuvre, blocks: Blocks, motion: Motion, levels: Sequence[Array], edges: Sequence[int]
 ) -> list[tuple[str, StaticForce, Motion]]:
-    """The accelerometers during a rotation in means of some blocks, none across the `edges`."""
+    """The accelerometers during a rotation in means of some blocks, none across the `edges`.
+
+    `levels`: their noise at the steady rate and at rest. While the table starts and stops it is
+    the larger one: what shakes the rest after a turn may begin before the table is at rest.
+    """
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
     ups = mean_turned(m.up, m.axis, motion.angle, motion.rate * seconds)
     pieces = [range(first, after, MERGED_BLOCKS) for first, after in pairwise(edges)]
     starts = [start for piece in pieces for start in piece]
     merged = Merged(seconds, starts)
+    steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
+    density = np.where(steady, levels[0], np.fmax(*levels))
     sigmas = density / np.sqrt(merged.seconds)[:, None]
     rests = [
         StaticForce(m.position, up, mean, sigma, turning=True)

@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre, Part, Performed
+from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
@@ -92,6 +93,9 @@ NO_NOISE = _(
     "format"
 )
 PER_BLOCK = ("means", "counts", "seconds", "time", "temperature")
+LOUDER_P_VALUE = 1e-5  # that a stretch of white noise seems louder than it is
+# Squares of neighbouring second differences of white noise correlate by 4/9 and 1/36.
+DIFFERENCES_PER_DEGREE = 1 + 2 * (4 / 9 + 1 / 36)
 BLOCK_COLUMNS = ("count", "seconds", "time", "temperature")
 
 
@@ -129,11 +133,11 @@ class StaticPosition:
         return turned(self.up, self.about, self.angle)
 
     def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
-        """Mean reading over the first `seconds`, and its sigma from white noise."""
+        """Mean reading over the first `seconds`, and its sigma from the noise."""
         count = int(np.searchsorted(self._starts, seconds))
         with np.errstate(invalid="ignore", divide="ignore"):  # a channel that is not recorded
             summed, samples, duration = self._so_far[:, count - 1]
-            return summed / samples, self.density / np.sqrt(duration)
+            return summed / samples, self.density * self._louder / np.sqrt(duration)
 
     def mean_of(self, values: Array) -> float:
         """The mean of a quantity over all samples, from its means in the blocks, (k,)."""
@@ -158,6 +162,27 @@ class StaticPosition:
     def during(self, seconds: float = np.inf) -> Stretch:
         """The stretch of time of the first `seconds`."""
         return replace(self.stretch, seconds=min(self.stretch.seconds, seconds))
+
+    @cached_property
+    def _louder(self) -> Array:
+        """How much louder the noise is here than `density` says, (3,): 1 but where that is certain.
+
+        A level is that of a whole manoeuvre; someone who walks by is heard in a part of it. By
+        second differences of the blocks, in which a drift or a jump of the bias is next to nothing.
+        """
+        if len(self.seconds) < 3:
+            return np.ones(3)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            variance = (1 / self.seconds)[:, None] * self.density**2
+            squares = np.diff(self.means, 2, axis=0) ** 2
+            squares /= variance[:-2] + 4 * variance[1:-1] + variance[2:]
+        seen = np.isfinite(squares)
+        excess = np.mean(squares, axis=0, where=seen) if seen.any(axis=0).all() else np.ones(3)
+        degrees = np.maximum(seen.sum(axis=0), 1) / DIFFERENCES_PER_DEGREE
+        together = chi2_sf(float(excess @ degrees), float(degrees.sum()))
+        each = chi2_sf(excess * degrees, degrees)
+        louder = np.minimum(each, together) < LOUDER_P_VALUE
+        return np.where(louder, np.sqrt(np.maximum(excess, 1.0)), 1.0)
 
     @cached_property
     def _starts(self) -> Array:

@@ -1,5 +1,6 @@
 """White noise of a record from its spectrum, and deviations of a steady rate of the table."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -7,10 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import rfft
 
+from inertial.estimation.probability import chi2_sf
+
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
 MIN_BAND_BINS = 12  # of a shorter record the band extends as far as that
+CHANGED_P_VALUE = 1e-4  # of a level of a piece, from which the noise changes between pieces
 BINS_PER_INDEPENDENT_BIN = 1.5  # of a Hann window
 FAINT = 0.2  # of the loudest noise of a record
 PASSED = 0.5**0.5  # of the amplitude, at the corner of a filter
@@ -139,6 +143,36 @@ def white_level(levels: Array) -> tuple[Array, Array]:
     # The sample median m of an exponential has variance 1/n; half of it for the root.
     relative = 0.5 / np.log(2) / np.sqrt(max(bins / BINS_PER_INDEPENDENT_BIN, 1.0))
     return white, relative * white
+
+
+def level_of_pieces(pieces: Sequence[Array], seconds: Sequence[float]) -> tuple[Array, Array]:
+    """The white noise of a record in pieces and its standard deviation, see `white_level`.
+
+    That of all bins together; but where the noise of a channel changes between the pieces, of which
+    the median tells the half, the root of the mean of their squares.
+
+    Parameters
+    ----------
+    pieces : (bins, c) each, U²/Hz
+    seconds : duration of each piece
+
+    Returns
+    -------
+    random walk, U/√Hz, and its standard deviation, (c,) each
+    """
+    white, sigma = white_level(np.concatenate(pieces))
+    own, sigmas = np.array([white_level(piece) for piece in pieces]).swapaxes(0, 1)
+    known, seen = sigmas > 0, white > 0
+    degrees = np.divide(own, sigmas, out=np.zeros_like(own), where=known) ** 2 / 2
+    ratio = np.divide(own, white, out=np.ones_like(own), where=seen)
+    above = chi2_sf(degrees * ratio**2, degrees)
+    chance = 2 * np.minimum(above, 1 - above).min(axis=0) * len(pieces)
+    mean = np.sqrt(np.average(own**2, axis=0, weights=seconds))
+    share = np.array(seconds)[:, None] / np.sum(seconds)
+    of_mean = np.sqrt(np.sum((share * own * sigmas) ** 2, axis=0))
+    of_mean = np.divide(of_mean, mean, out=np.zeros_like(mean), where=mean > 0)
+    changes = chance < CHANGED_P_VALUE
+    return np.where(changes, mean, white), np.where(changes, of_mean, sigma)
 
 
 def rate_deviation(

@@ -37,7 +37,7 @@ def rounding_levels(spectra: Mapping[tuple[str, str], Spectra]) -> dict[Level, f
         if not own:
             continue
         count = np.array([one.samples[sensor] for one in own.values()])
-        seconds = np.array([one.seconds[sensor] for one in own.values()])
+        seconds = np.array([sum(one.seconds[sensor]) for one in own.values()])
         spread, mean = (
             np.array([getattr(one, name)[place] for one in own.values()]) / count / step**power
             for name, power in (("squares", 2), ("sums", 1))

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.estimation.noise_shape import shape_of
-from inertial.estimation.spectrum import NoiseShape, in_band, white_level
+from inertial.estimation.spectrum import NoiseShape, in_band, level_of_pieces
 from inertial.signal.scatter import smallest_step
 from stages.noise.static_stretches import SENSORS
 
@@ -30,7 +30,7 @@ class Spectra:
         self.squares = np.zeros(6)
         self.sums = np.zeros(6)
         self.samples: dict[str, int] = {}
-        self.seconds: dict[str, float] = {}
+        self.seconds: dict[str, list[float]] = {}
         self.steps = np.full(6, np.inf)
         self.carried: set[str] = set()
 
@@ -47,7 +47,7 @@ class Spectra:
                 self.squares[columns] += np.var(part, axis=0) * len(part)
                 self.sums[columns] += part.sum(axis=0)
                 self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
-                self.seconds[sensor] = self.seconds.get(sensor, 0.0) + len(part) / rate
+                self.seconds.setdefault(sensor, []).append(len(part) / rate)
                 steps = [smallest_step(channel) for channel in part.T]
                 self.steps[columns] = np.minimum(self.steps[columns], steps)
 
@@ -56,10 +56,12 @@ class Spectra:
     ) -> Iterator[dict[str, Any]]:
         """Of each channel; `shapes`: of the noise of each sensor in all manoeuvres."""
         for sensor, levels in self.levels.items():
-            frequency = np.concatenate(self.frequencies[sensor])
-            at = np.array([shape.at(frequency) for shape in shapes[sensor]]).T
-            slow = np.array([shape.at(frequency.min()) for shape in shapes[sensor]])
-            flat, flat_sigma = white_level(np.concatenate(levels) / at**2)
+            frequencies = self.frequencies[sensor]
+            slowest = min(frequency.min() for frequency in frequencies)
+            slow = np.array([shape.at(slowest) for shape in shapes[sensor]])
+            at = [np.array([one.at(f) for one in shapes[sensor]]).T for f in frequencies]
+            pieces = [level / one**2 for level, one in zip(levels, at, strict=True)]
+            flat, flat_sigma = level_of_pieces(pieces, self.seconds[sensor])
             white, sigma = flat * slow, flat_sigma * slow
             for i, axis in enumerate(tables.AXES):
                 if white[i] > 0:

@@ -3,7 +3,8 @@
 The rule for gaps and masks: a stretch is what was recorded at rest without a gap, without a masked
 sample and in one manoeuvre, so no average spans any of these. Each stretch has a mean of its own,
 for it has an attitude of its own. Stretches in which the same channels of a sensor are recorded at
-the same rate are pooled; of several such pools the one with the most time counts.
+the same rate, with about the same scatter, are pooled; of several such pools the one with the most
+time counts. Where somebody drills next door for an hour the other hours tell the noise.
 """
 
 from collections.abc import Iterator, Mapping
@@ -27,6 +28,7 @@ Stretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
 
 SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 SAME_INTERVAL = 1e-3  # relative difference of sampling intervals that are alike
+SAME_SCATTER = 1.5  # ratio of scatters that are alike
 PER_DECADE = 6  # averaging times
 LONGEST_SHARE = 0.25  # of the longest stretch, that an averaging time may be
 UNITS = {  # of quantisation, white noise, bias instability, random walk and ramp
@@ -37,11 +39,15 @@ UNITS = {  # of quantisation, white noise, bias instability, random walk and ram
 
 @dataclass
 class _Pool:
-    """The stretches in which some channels of a sensor are recorded at one rate."""
+    """The stretches in which some channels of a sensor are recorded at one rate.
+
+    `scatter`: (c,), from sample to sample, where the first stretch begins.
+    """
 
     sensor: str
     recorded: tuple[bool, ...]
     interval: float
+    scatter: Array
     sums: AllanSums
     powers: Powers
     welch: WelchSums
@@ -49,13 +55,21 @@ class _Pool:
     samples: int = 0
 
     @classmethod
-    def of(cls, sensor: str, recorded: tuple[bool, ...], interval: float, longest: int) -> "_Pool":
+    def of(
+        cls,
+        sensor: str,
+        recorded: tuple[bool, ...],
+        interval: float,
+        scatter: Array,
+        longest: int,
+    ) -> "_Pool":
         factors = factors_up_to(max(int(LONGEST_SHARE * longest), 1), PER_DECADE)
         channels = sum(recorded)
         return cls(
             sensor,
             recorded,
             interval,
+            scatter,
             AllanSums(channels, factors),
             Powers(channels, interval),
             WelchSums(channels, interval, segment_for([longest])),
@@ -68,6 +82,16 @@ class _Pool:
         for sums in (self.sums, self.powers, self.welch):
             sums.add(values)
         self.samples += len(values)
+
+    def takes(
+        self, sensor: str, recorded: tuple[bool, ...], interval: float, scatter: Array
+    ) -> bool:
+        """Whether a stretch belongs here."""
+        alike = (self.sensor, self.recorded) == (sensor, recorded)
+        if not alike or abs(interval / self.interval - 1) >= SAME_INTERVAL:
+            return False
+        smaller, larger = np.sort([scatter, self.scatter], axis=0)
+        return bool((larger <= SAME_SCATTER * smaller).all())
 
     def end(self) -> None:
         for sums in (self.sums, self.powers, self.welch):
@@ -99,14 +123,28 @@ class StaticStretches:
                 part, there = part[rows], there[rows]
             recorded = tuple(bool(each) for each in np.all(there, axis=0))
             if len(part) and any(recorded):
-                self._pool(sensor, recorded, interval).add(stretch, part[:, np.array(recorded)])
+                own = part[:, np.array(recorded)]
+                self._pool(stretch, sensor, recorded, interval, own).add(stretch, own)
 
-    def _pool(self, sensor: str, recorded: tuple[bool, ...], interval: float) -> _Pool:
-        for pool in self._pools:
-            alike = (pool.sensor, pool.recorded) == (sensor, recorded)
-            if alike and abs(interval / pool.interval - 1) < SAME_INTERVAL:
+    def _pool(
+        self,
+        stretch: Stretch,
+        sensor: str,
+        recorded: tuple[bool, ...],
+        interval: float,
+        values: Array,
+    ) -> _Pool:
+        kind = (sensor, recorded, interval)
+        known = [pool for pool in self._pools if pool.takes(*kind, pool.scatter)]
+        for pool in known:
+            if pool.stretch == stretch:
+                return pool  # it goes on
+        enough = len(values) >= MIN_WHOLE
+        scatter = np.diff(values, axis=0).std(axis=0) if enough else np.zeros(values.shape[1])
+        for pool in known:
+            if not enough or pool.takes(*kind, scatter):
                 return pool
-        pool = _Pool.of(sensor, recorded, interval, self.longest)
+        pool = _Pool.of(*kind, scatter, self.longest)
         self._pools.append(pool)
         return pool
 

@@ -1,0 +1,91 @@
+"""Noise that grows for a while: somebody drills next door, and there is nothing to find."""
+
+from dataclasses import replace
+
+import chain
+import numpy as np
+import pytest
+from hidden import hidden_plans
+
+import laboratory
+from inertial.campaign.records import Part
+from inertial.campaign.static_positions import StaticPosition
+from inertial.estimation.spectrum import level_of_pieces, white_level
+
+COUNTS = np.array([6553.6] * 3 + [92160.0] * 3)  # of a reading of 1 m/s², or 1 rad/s, at 100 Hz
+SAMPLES = np.array([5.4e-3] * 3 + [1.9e-4] * 3)  # about the noise of one, m/s² and rad/s
+
+
+def louder(recording: laboratory.Recording, start: float, end: float, times: float, seed: int):
+    """Readings with more white noise for a while, s; what one leaves over is in the next."""
+    random = np.random.default_rng(seed)
+    logs = {}
+    for log, records in recording.records.items():
+        time = (records.stamps - recording.start) / 1e9
+        within = ((time >= start) & (time < end))[:, None]
+        more = random.standard_normal(records.counts.shape) * times * SAMPLES * COUNTS * within
+        carried = np.diff(np.rint(np.cumsum(more, axis=0)), axis=0, prepend=0)
+        logs[log] = replace(records, counts=(records.counts + carried).astype(records.counts.dtype))
+    return replace(recording, records=logs)
+
+
+@pytest.mark.parametrize(
+    ("plan", "start", "end", "times"),
+    [
+        # It begins 2 s before a rest of 300 s ends, where a window of the spectrum is next to zero.
+        ("positions", 1378.0, 2600.0, 3.0),
+        # And while the table slows down after a turn.
+        pytest.param("rates", 690.0, 1410.0, 3.0, marks=pytest.mark.slow),
+        pytest.param("positions", 1712.0, 2405.0, 17.0, marks=pytest.mark.slow),
+    ],
+)
+def test_nothing_is_found(plan, start, end, times):
+    """Once a bias jump at 9 to 40 sigma, a shift in the fixture, a random walk."""
+    recording = laboratory.perform(laboratory.specify(hidden_plans.PLANS[plan](seed=4002)))
+    tables = chain.in_memory(louder(recording, start, end, times, 5), "criticism", chain.BESIDE)
+    assert tables["criticism/findings"].empty
+
+
+def test_the_level_of_pieces_of_unlike_noise_is_that_of_their_mean_power():
+    random = np.random.default_rng(2)
+    quiet, loud = (random.exponential(size, (40, 400)) for size in (1.0, 400.0))
+    alike, _ = level_of_pieces([quiet[:20], quiet[20:]], [3.0, 3.0])
+    np.testing.assert_array_equal(alike, white_level(quiet)[0])
+    level, sigma = level_of_pieces([quiet, loud], [6.0, 3.0])
+    expected = np.sqrt((6 * 1.0 + 3 * 400.0) / 9)
+    assert level.mean() == pytest.approx(expected, rel=0.02)
+    # These bins are independent; a Hann window leaves one in 1.5.
+    assert level.std() == pytest.approx(sigma.mean() / 1.5**0.5, rel=0.2)
+
+
+def position(means: np.ndarray) -> StaticPosition:
+    """A rest of blocks of 5 s with a level of 1 per √s in each channel."""
+    ones, five = np.ones(len(means)), np.full(len(means), 5.0)
+    up = np.array([0.0, 0.0, 1.0])
+    part = Part("rest", "rest")
+    return StaticPosition(
+        part, None, up, up, 0.0, means, 500 * ones, five, five.cumsum(), ones, np.ones(3)
+    )
+
+
+def test_the_sigma_of_a_mean_is_that_of_the_noise_which_its_blocks_have():
+    random = np.random.default_rng(3)
+    quiet = random.standard_normal((2000, 6, 3)) / np.sqrt(5)
+    stated = np.array([position(each).over()[1] for each in quiet])
+    assert np.mean(stated == 30**-0.5) > 0.999  # white noise keeps its level
+    first = random.integers(5, size=2000)[:, None]
+    loud = quiet * np.where((np.arange(6) - first) // 2 == 0, 10.0, 1.0)[:, :, None]
+    off = np.array([np.divide(*position(each).over()) for each in loud])
+    # Four differences tell it, so it is no Gaussian. With the level of the whole 0.73 are beyond 2.
+    assert np.mean(np.abs(off) > 2) < 0.2
+    assert np.median(np.abs(off)) == pytest.approx(0.67, abs=0.25)
+
+
+@pytest.mark.parametrize("course", ["ramp", "warm-up", "jump"])
+def test_a_drift_or_a_jump_of_the_bias_is_no_noise(course):
+    block = np.arange(6.0)[:, None]
+    drift = {"ramp": 3 * block, "warm-up": 6 * np.exp(-block / 6), "jump": 2.0 * (block > 2)}
+    random = np.random.default_rng(4)
+    quiet = random.standard_normal((500, 6, 3)) / np.sqrt(5)
+    sigmas = np.array([position(each + drift[course]).over()[1] for each in quiet])
+    assert np.mean(sigmas == 30**-0.5) > 0.8
