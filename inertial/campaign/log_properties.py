@@ -1,6 +1,6 @@
 """Interval, resolution and noise of every log, known before its records are examined singly."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ from inertial.campaign.masked_samples import Array, Batch, regular
 from inertial.campaign.records import Row, clocks_of, known_of, rows_of
 from inertial.campaign.sums import SumsOver
 from inertial.physics.site import normal_gravity
-from inertial.signal.detector import Given, Log, Windows
+from inertial.signal.detector import Booleans, Given, Log, Windows
 from inertial.signal.scatter import MAD_TO_SIGMA, MIN_RELATIVE_STEP, median
 from inertial.tables import AXES, CHANNEL_STATISTICS, CHANNELS
 
@@ -19,6 +19,9 @@ MAX_READINGS = 1 << 16  # of a batch, from which its noise and smallest step are
 WINDOW = 1.0  # s
 MIN_COMMON_LOGS = 3  # logs that can have an interval in common
 SENSORS = ("accel",) * 3 + ("gyro",) * 3
+HELD_WINDOW = 256  # records
+MIN_HELD_SHARE = 0.1  # of the records of nine in ten windows
+MAX_EQUAL_ALONE = 0.3  # share of an axis of other records: its counts are not coarse
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,6 +137,7 @@ class ChannelStatistics:
                     "resolution": channels.resolution,
                     "noise": channels.median_noise(),
                     "unchanged_share": channels.unchanged / np.maximum(channels.pairs, 1),
+                    "held_share": np.repeat(channels.held_share(), 3),
                     "smallest": channels.smallest,
                     "largest": channels.largest,
                 }
@@ -151,34 +155,77 @@ class _Channels:
         self.smallest, self.largest = np.full(6, np.nan), np.full(6, np.nan)
         self.resolution = np.full(6, np.nan)
         self.noise: list[Array] = []
+        self.noise_of_new: list[Array] = []  # without the records that hold a sensor's readings
+        self.held = np.zeros(2)  # records, by sensor
+        self.windows: tuple[list[Array], list[Array]] = [], []  # their shares
 
     def add(self, readings: Array) -> None:
         """Take in the next readings, (n, 6)."""
-        noise = np.full(6, np.nan)
-        for i, channel in enumerate(np.ascontiguousarray(readings.T)):
-            read = channel[np.isfinite(channel)]
-            if len(read) < 2:
-                continue
-            smallest, largest = read.min(), read.max()
-            self.smallest[i] = np.fmin(self.smallest[i], smallest)
-            self.largest[i] = np.fmax(self.largest[i], largest)
-            change = np.abs(np.diff(read))
-            self.pairs[i] += len(change)
-            self.unchanged[i] += len(change) - np.count_nonzero(change)
-            change = change[:MAX_READINGS]
-            # Equal steps of counts times their size differ in their last digits.
-            steps = change[change > MIN_RELATIVE_STEP * max(abs(smallest), abs(largest))]
-            if len(steps):
-                self.resolution[i] = np.fmin(self.resolution[i], steps.min())
-            # √2: from the scatter of differences to that of one reading.
-            noise[i] = MAD_TO_SIGMA / np.sqrt(2) * median(change)
+        noise, of_new = np.full(6, np.nan), np.full(6, np.nan)
+        for sensor in range(2):
+            steps: dict[int, Array] = {}
+            for i in range(3 * sensor, 3 * sensor + 3):
+                channel = np.ascontiguousarray(readings[:, i])
+                read = channel[np.isfinite(channel)]
+                if len(read) >= 2:
+                    steps[i] = np.abs(np.diff(read))
+                    self._add(i, read, steps[i])
+                    noise[i] = _noise(steps[i])
+            new = self._add_held(sensor, [*steps.values()])
+            for i, step in steps.items():
+                of_new[i] = noise[i] if new is None else _noise(step[new])
         self.noise.append(noise)
+        self.noise_of_new.append(of_new)
+
+    def _add(self, i: int, read: Array, change: Array) -> None:
+        smallest, largest = read.min(), read.max()
+        self.smallest[i] = np.fmin(self.smallest[i], smallest)
+        self.largest[i] = np.fmax(self.largest[i], largest)
+        self.pairs[i] += len(change)
+        self.unchanged[i] += len(change) - np.count_nonzero(change)
+        change = change[:MAX_READINGS]
+        # Equal steps of counts times their size differ in their last digits.
+        steps = change[change > MIN_RELATIVE_STEP * max(abs(smallest), abs(largest))]
+        if len(steps):
+            self.resolution[i] = np.fmin(self.resolution[i], steps.min())
+
+    def _add_held(self, sensor: int, steps: Sequence[Array]) -> Booleans | None:
+        """The records in which a sensor's readings are new; None where they are all the time."""
+        if len({len(step) for step in steps}) != 1:
+            return None
+        new = np.logical_or.reduce([step > 0 for step in steps])
+        held = len(new) - np.count_nonzero(new)
+        self.held[sensor] += held
+        whole = len(new) // HELD_WINDOW * HELD_WINDOW
+        self.windows[sensor].append(1 - new[:whole].reshape(-1, HELD_WINDOW).mean(axis=1))
+        return new if held > MIN_HELD_SHARE * len(new) and new.any() else None
+
+    def held_share(self) -> Array:
+        """The share of records that hold the readings of each sensor throughout, (2,); else 0."""
+        share = np.zeros(2)
+        for sensor, windows in enumerate(self.windows):
+            own = slice(3 * sensor, 3 * sensor + 3)
+            moving = self.smallest[own] < self.largest[own]
+            if not moving.any() or not sum(map(len, windows)):
+                continue
+            held, pairs = self.held[sensor], self.pairs[own][moving]
+            alone = (self.unchanged[own][moving] - held) / np.maximum(pairs - held, 1)
+            usual = float(np.quantile(np.concatenate(windows), 0.1))
+            if usual >= MIN_HELD_SHARE and (alone <= MAX_EQUAL_ALONE).all():
+                share[sensor] = held / float(pairs.max())
+        return share
 
     def median_noise(self) -> Array:
         """The median over the batches, (6,), NaN where a channel is not recorded."""
-        noise = np.array(self.noise)
+        held = np.repeat(self.held_share() > 0, 3)
+        noise = np.where(held, self.noise_of_new, self.noise)
         recorded = np.isfinite(noise).any(axis=0)
         return np.where(recorded, np.nanmedian(np.where(recorded, noise, 0.0), axis=0), np.nan)
+
+
+def _noise(change: Array) -> float:
+    """√2: from the scatter of differences to that of one reading."""
+    return float(MAD_TO_SIGMA / np.sqrt(2) * median(change[:MAX_READINGS]))
 
 
 def windows_of(clocks: pd.DataFrame) -> SumsOver:
@@ -232,6 +279,7 @@ def logs(
             quantum=own["resolution"].to_numpy(np.float64),
             noise=own["noise"].to_numpy(np.float64),
             equal=own["unchanged_share"].to_numpy(np.float64),
+            held=own["held_share"].to_numpy(np.float64)[::3],
             least=own["smallest"].to_numpy(np.float64),
             most=own["largest"].to_numpy(np.float64),
             limit=np.array([_number(row.get("limit"), np.inf) for row in channels]),

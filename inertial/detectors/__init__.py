@@ -23,7 +23,7 @@ from inertial.detectors.misread_axes_and_signs import (
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.quantisation import Quantisation
-from inertial.detectors.repeated_records import Duplicate, HeldRecord
+from inertial.detectors.repeated_records import Duplicate, HeldRecord, SlowerSensor
 from inertial.detectors.saturation import Saturation
 from inertial.detectors.spike import Spikes
 from inertial.detectors.stamp_faults import (
@@ -51,6 +51,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     Gap(),
     TimeBackwards(),
     HeldRecord(),
+    SlowerSensor(),
     StatusInvalid(),
     TimeStandsStill(),
     ArrivalStamps(),

@@ -1,4 +1,4 @@
-"""Records that are in a log twice, or that hold the readings of earlier ones."""
+"""Records that are in a log twice, that hold earlier readings, or that outnumber the readings."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.signal.detector import (
+    SENSORS,
     Array,
     Booleans,
     Description,
@@ -18,8 +19,9 @@ from inertial.signal.detector import (
 )
 from inertial.signal.runs import runs
 from inertial.signal.stamps import kinds
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
-from inertial.text.numbers import counted, fixed, p_is
+from inertial.text.numbers import counted, fixed, p_is, significant
 
 # Share of stamps that stand still while the readings change: above it the stamps are so coarse
 # that equal readings with equal stamps may be another sample.
@@ -127,8 +129,10 @@ SIDE_PAIRS = 100  # pairs on each side of a run by which its chance is judged
 CLOSE_COUNTS = (1, 3, 10)
 MIN_EXCESS_SIGMA = 3.0  # sigma, more than usual
 BISECTIONS = 40  # of the interval in which the chance lies
+SAME_SHARE = 0.02  # of records held, of two sensors with one cause
 MIN_COPIED = 8  # records in a row that are copied
 DEPENDENT = 0.5  # power of the chance that all channels change alike: as if half of them were free
+MAX_USUAL_RUNS = 3.0  # times the records that a slower sensor has for each reading
 # Of the readings of a record, in a sum that is the same only where all of them are.
 SUM_WEIGHTS = np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0])
 
@@ -153,6 +157,8 @@ class HeldRecord(Detector):
     Or records whose readings are, in their order, those of a stretch before, where there are no
     stamps that would be repeated too: see `_copied`.
 
+    Where a sensor is slower than its log that is so all the time, and only longer runs count.
+
     Cause: the logger wrote the last record again where it had no new one. A sum over time takes old
     readings for new ones, so the scale factor of a turn is wrong.
     """
@@ -172,7 +178,9 @@ class HeldRecord(Detector):
                 yield from self._copies(piece, values, log.records)
             if not _any_equal(values):
                 continue
-            for start, end, chance in _held(values, log.records):
+            slower = min(log.held[sensor] for sensor in set((changing // 3).tolist()))
+            usual = MAX_USUAL_RUNS / (1 - slower) if slower else 0.0
+            for start, end, chance in _held(values, log.records, usual):
                 # The rows of another sensor may lie between; they are not concerned.
                 own = places[start + 1 : end + 1]
                 whole = own[-1] - own[0] + 1 == len(own)
@@ -242,6 +250,69 @@ class HeldRecord(Detector):
         )
 
 
+@dataclass(frozen=True)
+class _Slower:
+    """Which sensors, accel and gyro, or one of them; s, of a record."""
+
+    sensors: tuple[str, ...]
+    step: float
+
+
+class SlowerSensor(Detector):
+    """A sensor that gives fewer readings than its log has records, so that each is there again.
+
+    Throughout the log, in a tenth of the records or more, and with counts so fine that its axes
+    hardly ever repeat a reading one by one: see `ChannelStatistics`.
+
+    Cause: the logger asks more often than the sensor measures. A reading that is held until the
+    next one counts for the time between them, so means and sums over time are right.
+    """
+
+    name = "slower_sensor"
+    source = "sample-and-hold: the mean of a held signal is that of its readings"
+    unit = "records"
+    severity = 1
+    alike = "sensor"
+
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
+        slower = [name for name, share in zip(SENSORS, log.held, strict=True) if share]
+        together = len(slower) == 2 and abs(np.diff(log.held)[0]) < SAME_SHARE
+        for sensors in [slower] if together else [[name] for name in slower]:
+            share = float(log.held[list(SENSORS).index(sensors[0])])
+            yield log.event(
+                1 / (1 - share),
+                sensor=None if together else sensors[0],
+                facts=_Slower(tuple(sensors), log.step),
+            )
+
+    def describe(self, event: Event, name: str) -> Description:
+        told = {"accel": _("accelerometers"), "gyro": _("gyros")}
+        known = np.isfinite(event.facts.step)
+        rate = 1 / event.facts.step if known else np.nan
+        at = _(
+            ": {readings} readings a second in {records} records",
+            readings=significant(rate / event.size, 3),
+            records=significant(rate, 3),
+        )
+        return Description(
+            _(
+                "{name}: each reading of the {sensors} is there {times} times{at}.",
+                name=name,
+                sensors=listed([told[sensor] for sensor in event.facts.sensors]),
+                times=significant(event.size, 3),
+                at=at if known else "",
+            ),
+            _(
+                "Means and sums over time stay right, for a reading counts for the time until the "
+                "next; records are not independent of each other, which the noise contains."
+            ),
+            _(
+                "Nothing is changed. Log at the rate of the sensor, or when it has new data, to "
+                "save the space."
+            ),
+        )
+
+
 def _any_equal(values: Array) -> bool:
     """Whether any pair of neighbours of (n, c) is equal in all channels; not without channels."""
     before, after = np.arange(len(values) - 1), np.arange(1, len(values))
@@ -251,11 +322,15 @@ def _any_equal(values: Array) -> bool:
     return values.shape[1] > 0 and len(before) > 0
 
 
-def _held(values: Array, records: int) -> Iterator[tuple[int, int, float]]:
-    """Runs of pairs of neighbours, of (n, c), that are equal by no chance, and their chance."""
+def _held(values: Array, records: int, usual: float) -> Iterator[tuple[int, int, float]]:
+    """Runs of pairs of neighbours, of (n, c), that are equal by no chance, and their chance.
+
+    `usual`: pairs of a run that the sensors have anyhow, for they are slower than the log.
+    """
     equal = values[1:] == values[:-1]
     whole = np.asarray(equal.all(axis=1))
     edges = np.array(list(runs(whole)), np.int64).reshape(-1, 2)
+    edges = edges[np.diff(edges, axis=1)[:, 0] > usual]
     if not len(edges):
         return
     start, end = edges.T

@@ -91,7 +91,8 @@ class Log:
     step: s, the mean interval, which a sample counts for in a sum over time.
     quantum, noise: (6,), smallest step of a channel's readings, and the scatter of one reading
     about its neighbours, m/s² and rad/s, NaN where not recorded.
-    equal: (6,), share of readings that are equal to the one before.
+    equal: (6,), share of readings that are equal to the one before; held: (2,), share of records in
+    which the accelerometers, or the gyros, repeat their readings, 0 unless throughout the log.
     least, most: (6,), its smallest and largest reading.
     reach, usual_noise: (6,), its largest reading of either sign in any log, and the median of its
     noise in all logs.
@@ -122,6 +123,7 @@ class Log:
     usual_noise: Array = field(default_factory=lambda: np.full(6, np.nan))
     increments: bool = False
     imu: tuple[int, ...] = ()
+    held: Array = field(default_factory=lambda: np.zeros(2))
     stamp_scatter: float = np.nan
     interval_sigma: float = np.nan
     shortest_gap: float = np.nan

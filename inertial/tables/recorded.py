@@ -131,7 +131,7 @@ IMU_TYPES = Table(
 )
 CHANNEL_STATISTICS = Table(
     "channel_statistics",
-    1,
+    2,
     (
         LOG,
         SENSOR,
@@ -145,6 +145,12 @@ CHANNEL_STATISTICS = Table(
             nullable=True,
         ),
         Column("unchanged_share", DOUBLE, "1", "share of readings equal to the one before"),
+        Column(
+            "held_share",
+            DOUBLE,
+            "1",
+            "share of records in which the sensor repeats its readings, if all the time; else 0",
+        ),
         Column("smallest", DOUBLE, AS_CHANNEL, "smallest reading", BODY, nullable=True),
         Column("largest", DOUBLE, AS_CHANNEL, "largest reading", BODY, nullable=True),
     ),

@@ -28,6 +28,7 @@ NAMES = {
     "quantisation": _("quantisation"),
     "saturation": _("saturation"),
     "short_rest": _("short rest"),
+    "slower_sensor": _("sensor slower than its log"),
     "spike": _("spike"),
     "table_moving": _("table moving"),
     "temperature_drift": _("temperature drift"),

@@ -1,0 +1,114 @@
+"""A sensor that measures less often than its log has records, which repeat its readings."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import chain
+import numpy as np
+import pytest
+from recorded_by_hand import NOISE, piece, rest, seen, stamps
+
+import laboratory
+from inertial.campaign.log_properties import ChannelStatistics
+from inertial.detectors.dead_axis import DeadAxis
+from inertial.detectors.repeated_records import HeldRecord, SlowerSensor
+
+RECORDS = 20_000
+MEMS = np.array([0.04] * 3 + [1e-3] * 3)  # one count of a consumer MEMS: m/s², rad/s
+
+
+def held(values: np.ndarray, readings: float, columns: slice = slice(None)) -> np.ndarray:
+    """Values of which so many of a hundred are read, the others hold the reading before."""
+    last = np.floor(np.arange(len(values)) * readings / 100) * 100 / readings
+    found = values.copy()
+    found[:, columns] = values[np.ceil(last - 1e-9).astype(int)][:, columns]
+    return found
+
+
+def statistics(*batches: np.ndarray):
+    """The table of the channels of one log."""
+    of_log = ChannelStatistics()
+    for batch in batches:
+        of_log.add(SimpleNamespace(log="log", readings=batch))
+    return of_log.table()
+
+
+@pytest.mark.parametrize("readings", [25, 50, 80])
+@pytest.mark.parametrize("columns", [slice(None), slice(3, 6)])
+def test_it_is_known_by_the_records_that_repeat_it_all_the_time(readings, columns):
+    values = held(rest(RECORDS), readings, columns)
+    table = statistics(values[:7000], values[7000:])
+    share = np.zeros(6)
+    share[columns] = 1 - readings / 100
+    np.testing.assert_allclose(table["held_share"], share, atol=1e-3)
+    np.testing.assert_allclose(table["noise"], NOISE, rtol=0.05)  # of a reading, not of a record
+
+
+def coarse_rest_in_motion() -> np.ndarray:
+    """Coarse counts: at rest all axes repeat themselves by chance, in motion none does."""
+    values = rest(RECORDS, 3, MEMS, 0.2 * MEMS)
+    time = np.arange(RECORDS)[: RECORDS // 2, None]
+    values[: RECORDS // 2] += np.round(40 * np.sin(time * np.arange(5, 11) / 40)) * MEMS
+    return values
+
+
+def half_of_the_log() -> np.ndarray:
+    values = rest(RECORDS)
+    return np.concatenate([values[: RECORDS // 2], held(values[RECORDS // 2 :], 25)])
+
+
+def now_and_then() -> np.ndarray:
+    values, random = rest(RECORDS), np.random.default_rng(4)
+    for i in np.flatnonzero(random.uniform(size=RECORDS) < 0.05):
+        values[i] = values[i - 1]
+    return values
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        rest(RECORDS),
+        rest(RECORDS, 3, MEMS, 0.2 * MEMS),
+        coarse_rest_in_motion(),
+        half_of_the_log(),
+        now_and_then(),
+        np.zeros((RECORDS, 6)),
+    ],
+    ids=["fine", "coarse", "coarse-in-motion", "half", "now-and-then", "nothing"],
+)
+def test_other_repetitions_are_none_of_it(values):
+    assert (statistics(values)["held_share"] == 0).all()
+
+
+def test_what_it_repeats_is_neither_held_nor_dead_but_a_longer_run_is():
+    values = held(rest(RECORDS), 25)
+    one, shares = piece(values, stamps(RECORDS)), np.array([0.75, 0.75])
+    assert not seen(HeldRecord(), one, held=shares) and not seen(DeadAxis(), one, held=shares)
+    (event,) = seen(SlowerSensor(), one, held=shares)
+    assert event.size == 4 and event.sensor is None
+    words = SlowerSensor().describe(event, "log")
+    assert "4.00 times: 25.0 readings a second in 100 records" in words.sentence
+    values[4000:4080] = values[4000]
+    (event,) = seen(HeldRecord(), piece(values, stamps(RECORDS)), held=shares)
+    assert (event.first, event.after) == (4001, 4080)
+
+
+def test_a_campaign_with_it_is_calibrated_as_well_as_its_readings_allow():
+    """Three of four records were "held" and masked, and the gyros were not usable."""
+    recording = laboratory.perform(laboratory.specify(chain.short(seed=5)))
+    slow = {
+        log: replace(records, counts=held(records.counts, 25))
+        for log, records in recording.records.items()
+    }
+    every, fourth = (
+        chain.in_memory(one, "diagnosis", chain.BESIDE)
+        for one in (recording, replace(recording, records=slow))
+    )
+    assert set(fourth["diagnosis/causes"]["cause"]) == {"slower_sensor"}
+    assert set(fourth["diagnosis/verdict"]["verdict"]) == {"usable_within_limits"}
+    true, found = (one["diagnosis/result"] for one in (every, fourth))
+    # The readings of three of four records are lost: √3 sigma of the mean of all apart.
+    apart = (found["value"] - true["value"]) / np.sqrt(found["sigma"] ** 2 - true["sigma"] ** 2)
+    assert np.sqrt(np.nanmean(apart**2)) == pytest.approx(1.0, abs=0.35)
+    biases = found["parameter"].str.startswith("bias") & (found["sensor"] == "gyro")
+    assert np.median((found["sigma"] / true["sigma"])[biases]) == pytest.approx(2.0, rel=0.15)
