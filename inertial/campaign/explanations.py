@@ -107,6 +107,7 @@ SPOILING = (
     "axis_swap",
     "sign_flip",
 )
+OF_TRIADS = ("axis_swap", "sign_flip", "wrong_scale_factor", "manoeuvre_swapped")
 IN_PROPORTION = frozenset(
     {
         "gyro_scale_asymmetry",
@@ -170,6 +171,12 @@ EXPLANATIONS = (
     Explanation(("saturation",), _is("bias_jump"), same_readings),
     # Once in every period a reading is off: beside it that makes spikes, and lines of a spectrum.
     Explanation(("periodic_glitch",), _is("spike", "oscillation"), same_axis),
+    # Columns that do not hold what they should.
+    Explanation(
+        ("copied_channel", "gravity_removed"),
+        _is(*PERFORMANCE, *MISFITS, *OF_TRIADS),
+        same_sensor,
+    ),
     # Axes, signs, units: they change everything that their sensor reads.
     Explanation(
         ("axis_swap", "sign_flip", "wrong_scale_factor", "wrong_imu_type", "wrong_direction"),

@@ -62,7 +62,7 @@ def masks_of(detections: Sequence[Detection]) -> pd.DataFrame:
             "log": log,
             "from_record": event.first,
             "to_record": event.after,
-            **_channel(event.channel),
+            **_channel(channel),
             "repeated": each.detector.repeats,
             "censored": each.detector.censors(event),
             "finding": each.finding.id,
@@ -70,6 +70,7 @@ def masks_of(detections: Sequence[Detection]) -> pd.DataFrame:
         for each in detections
         if isinstance(each.detector, Detector) and each.detector.masks
         for log, event in each.events
+        for channel in event.channels or (None,)
     ]
     return pd.DataFrame(rows) if rows else MASKS.empty()
 

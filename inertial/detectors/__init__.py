@@ -7,6 +7,7 @@ and the tests take it from these lists. A detector masks what it detects for tho
 from inertial.detectors.bias_jump import BiasJump
 from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
+from inertial.detectors.copied_channel import CopiedChannel
 from inertial.detectors.dead_axis import DeadAxis
 from inertial.detectors.gap import Gap
 from inertial.detectors.gravity_error import GravityError
@@ -40,7 +41,11 @@ from inertial.detectors.temperature_drift import TemperatureDrift
 from inertial.detectors.temperature_misstated import TemperatureMisstated
 from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate
 from inertial.detectors.wrong_imu_type import WrongImuType
-from inertial.detectors.wrong_scale_factor import WrongScaleFactor, WrongScaleOfTurns
+from inertial.detectors.wrong_scale_factor import (
+    GravityRemoved,
+    WrongScaleFactor,
+    WrongScaleOfTurns,
+)
 from inertial.signal.detector import Detector
 from inertial.signal.plan_detector import PlanDetector
 
@@ -61,6 +66,9 @@ OF_RECORDS: tuple[Detector, ...] = (
     RateOff(),
     WrongDay(),
     WrongImuType(),
+    # what a column holds
+    CopiedChannel(),
+    GravityRemoved(),
     # readings: a blow, a channel at its limit, one that repeats, or a glitch would resemble spikes
     Impact(),
     Saturation(),

@@ -241,6 +241,8 @@ class Saturation(Detector):
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for i in range(6):
             places, values = piece.channel(i)
+            if not len(values):
+                continue
             clipped = np.zeros(len(values), bool)
             chance: dict[float, float] = {}
             for sign, most in ((1.0, log.most[i]), (-1.0, -log.least[i])):

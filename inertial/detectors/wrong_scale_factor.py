@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Description, Detector, Event, Log
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled
 from inertial.signal.scale_factor import (
     MAX_SCALE_ERROR,
@@ -19,6 +19,8 @@ from inertial.text.numbers import counted, fixed, significant
 
 UNSIGNED_ZEROS = tuple(2.0**bits for bits in (11, 13, 15, 23))  # of counts of 12, 14, 16, 24 bits
 MAX_FROM_ZERO = 0.25  # of the zero, by which the median of a channel may be away from it
+MAX_REMOVED = 0.05  # of gravity, that is left where a filter has subtracted it
+MAX_FORCE_OF_NOISE = 30.0  # times the noise of a reading
 UNKNOWN_CAUSE = _("no known unit explains it; the bias may be large, or the IMU was not at rest")
 
 
@@ -77,6 +79,47 @@ class WrongScaleFactor(Detector):
                 size=significant(event.size),
             ),
             action,
+        )
+
+
+class GravityRemoved(Detector):
+    """Accelerometers that read nothing at rest: what is logged is not the specific force.
+
+    At rest the readings are as small as their noise and bias, in all axes. In another unit gravity
+    would still be far above the noise, which the unit changes with it.
+
+    Cause: the “linear acceleration” of a phone or of an attitude filter is logged, from which the
+    filter's gravity is subtracted. Nothing can be calibrated by it.
+    """
+
+    name = "gravity_removed"
+    source = "IEEE Std 528-2019, specific force: at rest it is the reaction to gravity"
+    unit = "1"
+    sensor = "accel"
+    severity = 3
+    masks = True
+    alike = "sensor"
+
+    def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
+        force, noise = force_at_rest(log), float(np.linalg.norm(log.noise[:3]))
+        most = min(MAX_REMOVED * log.given.gravity, MAX_FORCE_OF_NOISE * noise)
+        if force < most and np.isfinite(piece.values[:, :3]).any(axis=0).all():
+            ratio = force / log.given.gravity
+            yield piece.event(0, len(piece), ratio, sensor=self.sensor, facts=force)
+
+    def describe(self, event: Event, name: str) -> Description:
+        return Description(
+            _(
+                "{name}: at rest the accelerometers read {force} m/s² in all: gravity has been "
+                "subtracted from the specific force.",
+                name=name,
+                force=significant(event.facts, 2),
+            ),
+            _("Bias, scale factors and cross-axis terms of the accelerometers are not in the log."),
+            _(
+                "The readings are masked. Log the specific force, which phones call acceleration, "
+                "not linear acceleration, and record again."
+            ),
         )
 
 

@@ -187,12 +187,23 @@ def noise(information: Array, draws: int, rng: np.random.Generator) -> Array:
     size = np.sqrt(np.maximum(np.diag(information), 0.0))
     shown = np.flatnonzero(size)
     scaled = information[np.ix_(shown, shown)] / np.outer(size[shown], size[shown])
-    root = size[shown, None] * np.linalg.cholesky(scaled + RELATIVE_JITTER * np.eye(len(shown)))
+    root = size[shown, None] * _root(scaled + RELATIVE_JITTER * np.eye(len(shown)))
     white = rng.standard_normal((len(shown), draws))
     right = np.zeros((len(information), draws))
     # The root is triangular: half of the work of a product, done in place.
     right[shown] = dtrmm(1.0, root, white.T, side=1, lower=1, trans_a=1, overwrite_b=1).T
     return right
+
+
+def _root(correlation: Array) -> Array:
+    """A lower triangle L with L Lᵀ = F, where rounding may have made F indefinite."""
+    try:
+        return np.asarray(np.linalg.cholesky(correlation), np.float64)
+    except np.linalg.LinAlgError:
+        values, vectors = np.linalg.eigh(correlation)
+        root = vectors * np.sqrt(np.maximum(values, 0.0))
+        triangle: Array = np.linalg.qr(root.T, mode="r")  # type: ignore[assignment]
+        return triangle.T
 
 
 def power(snr: Array | float, degrees: int, threshold: float) -> Array:

@@ -169,7 +169,7 @@ class Piece:
         values = self.values.copy()
         for event in events:
             inside = slice(*np.searchsorted(self.record, [event.first, event.after]))
-            values[inside, slice(None) if event.channel is None else event.channel] = np.nan
+            values[inside, list(event.channels) or slice(None)] = np.nan
         return replace(self, values=values)
 
     def event(self, start: int, end: int, size: float, **more: Any) -> "Event":
@@ -208,6 +208,14 @@ class Event:
     facts: Any = None
     severity: int | None = None
     sensor: str | None = None
+
+    @property
+    def channels(self) -> Sequence[int]:
+        """The channels that it concerns; none where it is the whole record."""
+        if self.channel is not None:
+            return (self.channel,)
+        own = SENSORS.get(self.sensor or "", slice(0, 0))
+        return range(own.start, own.stop)
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ def test_it_is_known_by_the_records_that_repeat_it_all_the_time(readings, column
 
 def coarse_rest_in_motion() -> np.ndarray:
     """Coarse counts: at rest all axes repeat themselves by chance, in motion none does."""
-    values = rest(RECORDS, 3, MEMS, 0.2 * MEMS)
+    values = rest(RECORDS, 3, 0.2 * MEMS, MEMS)
     time = np.arange(RECORDS)[: RECORDS // 2, None]
     values[: RECORDS // 2] += np.round(40 * np.sin(time * np.arange(5, 11) / 40)) * MEMS
     return values
@@ -68,7 +68,7 @@ def now_and_then() -> np.ndarray:
     "values",
     [
         rest(RECORDS),
-        rest(RECORDS, 3, MEMS, 0.2 * MEMS),
+        rest(RECORDS, 3, 0.2 * MEMS, MEMS),
         coarse_rest_in_motion(),
         half_of_the_log(),
         now_and_then(),

@@ -12,7 +12,7 @@ from inertial.model_selection import naming
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Named
 from inertial.model_selection.evidence import Evidence, searched_effect
 from inertial.model_selection.naming import causes
-from inertial.model_selection.null_simulation import Chance, chance
+from inertial.model_selection.null_simulation import Chance, chance, noise
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.search import finer, to_refine
 from tests.inference.naming_evidence import Plan, plan_of, whitened
@@ -286,3 +286,15 @@ def test_no_equations_name_nothing():
     evidence, effects = Evidence((blind,), ("gyro",)), [searched_effect("one", [0])]
     found = causes(evidence, effects, naming.law_of(evidence, effects, LEVEL))
     assert (found.causes, found.tests[0].degrees) == ((), 0)
+
+
+def test_noise_of_an_information_that_rounding_made_indefinite():
+    """Columns that are nearly the same, by differences of large numbers."""
+    rng = np.random.default_rng(3)
+    columns = rng.standard_normal((40, 3))
+    columns = np.column_stack([columns, columns[:, 0] + 1e-9 * columns[:, 1]])
+    information = columns.T @ columns
+    information[0, 3] = information[3, 0] = information[0, 3] * (1 + 1e-6)
+    assert np.linalg.eigvalsh(information).min() < -1e-6
+    drawn = noise(information, 200_000, np.random.default_rng(4))
+    np.testing.assert_allclose(np.cov(drawn), information, atol=0.4)

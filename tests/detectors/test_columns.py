@@ -1,0 +1,96 @@
+"""Columns of a log that do not hold what they should: a copy of another, or no gravity."""
+
+from dataclasses import replace
+
+import chain
+import numpy as np
+import pytest
+from recorded_by_hand import piece, rest, seen, stamps
+
+import laboratory
+from inertial.detectors.copied_channel import CopiedChannel
+from inertial.detectors.saturation import Saturation
+from inertial.detectors.wrong_scale_factor import GravityRemoved
+
+RECORDS = 3000
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(("one", "other"), [(0, 1), (3, 5)])
+def test_an_axis_that_is_a_copy_of_another_is_found_and_neither_is_used(one, other, sign):
+    values = rest(RECORDS)
+    values[:, other] = sign * values[:, one]
+    events = seen(CopiedChannel(), piece(values, stamps(RECORDS)))
+    assert [event.channel for event in events] == [one, other]
+    masked = piece(values).without(events).values
+    assert np.isnan(masked[:, [one, other]]).all() and np.isfinite(masked).sum() == 4 * RECORDS
+
+
+def test_axes_that_stand_still_or_differ_once_are_no_copies():
+    values = rest(RECORDS)
+    values[:, 1:3] = 0.0
+    values[:, 4] = values[:, 3]
+    values[1234, 4] += 1e-6
+    assert not seen(CopiedChannel(), piece(values))
+
+
+def without_gravity(values: np.ndarray) -> np.ndarray:
+    """The linear acceleration of an attitude filter: the mean force over 1 s is subtracted."""
+    smooth = np.stack(
+        [np.convolve(np.pad(c, 50, "edge"), np.ones(101) / 101, "valid") for c in values[:, :3].T],
+        1,
+    )
+    less = (
+        smooth
+        / np.linalg.norm(smooth, axis=1)[:, None]
+        * np.linalg.norm(values[:, :3].mean(axis=0))
+    )
+    return np.column_stack([values[:, :3] - less, values[:, 3:]])
+
+
+def test_accelerometers_that_read_nothing_at_rest_are_told_from_another_unit():
+    values = rest(RECORDS)
+    (event,) = seen(GravityRemoved(), piece(without_gravity(values), stamps(RECORDS)))
+    assert event.sensor == "accel" and abs(event.size) < 0.01
+    masked = piece(values).without([event]).values
+    assert np.isnan(masked[:, :3]).all() and np.isfinite(masked[:, 3:]).all()
+    for unit in (1.0, 1 / 9.80665, 1e-3):
+        one = piece(values * unit, stamps(RECORDS))
+        noise = np.diff(one.values, axis=0).std(axis=0) / np.sqrt(2)
+        assert not seen(GravityRemoved(), one, noise=noise)
+
+
+def test_a_channel_without_readings_is_not_saturated():
+    values = rest(RECORDS)
+    values[:, 2] = np.nan
+    assert not seen(Saturation(), piece(values))
+
+
+def changed(recording: laboratory.Recording, columns):
+    """The recording with other counts."""
+    return replace(
+        recording,
+        records={
+            log: replace(one, counts=np.rint(columns(one.counts)).astype(one.counts.dtype))
+            for log, one in recording.records.items()
+        },
+    )
+
+
+def copied(counts: np.ndarray) -> np.ndarray:
+    """The y gyro's column is that of the x gyro."""
+    return counts[:, [0, 1, 2, 3, 3, 5]]
+
+
+@pytest.mark.parametrize(
+    ("columns", "cause", "sensor"),
+    [(without_gravity, "gravity_removed", "accel"), (copied, "copied_channel", "gyro")],
+)
+def test_it_is_the_only_cause_and_the_other_sensor_stays_usable(columns, cause, sensor):
+    """All three accelerometers were reversed; four turns were missing."""
+    recording = laboratory.perform(laboratory.specify(chain.short(seed=5)))
+    tables = chain.in_memory(changed(recording, columns), "diagnosis", chain.BESIDE)
+    causes = tables["diagnosis/causes"]
+    assert set(causes["cause"]) == {cause} and set(causes["sensor"]) == {sensor}
+    verdicts = tables["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts.pop(sensor) == "not_usable" and set(verdicts) == {"usable"}
