@@ -59,8 +59,9 @@ class SteadyTurn:
 
     @property
     def rate(self) -> float:
-        """The rate of the table about its axis, rad/s; NaN where its angle is not known."""
-        return float((self.angle[-1] - self.angle[0]) / (len(self.angle) - 1) / self.step)
+        """The rate of the table, rad/s; NaN where its angle is not known, or does not change."""
+        turned = float(self.angle[-1] - self.angle[0])
+        return turned / (len(self.angle) - 1) / self.step if turned else np.nan
 
     @property
     def seconds(self) -> float:

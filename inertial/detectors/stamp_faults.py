@@ -54,13 +54,31 @@ class ArrivalStamps(Detector):
         )
 
 
+# s, after which counters of logs begin again: ms of 16 and 32 bits, µs and ns of 32 bits, the
+# seconds of a minute, an hour, a day and a GPS week.
+PERIODS = (2**16 * 1e-3, 2**32 * 1e-3, 2**32 * 1e-6, 2**32 * 1e-9, 60.0, 3600.0, 86400.0, 604800.0)
+MAX_OFF_PERIOD = 0.5  # intervals, by which a step back and the interval after it may miss one
+
+
 @dataclass(frozen=True)
 class _Facts:
-    """Time before the step back; whether the stamps are ahead; the share that is a replay."""
+    """What is told of a step back.
+
+    `before`: s, time before it; `ahead`: whether the stamps are ahead; `replayed`: the share that
+    is a replay; `period`: s, of a counter that begins again; None where it is no such step.
+    """
 
     before: float
     ahead: bool
     replayed: float
+    period: float | None
+
+
+def _period_of(step: float, interval: float) -> float | None:
+    """The period, s, of the counter that steps back so far where it begins again."""
+    off = {period: abs(step + interval - period) for period in PERIODS}
+    nearest = min(off, key=off.__getitem__)
+    return nearest if off[nearest] < MAX_OFF_PERIOD * interval else None
 
 
 class TimeBackwards(Detector):
@@ -70,8 +88,8 @@ class TimeBackwards(Detector):
     stretch. `from_s` and `to_s` are both the stamp behind the step, for which time it was in
     between is unknown; the records give its duration.
 
-    Cause: logs were joined, the clock was set, or a stamp was spoilt. When these records were taken
-    is not known.
+    Cause: logs were joined, the clock was set, a counter began again, or a stamp was spoilt. When
+    these records were taken is not known.
     """
 
     name = "time_backwards"
@@ -86,9 +104,9 @@ class TimeBackwards(Detector):
                 continue  # `duplicate` says it
             step = disorder.end if disorder.ahead and disorder.end < len(piece) else disorder.start
             before = max(piece.reached, float(piece.time[:step].max(initial=-np.inf)))
-            facts = _Facts(
-                before, disorder.ahead, float(replayed[disorder.start : disorder.end].mean())
-            )
+            share = float(replayed[disorder.start : disorder.end].mean())
+            period = None if disorder.ahead else _period_of(disorder.size, log.interval)
+            facts = _Facts(before, disorder.ahead, share, period)
             event = piece.event(disorder.start, disorder.end, disorder.size, facts=facts)
             stamp = float(piece.time[step])
             # Where it begins in an earlier piece this is its continuation.
@@ -117,6 +135,16 @@ class TimeBackwards(Detector):
                 from_s=fixed(event.from_s, 3),
                 records=records,
             )
+        look = _("Look for logs that were joined, or for a clock that was set.")
+        if facts.period:
+            sentence += " " + _(
+                "So does a counter that begins again after {period} s.",
+                period=f"{facts.period:.10g}",
+            )
+            look = _(
+                "State wraps_at, the ticks after which the counter begins again, with the time in "
+                "the format."
+            )
         masked = (
             _("What repeats earlier ones is masked") if facts.replayed else _("Nothing is masked")
         )
@@ -129,9 +157,9 @@ class TimeBackwards(Detector):
                 size=event.size,
             ),
             _(
-                "{masked}; a turn in which time goes back is left out. Look for logs that were "
-                "joined, or for a clock that was set.",
+                "{masked}; a turn in which time goes back is left out. {look}",
                 masked=masked,
+                look=look,
             ),
         )
 

@@ -208,7 +208,7 @@ class DriftLikelihood:
         inside = [stretch for stretch, there in zip(own, timed, strict=True) if there]
         outside = len(own) - len(inside)
         covariance = walk**2 * walk_covariance(inside) + scatter**2 * np.eye(len(inside))
-        root = block_diag(np.linalg.cholesky(covariance), scatter * np.eye(outside))
+        root = block_diag(_root(covariance), scatter * np.eye(outside))
         order = [*np.flatnonzero(timed), *np.flatnonzero(np.logical_not(timed))]
         spread = np.zeros_like(root)
         spread[order] = root

@@ -94,3 +94,21 @@ def test_it_is_the_only_cause_and_the_other_sensor_stays_usable(columns, cause, 
     assert set(causes["cause"]) == {cause} and set(causes["sensor"]) == {sensor}
     verdicts = tables["diagnosis/verdict"].set_index("sensor")["verdict"]
     assert verdicts.pop(sensor) == "not_usable" and set(verdicts) == {"usable"}
+
+
+def test_a_counter_of_16_bits_that_begins_again_is_told_and_spoils_nothing():
+    """A log of 65.536 s several times over ended criticism with an exception."""
+    recording = laboratory.perform(laboratory.specify(chain.short(seed=5)))
+    again = {
+        log: replace(one, stamps=recording.start + (one.stamps - recording.start) % 65_536_000_000)
+        for log, one in recording.records.items()
+    }
+    true, tables = (
+        chain.in_memory(one, "diagnosis", chain.BESIDE)
+        for one in (recording, replace(recording, records=again))
+    )
+    causes = tables["diagnosis/causes"]
+    assert set(causes["cause"]) == {"time_backwards"}
+    assert causes["sentence"].str.contains("begins again after 65.536 s").all()
+    value, expected = (one["diagnosis/result"]["value"] for one in (tables, true))
+    np.testing.assert_allclose(value, expected, rtol=1e-6)
