@@ -212,7 +212,7 @@ class _Channels:
             alone = (self.unchanged[own][moving] - held) / np.maximum(pairs - held, 1)
             usual = float(np.quantile(np.concatenate(windows), 0.1))
             if usual >= MIN_HELD_SHARE and (alone <= MAX_EQUAL_ALONE).all():
-                share[sensor] = held / float(pairs.max())
+                share[sensor] = held / float(pairs.max() + 1)
         return share
 
     def median_noise(self) -> Array:

@@ -94,7 +94,7 @@ class GravityRemoved(Detector):
 
     name = "gravity_removed"
     source = "IEEE Std 528-2019, specific force: at rest it is the reaction to gravity"
-    unit = "1"
+    unit = "m/s²"
     sensor = "accel"
     severity = 3
     masks = True
@@ -104,8 +104,7 @@ class GravityRemoved(Detector):
         force, noise = force_at_rest(log), float(np.linalg.norm(log.noise[:3]))
         most = min(MAX_REMOVED * log.given.gravity, MAX_FORCE_OF_NOISE * noise)
         if force < most and np.isfinite(piece.values[:, :3]).any(axis=0).all():
-            ratio = force / log.given.gravity
-            yield piece.event(0, len(piece), ratio, sensor=self.sensor, facts=force)
+            yield piece.event(0, len(piece), force, sensor=self.sensor)
 
     def describe(self, event: Event, name: str) -> Description:
         return Description(
@@ -113,7 +112,7 @@ class GravityRemoved(Detector):
                 "{name}: at rest the accelerometers read {force} m/s² in all: gravity has been "
                 "subtracted from the specific force.",
                 name=name,
-                force=significant(event.facts, 2),
+                force=significant(event.size, 2),
             ),
             _("Bias, scale factors and cross-axis terms of the accelerometers are not in the log."),
             _(
