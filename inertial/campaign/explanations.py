@@ -173,7 +173,7 @@ EXPLANATIONS = (
     Explanation(("periodic_glitch",), _is("spike", "oscillation"), same_axis),
     # Columns that do not hold what they should.
     Explanation(
-        ("copied_channel", "gravity_removed"),
+        ("copied_channel", "gravity_removed", "bias_removed"),
         _is(*PERFORMANCE, *MISFITS, *OF_TRIADS),
         same_sensor,
     ),

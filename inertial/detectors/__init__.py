@@ -5,6 +5,7 @@ and the tests take it from these lists. A detector masks what it detects for tho
 """
 
 from inertial.detectors.bias_jump import BiasJump
+from inertial.detectors.bias_removed import BiasRemoved
 from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
 from inertial.detectors.copied_channel import CopiedChannel
@@ -69,6 +70,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     # what a column holds
     CopiedChannel(),
     GravityRemoved(),
+    BiasRemoved(),
     # readings: a blow, a channel at its limit, one that repeats, or a glitch would resemble spikes
     Impact(),
     Saturation(),

@@ -1,10 +1,14 @@
 """Columns of a log that do not hold what they should: a copy of another, or no gravity."""
 
 from dataclasses import replace
+from itertools import product
+from pathlib import Path
 
 import chain
 import numpy as np
+import pandas as pd
 import pytest
+from hidden import hidden_plans
 from recorded_by_hand import piece, rest, seen, stamps
 
 import laboratory
@@ -112,3 +116,42 @@ def test_a_counter_of_16_bits_that_begins_again_is_told_and_spoils_nothing():
     assert causes["sentence"].str.contains("begins again after 65.536 s").all()
     value, expected = (one["diagnosis/result"]["value"] for one in (tables, true))
     np.testing.assert_allclose(value, expected, rtol=1e-6)
+
+
+def zeroed(folder: Path, records: int | None) -> chain.Results:
+    """A campaign whose gyros were zeroed by the first records of each log, or all, and run."""
+    document = hidden_plans.positions(seed=5)
+    document["receiver"] |= {"message": "columns", "line_end": "lf"}
+    document["campaign"]["instrument"] = {"name": "made up", "rate_hz": 100}
+    laboratory.write(laboratory.perform(laboratory.specify(document)), folder / "raw")
+    for path in (folder / "raw").glob("*.asc"):
+        log, gyros = pd.read_csv(path), [f"gyro_{axis}" for axis in "xyz"]
+        log[gyros] -= log[gyros].iloc[:records].mean()
+        log.to_csv(path, index=False, float_format="%.9f")
+    return chain.run(folder / "raw", folder / "derived", "diagnosis")
+
+
+def test_gyros_zeroed_at_the_beginning_of_each_log_keep_their_scale_factors(tmp_path):
+    """By 4.7 s, which are no whole windows. Else it was a structure that nobody explained."""
+    tables = zeroed(tmp_path, 470)
+    causes = tables["diagnosis/causes"].set_index("cause")
+    assert set(causes.index) == {"bias_removed", "gyro_bias_per_log"}
+    assert "over about the first 5.0 s of 12 logs" in causes.loc["bias_removed", "sentence"]
+    verdicts = tables["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts["gyro"] == "usable_within_limits" and verdicts["accel"] == "usable"
+    result = tables["diagnosis/result"].set_index(["sensor", "parameter"]).loc["gyro"]
+    truth = hidden_plans.positions(seed=5)["truth"]["gyro"]["matrix"]
+    for i, j in product(range(3), range(3)):
+        name = f"scale_{'xyz'[i]}" if i == j else f"cross_{'xyz'[i]}{'xyz'[j]}"
+        row = result.loc[name]
+        assert abs(row["value"] - (truth[i][j] - (i == j))) < 4 * row["sigma"], name
+
+
+def test_gyros_less_the_mean_of_each_log_are_told_as_such(tmp_path):
+    """All turns were "missing"."""
+    tables = zeroed(tmp_path, None)
+    causes = tables["diagnosis/causes"].set_index("cause")
+    assert set(causes.index) == {"bias_removed"} and set(causes["sensor"]) == {"gyro"}
+    assert "over the whole of 12 logs" in causes.loc["bias_removed", "sentence"]
+    verdicts = tables["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts["gyro"] == "not_usable" and verdicts["accel"] == "usable"
