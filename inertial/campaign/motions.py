@@ -118,7 +118,7 @@ def in_samples(
     ----------
     increments : (n, 3), rad, of the gyros, NaN where they are masked; `step`, s, of each
     steady : (n,), which samples are at the steady rate
-    time : (n,), s; where it jumps at the steady rate, samples were lost
+    time : (n,), s; where it jumps, samples were lost
     """
     solution = data.result.since(m.switch_on)
     up, north = solution.upright(m), solution.north(position_of(m, data.heading))
@@ -129,9 +129,11 @@ def in_samples(
     ends = step * np.cumsum(passed)
 
     def so_far(angle: Array) -> Array:
-        """The angle of the table at the end of each sample; lost samples at the mean rate."""
-        rate = float(angle[steady].mean()) if steady.any() else 0.0
-        return np.asarray(np.cumsum(angle + lost * rate))
+        """The angle of the table at the end of each sample; lost ones as those beside them."""
+        beside = (angle + np.append(angle[:1], angle[:-1])) / 2
+        if steady.any():
+            beside[steady & np.append(False, steady[:-1])] = angle[steady].mean()
+        return np.asarray(np.cumsum(angle + lost * beside))
 
     measured = measured_angles(
         increments,

@@ -21,8 +21,8 @@ from stages.segment.windows import Binned
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
-MAX_MASKED_RUN = 3  # masked samples in a row that may be interpolated where the rate changes
-MAX_MASKED_SHARE = 0.1  # of the time of the ramps, or of a turn: what may be interpolated in all
+MAX_MISSING_RUN = 3  # samples in a row that may be interpolated where the rate changes
+MAX_MISSING_SHARE = 0.1  # of the time of the ramps, or of a turn: what may be interpolated in all
 # s of steady rate that must be recorded on either side of what is missing, or as much as is
 # missing where that is less: ten of the bins in which the end of a ramp is sought, so that no
 # part of a ramp hides in the gap; on S0's turn the rate before and the rate after are then known
@@ -44,17 +44,16 @@ class Missing:
     hindrance: str
 
 
-def missing_of(moving: pd.DataFrame, about: Array, gaps: pd.DataFrame) -> Missing:
+def missing_of(moving: pd.DataFrame, about: Array) -> Missing:
     """What is missing of a turn.
 
-    A stretch of steady rate can be bridged. Where the rate changes, or a hand turns, a gap cannot;
-    there only a few masked samples between good ones are interpolated.
+    A stretch of steady rate can be bridged. Where the rate changes, or a hand turns, only a few
+    samples between good ones can: lost records of a link, or masked ones.
 
     Parameters
     ----------
     moving : its k blocks in motion
     about : (k,), rad/s, their rates about its axis
-    gaps : those of its log
     """
     seconds = moving["seconds"].to_numpy(np.float64)
     missing = moving["missing_s"].to_numpy(np.float64)
@@ -66,7 +65,7 @@ def missing_of(moving: pd.DataFrame, about: Array, gaps: pd.DataFrame) -> Missin
     if steady.any():
         beside[inside] = np.average(about[steady], weights=seconds[steady])
     angle = float(beside[holes] @ missing[holes])
-    hindrance = _hindrance(moving, holes, inside, gaps) if len(holes) else ""
+    hindrance = _hindrance(moving, holes, inside) if len(holes) else ""
     return Missing(float(np.maximum(missing, 0.0).sum()), angle, hindrance)
 
 
@@ -79,14 +78,12 @@ def _few_are_masked(moving: pd.DataFrame, missing: Missing, gaps: pd.DataFrame) 
         missing.seconds > 0
         and not missing.hindrance
         and not gaps["record"].between(first, last).any()
-        and holes.max() <= (MAX_MASKED_RUN + 0.5) * step
-        and missing.seconds <= MAX_MASKED_SHARE * moving["seconds"].sum()
+        and holes.max() <= (MAX_MISSING_RUN + 0.5) * step
+        and missing.seconds <= MAX_MISSING_SHARE * moving["seconds"].sum()
     )
 
 
-def _hindrance(
-    moving: pd.DataFrame, holes: NDArray[np.int64], inside: Booleans, gaps: pd.DataFrame
-) -> str:
+def _hindrance(moving: pd.DataFrame, holes: NDArray[np.int64], inside: Booleans) -> str:
     """Why what is missing before the blocks `holes` cannot be bridged; empty where it can."""
     missing = moving["missing_s"].to_numpy(np.float64)
     seconds = moving["seconds"].to_numpy(np.float64)
@@ -112,22 +109,17 @@ def _hindrance(
     ramps = holes[~inside[holes]]
     if not len(ramps):
         return ""
-    first = moving["to_record"].to_numpy()[ramps - 1]
-    last = moving["from_record"].to_numpy()[ramps]
-    lost = gaps["record"].to_numpy(np.int64)
-    if ((lost[:, None] >= first) & (lost[:, None] <= last)).any():
-        return where
-    if missing[ramps].max() > (MAX_MASKED_RUN + 0.5) * step:
+    if missing[ramps].max() > (MAX_MISSING_RUN + 0.5) * step:
         return _(
-            "{where}, and more than {max_masked_run} samples in a row are masked",
+            "{where}, and more than {number} samples in a row are missing",
             where=where,
-            max_masked_run=MAX_MASKED_RUN,
+            number=MAX_MISSING_RUN,
         )
-    if missing[ramps].sum() > MAX_MASKED_SHARE * seconds[~steady].sum():
+    if missing[ramps].sum() > MAX_MISSING_SHARE * seconds[~steady].sum():
         return _(
-            "{where}, and more than {max_masked_share:.0%} of its samples are masked",
+            "{where}, and more than {share:.0%} of its samples are missing",
             where=where,
-            max_masked_share=MAX_MASKED_SHARE,
+            share=MAX_MISSING_SHARE,
         )
     return ""
 
@@ -248,7 +240,7 @@ def turn(
         float(np.nansum(about * length)) if timed else None,
         _steady_rate(moving, about),
         binned.duration(first, after),
-        missing_of(moving, np.nan_to_num(about), of_log),
+        missing_of(moving, np.nan_to_num(about)),
         tuple(reasons),
         remark,
     )

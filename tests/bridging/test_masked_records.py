@@ -62,7 +62,7 @@ def test_a_masked_record_loses_no_angle(whole, stretches, most, axis):
 def test_a_masked_stretch_of_a_ramp_is_refused(whole):
     done = of_z(masked(whole, (1080, 1110)))
     assert not done["complete"] and not done["bridged"]
-    assert "more than 3 samples in a row are masked" in done["sentence"]
+    assert "more than 3 samples in a row are missing" in done["sentence"]
 
 
 def test_a_repeated_record_and_a_masked_accelerometer_leave_the_turn_whole(whole):
