@@ -132,7 +132,15 @@ class DeadAxis(Detector):
                 "{means}: bias, scale factor and cross terms of this axis would be wrong.",
                 means=means,
             ),
-            _("The readings are masked; what cannot do without them must be recorded again."),
+            _("The readings are masked; what cannot do without them must be recorded again.")
+            + (
+                ""
+                if facts.level
+                else _(
+                    " Exactly 0 is also what a firmware writes below a threshold, or while it takes "
+                    "the IMU to be at rest: switch that off."
+                )
+            ),
         )
 
 

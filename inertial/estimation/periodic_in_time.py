@@ -243,6 +243,7 @@ def pooled(
     frequency = np.arange(lowest, min(rates) / 2, step)
     drop, tapered, leakage = np.zeros((3, len(frequency)))
     noise, loud = shape.at(frequency) ** 2, shape.loud(frequency)
+    loud |= not loud.any()
     for record, rate in zip(records, rates, strict=True):
         place = np.arange(len(record))
         level = record - np.polyval(np.polyfit(place, record, 1), place)

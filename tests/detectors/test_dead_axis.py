@@ -36,7 +36,8 @@ def test_zeros_in_a_turn_are_found_however_short(samples):
     values[2000 : 2000 + samples, 5] = 0.0
     (event,) = found(values)
     assert (event.channel, event.first, event.after) == (5, 2000, 2000 + samples)
-    assert "gyro z reads 0 °/s" in DeadAxis().describe(event, "log").sentence
+    words = DeadAxis().describe(event, "log")
+    assert "gyro z reads 0 °/s" in words.sentence and "below a threshold" in words.action
 
 
 def test_an_axis_that_never_changes_is_measured_by_the_other_axes():
