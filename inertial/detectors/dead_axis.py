@@ -137,8 +137,8 @@ class DeadAxis(Detector):
                 ""
                 if facts.level
                 else _(
-                    " Exactly 0 is also what a firmware writes below a threshold, or while it takes "
-                    "the IMU to be at rest: switch that off."
+                    " Exactly 0 is also what a firmware writes below a threshold, or while it "
+                    "takes the IMU to be at rest: switch that off."
                 )
             ),
         )

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from hidden_campaigns import Outcome
+from hidden_draws import EACH_FROM
 from hidden_named_sizes import FIRST, MATE, WAYS_OF_ESTIMATING, coverage, mean_ratio, summed
 from hidden_scores import (
     Tally,
@@ -146,6 +147,7 @@ def _of_power(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]])
             counted,
             limit - SHORT,
         )
+    yield _of_each(outcomes)
     for ratio in RATIOS:
         rows = [row for row in statistics if row["ratio"] == ratio]
         short = [short_by(row) for row in rows]
@@ -159,6 +161,33 @@ def _of_power(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]])
             else "–",
             below == 0 if rows else None,
         )
+
+
+def _of_each(outcomes: Sequence[Outcome]) -> Bar:
+    """Power of each effect in the campaigns that it has of its own, at all ratios together."""
+    by_effect: dict[str, list[Outcome]] = {}
+    for one in outcomes:
+        if one["number"] >= EACH_FROM:
+            by_effect.setdefault(one["hidden"][0], []).append(one)
+    below, worst = [], 0.0
+    for name, own in by_effect.items():
+        limits = np.array([one["limits"]["limit"] for one in own])
+        short = float(np.mean(limits) - np.mean([bool(one["named"]) for one in own]))
+        scatter = float(np.sqrt(np.sum(limits * (1 - limits)))) / len(own)
+        worst = max(worst, short)
+        if short > SHORT + 2 * scatter:
+            below.append(name)
+    number = sum(map(len, by_effect.values()))
+    named = f": {', '.join(below)}" if below else ""
+    return Bar(
+        f"power of each effect in {number / max(len(by_effect), 1):.0f} campaigns of its own, from "
+        "bytes, at SNR 5, 6 and 8 in turn",
+        f"no effect below its limit by more than {SHORT} and twice the scatter of so many",
+        f"{len(below)} of {len(by_effect)} effects{named}; the worst is {worst:+.3f} below"
+        if by_effect
+        else "–",
+        not below if by_effect else None,
+    )
 
 
 def scatter_of(row: dict[str, Any]) -> float:

@@ -9,6 +9,7 @@ import jinja2
 import numpy as np
 from hidden_bars import SHORT, bars, short_by
 from hidden_campaigns import Outcome
+from hidden_draws import EACH_FROM
 from hidden_named_sizes import rows_of_page
 from hidden_pictures import RATIOS, picture
 from hidden_scores import (
@@ -40,7 +41,8 @@ def write(outcomes: Sequence[Outcome], statistics: Statistics, page: Path = PAGE
     seconds = sum(one.get("seconds", 0.0) + one.get("simulating", 0.0) for one in outcomes)
     seconds += sum(row.get("seconds", 0.0) for row in statistics)
     figures = {
-        "campaigns": len(outcomes),
+        "campaigns": sum(one["number"] < EACH_FROM for one in outcomes),
+        "each": sum(one["number"] >= EACH_FROM for one in outcomes),
         "wanted": WANTED,
         "statistical": sum(row["trials"] for row in statistics),
         "tried": len(statistics),
