@@ -29,7 +29,7 @@
 #                                 also with ONLY="cost noise"
 #   make style                    linters, types, and which package may import which
 #   make challenge                hides effects in many campaigns and reports what is detected, in
-#                                 docs/challenge.md; two hours on two cores, can be resumed; with
+#                                 docs/challenge.md; four hours on two cores, can be resumed; with
 #                                 DRAWS=100 a twelfth of them; with ONLY=diagnosis only the 688 of
 #                                 the diagnosis, in docs/diagnosis.md, an hour of one core; with
 #                                 ONLY="diagnosis fault spikes" those that have these words; this
