@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtr
 
-from inertial.estimation.probability import chi2_cdf
 from inertial.signal.detector import SENSORS, Array, Description, Detector, Event, Log
 from inertial.text.messages import _
 from inertial.text.numbers import counted, p_is, significant
@@ -105,4 +105,4 @@ def _chance(logs: Sequence[Log], axes: slice, length: int | None) -> float:
             squares.append(mean.mean(axis=0) ** 2 / of_mean)
     if not squares:
         return 1.0
-    return float(chi2_cdf(np.sum(squares), np.size(squares)))
+    return float(chdtr(np.size(squares), np.sum(squares)))

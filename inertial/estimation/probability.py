@@ -1,4 +1,4 @@
-"""Distribution functions of the usual distributions and their inverses, named as in scipy.stats.
+"""Survival functions of the usual distributions and their inverses, named as in scipy.stats.
 
 They call scipy.special: to load scipy.stats takes longer than most stages run.
 """
@@ -22,12 +22,6 @@ def chi2_sf(value: ArrayLike, degrees: ArrayLike) -> Array:
     """Probability of a larger chi-squared."""
     v, n = _reals(value, degrees)
     return np.asarray(special.chdtrc(n, np.maximum(v, 0.0)))
-
-
-def chi2_cdf(value: ArrayLike, degrees: ArrayLike) -> Array:
-    """Probability of a smaller chi-squared."""
-    v, n = _reals(value, degrees)
-    return np.asarray(special.chdtr(n, np.maximum(v, 0.0)))
 
 
 def chi2_logsf(value: ArrayLike, degrees: ArrayLike) -> Array:
