@@ -25,8 +25,9 @@ from inertial.detectors.misread_axes_and_signs import (
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.quantisation import Quantisation
-from inertial.detectors.repeated_records import Duplicate, HeldRecord, SlowerSensor
+from inertial.detectors.repeated_records import Duplicate, HeldRecord
 from inertial.detectors.saturation import Saturation
+from inertial.detectors.slower_sensor import SlowerSensor
 from inertial.detectors.spike import Spikes
 from inertial.detectors.stamp_faults import (
     ArrivalStamps,

@@ -72,7 +72,7 @@ class CopiedChannel(Detector):
                 name=name,
                 channel=channel_name(event.channel),
                 what=what,
-                records=whole(event.size),
+                records=whole(event.after - event.first),
             ),
             _("One of the two axes is not in the log: all that depends on it would be wrong."),
             _(

@@ -1,4 +1,4 @@
-"""Records that are in a log twice, that hold earlier readings, or that outnumber the readings."""
+"""Records that are in a log twice, or that hold the readings of earlier ones."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.signal.detector import (
-    SENSORS,
     Array,
     Booleans,
     Description,
@@ -19,9 +18,8 @@ from inertial.signal.detector import (
 )
 from inertial.signal.runs import runs
 from inertial.signal.stamps import kinds
-from inertial.text.enumeration import listed
 from inertial.text.messages import _
-from inertial.text.numbers import counted, fixed, p_is, significant
+from inertial.text.numbers import counted, fixed, p_is
 
 # Share of stamps that stand still while the readings change: above it the stamps are so coarse
 # that equal readings with equal stamps may be another sample.
@@ -129,7 +127,6 @@ SIDE_PAIRS = 100  # pairs on each side of a run by which its chance is judged
 CLOSE_COUNTS = (1, 3, 10)
 MIN_EXCESS_SIGMA = 3.0  # sigma, more than usual
 BISECTIONS = 40  # of the interval in which the chance lies
-SAME_SHARE = 0.02  # of records held, of two sensors with one cause
 MIN_COPIED = 8  # records in a row that are copied
 DEPENDENT = 0.5  # power of the chance that all channels change alike: as if half of them were free
 MAX_USUAL_RUNS = 3.0  # times the records that a slower sensor has for each reading
@@ -246,69 +243,6 @@ class HeldRecord(Detector):
                 "cable.",
                 value=_("It is") if single else _("They are"),
                 value_2=_("it") if single else _("them"),
-            ),
-        )
-
-
-@dataclass(frozen=True)
-class _Slower:
-    """Which sensors, accel and gyro, or one of them; s, of a record."""
-
-    sensors: tuple[str, ...]
-    step: float
-
-
-class SlowerSensor(Detector):
-    """A sensor that gives fewer readings than its log has records, so that each is there again.
-
-    Throughout the log, in a tenth of the records or more, and with counts so fine that its axes
-    hardly ever repeat a reading one by one: see `ChannelStatistics`.
-
-    Cause: the logger asks more often than the sensor measures. A reading that is held until the
-    next one counts for the time between them, so means and sums over time are right.
-    """
-
-    name = "slower_sensor"
-    source = "sample-and-hold: the mean of a held signal is that of its readings"
-    unit = "records"
-    severity = 1
-    alike = "sensor"
-
-    def detect_in_log(self, log: Log) -> Iterator[Event]:
-        slower = [name for name, share in zip(SENSORS, log.held, strict=True) if share]
-        together = len(slower) == 2 and abs(np.diff(log.held)[0]) < SAME_SHARE
-        for sensors in [slower] if together else [[name] for name in slower]:
-            share = float(log.held[list(SENSORS).index(sensors[0])])
-            yield log.event(
-                1 / (1 - share),
-                sensor=None if together else sensors[0],
-                facts=_Slower(tuple(sensors), log.step),
-            )
-
-    def describe(self, event: Event, name: str) -> Description:
-        told = {"accel": _("accelerometers"), "gyro": _("gyros")}
-        known = np.isfinite(event.facts.step)
-        rate = 1 / event.facts.step if known else np.nan
-        at = _(
-            ": {readings} readings a second in {records} records",
-            readings=significant(rate / event.size, 3),
-            records=significant(rate, 3),
-        )
-        return Description(
-            _(
-                "{name}: each reading of the {sensors} is there {times} times{at}.",
-                name=name,
-                sensors=listed([told[sensor] for sensor in event.facts.sensors]),
-                times=significant(event.size, 3),
-                at=at if known else "",
-            ),
-            _(
-                "Means and sums over time stay right, for a reading counts for the time until the "
-                "next; records are not independent of each other, which the noise contains."
-            ),
-            _(
-                "Nothing is changed. Log at the rate of the sensor, or when it has new data, to "
-                "save the space."
             ),
         )
 

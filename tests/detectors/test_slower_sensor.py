@@ -11,7 +11,8 @@ from recorded_by_hand import NOISE, piece, rest, seen, stamps
 import laboratory
 from inertial.campaign.log_properties import ChannelStatistics
 from inertial.detectors.dead_axis import DeadAxis
-from inertial.detectors.repeated_records import HeldRecord, SlowerSensor
+from inertial.detectors.repeated_records import HeldRecord
+from inertial.detectors.slower_sensor import SlowerSensor
 
 RECORDS = 20_000
 MEMS = np.array([0.04] * 3 + [1e-3] * 3)  # one count of a consumer MEMS: m/s², rad/s
