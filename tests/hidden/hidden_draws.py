@@ -8,7 +8,7 @@ campaigns of its own, all of which are written and read.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from hidden_courses import scanned
 from hidden_elsewhere import ELSEWHERE, HARD, Random
 from hidden_outside import OUTSIDE, course_size, recorded
 from hidden_plans import PLANS, SPANS, sensors
-from hidden_ways import ABSORBED, MATES, POSITIVE, WAYS, absorbed
+from hidden_ways import ABSORBED, MATES, POSITIVE, REMEMBERING, WAYS, absorbed
 
 from inertial.effects import CATALOGUE
 
@@ -80,7 +80,7 @@ def draw(number: int, size: Size) -> Draw:
     random = np.random.default_rng([SEED, number])
     if number >= EACH_FROM:
         made = _each(number - EACH_FROM, random, size)
-        return Draw(number=number, kind="single", on_disk=True, **made)
+        return _as_moved(Draw(number=number, kind="single", on_disk=True, **made))
     round_, place = divmod(number, CYCLE)
     kind = KINDS[place]
     turn = round_ * KINDS.count(kind) + KINDS[:place].count(kind)  # how many of its kind before
@@ -91,7 +91,7 @@ def draw(number: int, size: Size) -> Draw:
         "several": _several,
         "outside": _outside,
     }[kind](turn, random, size, number)
-    return Draw(number=number, kind=kind, on_disk=place == round_ % CYCLE, **made)
+    return _as_moved(Draw(number=number, kind=kind, on_disk=place == round_ % CYCLE, **made))
 
 
 def _clean(turn: int, random: Random, size: Size, number: int) -> dict[str, Any]:
@@ -226,3 +226,22 @@ def _hide(
         told["truth"][name] = dict(zip(way.names, values.tolist(), strict=True))
         told["ratios"][name] = unit * factor
     return told
+
+
+def _as_moved(one: Draw) -> Draw:
+    """The draw with its ratio in its own campaign, for what remembers forces.
+
+    How the table moves to a position whose azimuth the plan does not state, each campaign draws
+    for itself; by the moves of the reference the ratio would be up to a quarter off.
+    """
+    for name in set(REMEMBERING) & set(one.truth):
+        alone = replace(one, effects={name: one.effects[name]})
+        ratio = course_size(alone.document())(one.plan)
+        if one.sort == "physical":
+            one = replace(one, ratios=one.ratios | {name: ratio})
+            continue
+        factor = one.ratios[name] / ratio
+        values = {key: factor * value for key, value in one.truth[name].items()}
+        effect = WAYS[name].told(np.array([*values.values()]))
+        one = replace(one, effects=one.effects | {name: effect}, truth=one.truth | {name: values})
+    return one

@@ -113,6 +113,7 @@ WAYS: Mapping[str, Way] = {
 }
 # The laboratory knows a share of the earth's rate between nothing and all of it.
 POSITIVE = ("earth_rate_omitted",)
+REMEMBERING = ("accel_hysteresis",)  # depends on how the table moved between two positions
 
 # Each is a decoy: every calibration estimates something that does the same, or the equations know
 # it not at all, so silence is right, and so is the truth; but for plans of `WAYS` that show it.

@@ -7,15 +7,18 @@ import numpy as np
 import pandas as pd
 import pytest
 from hidden_campaigns import run
-from hidden_draws import CYCLE, KINDS, draw
+from hidden_courses import known_course
+from hidden_draws import CYCLE, EACH_FROM, KINDS, draw
 from hidden_elsewhere import ELSEWHERE
 from hidden_outside import OUTSIDE
 from hidden_scores import class_right, detected, false_names, truly_named, warned
 from hidden_sizes import BESIDE, LEVEL, reference, size
 from hidden_statistics import tried
-from hidden_ways import ABSORBED, WAYS
+from hidden_ways import ABSORBED, REMEMBERING, WAYS
 
 import laboratory
+from inertial.campaign.effect_evidence import evidence
+from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 
 # One of each kind, each at a size at which it must be found.
@@ -59,9 +62,28 @@ def test_a_draw_can_be_made_again_and_is_as_large_as_it_says():
         assert one == draw(one.number, size)
         laboratory.specify(one.document())
         for name, values in one.truth.items():
+            if name in REMEMBERING:
+                continue
             told = size(one.plan, name, one.at.get(name), np.array([*values.values()]))
             assert told == pytest.approx(one.ratios[name])
     assert draw(1, size).effects != draw(1 + CYCLE, size).effects
+
+
+@pytest.mark.slow
+def test_what_remembers_forces_is_as_large_as_it_says_by_its_own_moves():
+    """By the equations of its own campaign; by the moves of the reference it is another size."""
+    for name in REMEMBERING:
+        one = draw(EACH_FROM + list(WAYS).index(name) + 4 * len(WAYS), size)
+        hidden, plain = (
+            laboratory.perform(laboratory.specify(one.document(effects=effects)))
+            for effects in (one.effects, {})
+        )
+        (data,) = chain.mounts(chain.in_memory(plain, "gyroscope", BESIDE))
+        course = known_course("known_course", [hidden], plain)
+        told = evidence(campaign_of(data), [course]).total.information[0, 0] ** 0.5
+        assert told == pytest.approx(one.ratios[name], rel=0.03)
+        by_the_reference = size(one.plan, name, None, np.array([*one.truth[name].values()]))
+        assert abs(by_the_reference - told) > 0.2 * told
 
 
 def test_in_memory_is_as_on_disk(tmp_path):
