@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 
 from inertial.physics.effect import Array, Constant, Effect, Parameter, Reading, Truth, by_grade
-from inertial.physics.laws import AXES, LAWS, functions, unknown
+from inertial.physics.laws import AXES, LAWS, OWN, functions, unknown
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
@@ -101,5 +101,6 @@ def every_law() -> dict[str, Law]:
     laws = (
         Law(sensor, axis, family, state)
         for sensor, axis, (family, state) in product(SENSORS, (*AXES, ALL), LAWS)
+        if axis == ALL or state not in OWN
     )
     return {law.name: law for law in laws}

@@ -12,7 +12,7 @@ Source: MacKay 1992, Bayesian interpolation (Occam factor); IEEE Std 952-2020, r
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 LARGEST_SNR = 1e3  # of a walk that is tried; beyond MAX_PRIOR_SNR the prior goes on as before
 AXES = 3
 STEPS = 60  # of the sizes of a walk
+MAX_WAYS = 12  # of several effects, the likeliest
 LOG_RANGE = float(np.log(MAX_PRIOR_SNR / MIN_PRIOR_SNR))
 
 
@@ -77,19 +78,53 @@ def walk(equations: Equations, axes: Sequence[Sequence[int]]) -> Explained:
     return _either(alike, _each(equations, alone))
 
 
+Scanned = tuple[Sequence[Sequence[int]], Array]  # columns of each value, and its share of the prior
+
+
 def law(equations: Equations, values: Sequence[Sequence[int]], weights: Array) -> Explained:
     """An effect, of which each value of its scan has columns and a share of the prior.
 
-    Where it has a parameter for each axis, these together or each by itself.
+    Where it has a parameter for each axis, these together or any of them.
     """
-    together = _law(equations, values, weights)
+    ways = _ways(Explained(0.0, equations), (values, weights))
+    return Explained(_sum_of(ways), max(ways, key=lambda way: way.log_evidence).rest)
+
+
+def laws(equations: Equations, effects: Sequence[Scanned]) -> float:
+    """The log evidence of several effects together.
+
+    All ways of the first count for the next one: an axis of the first that seems silent, because
+    the next one hides it, would else be missed.
+    """
+    own = sorted({i for values, _weights in effects for columns in values for i in columns})
+    place = {column: i for i, column in enumerate(own)}
+    ways = [
+        Explained(0.0, Equations(equations.information[np.ix_(own, own)], equations.right[own]))
+    ]
+    for values, weights in effects:
+        moved = [[place[i] for i in columns] for columns in values]
+        every = [after for way in ways for after in _ways(way, (moved, weights))]
+        ways = sorted(every, key=lambda way: way.log_evidence)[-MAX_WAYS:]
+    return _sum_of(ways)
+
+
+def _ways(before: Explained, effect: Scanned) -> list[Explained]:
+    """All axes together, or each by itself: it acts or does not, as likely beforehand."""
+    values, weights = effect
+    together = _after(before, values, weights)
     if len(values[0]) != AXES:
-        return together
+        return [together]
+    half = float(np.log(2))
+    alone = [replace(before, log_evidence=before.log_evidence - AXES * half)]
+    for axis in range(AXES):
+        own = [columns[axis : axis + 1] for columns in values]
+        alone += [_after(way, own, weights) for way in alone]
+    every = [together, *alone]
+    return [replace(way, log_evidence=way.log_evidence - half) for way in every]
 
-    def alone(rest: Equations, axis: int) -> Explained:
-        return _law(rest, [columns[axis : axis + 1] for columns in values], weights)
 
-    return _either(together, _each(equations, alone))
+def _sum_of(ways: Sequence[Explained]) -> float:
+    return float(logsumexp([way.log_evidence for way in ways]))
 
 
 def _each(equations: Equations, alone: Callable[[Equations, int], Explained]) -> Explained:
@@ -130,9 +165,11 @@ def _walk(equations: Equations, columns: Sequence[int], shape: Array) -> Explain
     return Explained(float(total), equations.given(own, best * shape))
 
 
-def _law(equations: Equations, values: Sequence[Sequence[int]], weights: Array) -> Explained:
+def _after(before: Explained, values: Sequence[Sequence[int]], weights: Array) -> Explained:
+    """An effect with all of these columns, after something else is explained."""
     candidates = Candidates([searched_effect("", *values)])
-    drops, degrees = candidates.drops(equations.information, equations.right)
+    drops, degrees = candidates.drops(before.rest.information, before.rest.right)
     odds = np.where(degrees > 0, log_evidence(drops, degrees) - np.log(LOG_RANGE), 0.0)
     total = float(logsumexp(odds, b=weights / np.sum(weights)))
-    return Explained(total, equations.given(values[int(np.argmax(odds))]))
+    rest = before.rest.given(values[int(np.argmax(odds))])
+    return Explained(before.log_evidence + total, rest)

@@ -19,6 +19,7 @@ MINUTE = 60.0  # s
 SLOPE_SECONDS = 20.0  # s, over which the rate of a temperature is taken
 AXES = "xyz"
 MAX_CYCLES, RAMPS, STEPS = 20.0, 24, 360  # of a campaign
+OF_FORCE = ("power", "odd_power", "polynomial", "hysteresis")
 OF_STATE = {
     "time": ("power", "polynomial", "harmonic", "exponential", "ramp", "telegraph"),
     "run_time": ("power", "polynomial", "exponential"),
@@ -26,16 +27,15 @@ OF_STATE = {
     "rate": ("power", "odd_power", "polynomial", "exponential"),
     "temperature": ("polynomial", "exponential", "hysteresis"),
     "temperature_rate": ("odd_power", "product"),
-} | dict.fromkeys(
-    ("force_x", "force_y", "force_z"), ("power", "odd_power", "polynomial", "hysteresis")
-)  # fmt: skip
+} | dict.fromkeys(("force_x", "force_y", "force_z", "own_force"), OF_FORCE)
+OWN = ("own_force", "other_forces")  # states that differ from axis to axis: laws of all axes
 FACTORS = ("time", "rate", "force_x", "force_y", "force_z", "temperature", "temperature_rate")
 PRODUCTS = tuple(
     f"{first}*{second}" for i, first in enumerate(FACTORS) for second in FACTORS[i + 1 :]
 )
 LAWS = (
     *((family, name) for name, families in OF_STATE.items() for family in families),
-    *(("product", name) for name in PRODUCTS),
+    *(("product", name) for name in (*PRODUCTS, "other_forces")),
 )
 
 
@@ -43,7 +43,7 @@ def state(name: str, motion: Motion, axis: int) -> Array:
     """A state at the nodes of each stretch, (n, 5), NaN where not known.
 
     `axis`: of the sensor, whose rate is that about its own axis; `name`: of `OF_STATE`, or two of
-    them with a * between, their product.
+    them with a * between, their product; `other_forces` is that of the two other axes.
     """
     if "*" in name:
         first, second = (state(one, motion, axis) for one in name.split("*"))
@@ -62,6 +62,10 @@ def state(name: str, motion: Motion, axis: int) -> Array:
         return np.asarray(about[:, None] * rate) / RATE
     if name.startswith("force"):
         values = motion.up[:, AXES.index(name[-1])]
+    elif name == "own_force":
+        values = motion.up[:, axis]
+    elif name == "other_forces":
+        values = np.prod(np.delete(motion.up, axis, axis=1), axis=1)
     elif name == "temperature":
         values = motion.temperature - np.average(motion.temperature, weights=motion.seconds)
     else:
@@ -156,20 +160,20 @@ def steps(motion: Motion, count: int) -> Array:
     return np.linspace(motion.time.min(), motion.time.max(), count + 2)[1:-1] / HOUR
 
 
-def grid(family: str, name: str, motion: Motion, axis: int) -> list[tuple[float, ...]]:
-    """The shapes of a family that this motion can distinguish.
+def grid(family: str, name: str, motion: Motion) -> list[tuple[float, ...]]:
+    """The shapes of a family that this motion can distinguish, alike for all axes.
 
     What an effect of the catalogue is by one state is left out: a straight line, the square of an
     own force.
     """
-    x = state(name, motion, axis)
+    x = np.stack([state(name, motion, axis) for axis in range(len(AXES))])
     low, high = float(np.nanmin(x)), float(np.nanmax(x))
     span = high - low
     if family == "polynomial":
         return [(float(d),) for d in range(2, 6)]
     if family in ("power", "odd_power"):
         powers = (0.25, 0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0, 5.0)
-        return [(p,) for p in powers]
+        return [(p,) for p in powers if (name, p) != ("own_force", 2.0)]
     if family == "harmonic" and name == "angle":
         return [(order,) for order in np.arange(0.25, 12.01, 0.125).tolist()]
     if family == "harmonic":

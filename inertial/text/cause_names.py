@@ -120,6 +120,8 @@ STATES = {
     "force_x": _("the x force"),
     "force_y": _("the y force"),
     "force_z": _("the z force"),
+    "own_force": _("the force along each axis"),
+    "other_forces": _("the product of the forces along the two other axes"),
     "temperature": _("the temperature"),
     "temperature_rate": _("the rate of the temperature"),
 }

@@ -99,7 +99,8 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
     score, found, beside = max(tried, key=lambda one: one[0])
     alone = _catalogue(columns, named, prior)
     walk = max(_walk_beside(columns, []), alone + _walk_beside(columns, named))
-    if score - alone < MAX_LOG_ODDS or score < walk:  # a walk that is likelier is named itself
+    # Where the effects are all there is, odds of 1/level occur in that share of campaigns at most.
+    if score - alone < -np.log(level) or score < walk:  # a walk that is likelier is named itself
         return None
     p_value = chance_of(found.equations, found.odds, found.paths)
     if p_value > level:
@@ -143,7 +144,7 @@ def columns_with(
         for law in laws.LAWS:
             if law == TELEGRAPH or not laws.known(law[1], motion, i):
                 continue
-            shapes[law] = laws.grid(*law, motion, i)
+            shapes[law] = laws.grid(*law, motion)
             own = places.setdefault(law, {}).setdefault(axis, [])
             for shape in shapes[law]:
                 values.append(laws.functions(*law, shape, motion, i))
@@ -159,7 +160,7 @@ def columns_with(
     for law, axes in places.items():
         joint = [[i for one in every for i in one] for every in zip(*axes.values(), strict=True)]
         together = {ALL: joint} if len(axes) == len(AXES) else {}
-        for axis, candidates in (axes | together).items():
+        for axis, candidates in (together if law[1] in laws.OWN else axes | together).items():
             made.append(searched_effect(law_name(sensor, axis, *law), *candidates))
             of_each.append(shapes[law])
     known = [place[name] for effect in others for name in effect.columns]
@@ -265,12 +266,9 @@ def _prior(effect: Effect, campaign: Campaign, count: int) -> float:
 
 def _catalogue(columns: Columns, kept: Sequence[Effect], prior: Mapping[str, float]) -> float:
     """The log evidence of some of the named effects."""
-    total, rest = 0.0, columns.equations
-    for effect in kept:
-        own = [columns.place[name] for name in effect.columns]
-        odds = walk_odds.law(rest, [own], np.ones(1))
-        total, rest = total + odds.log_evidence + prior[effect.name], odds.rest
-    return total
+    own = [[columns.place[name] for name in effect.columns] for effect in kept]
+    evidence = walk_odds.laws(columns.equations, [([one], np.ones(1)) for one in own])
+    return evidence + sum(prior[effect.name] for effect in kept)
 
 
 def _walk_beside(columns: Columns, named: Sequence[Effect]) -> float:
@@ -287,7 +285,7 @@ def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> Law:
     grid = (
         [(float(time),) for time in laws.steps(campaign.motion, laws.STEPS)]
         if law.family == TELEGRAPH[0]
-        else laws.grid(law.family, law.state, campaign.motion, axes[0])
+        else laws.grid(law.family, law.state, campaign.motion)
     )
     if not law.shape or law.family == "polynomial" or len(grid) < 2:
         return law

@@ -60,12 +60,9 @@ class Selection:
 
     def explained(self, effects: Collection[str], first: walk_odds.Explained) -> float:
         """The log evidence of some effects after something else is explained, and of that."""
-        evidence, rest = first.log_evidence, first.rest
-        for searched in self.searched:
-            if searched.name in effects:
-                law = walk_odds.law(rest, searched.candidates, self.prior(searched))
-                evidence, rest = evidence + law.log_evidence, law.rest
-        return evidence
+        own = [searched for searched in self.searched if searched.name in effects]
+        scanned = [(searched.candidates, self.prior(searched)) for searched in own]
+        return first.log_evidence + walk_odds.laws(first.rest, scanned)
 
     def effect(self, name: str, value: int) -> Effect:
         """A candidate."""

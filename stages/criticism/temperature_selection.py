@@ -66,7 +66,7 @@ def select_with_temperature(
     fewer = functions(plain.effects)
     if fewer and _pieces(fewer) < _pieces(models):
         rival = selected(fewer)
-        selection = selection if _score(selection) - _score(rival) > MAX_LOG_ODDS else rival
+        selection = max(selection, rival, key=_score)
     return _weighed(selection, plain)
 
 

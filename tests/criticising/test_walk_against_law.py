@@ -6,7 +6,7 @@ The readings are made here: a bias of three gyros that are read in stretches, wi
 import numpy as np
 import pytest
 
-from inertial.model_selection.walk_odds import Equations, law, walk
+from inertial.model_selection.walk_odds import Equations, law, laws, walk
 
 STRETCHES, SPAN, HALF_WAVES = 60, 2800.0, 8
 TIME = np.linspace(0.0, SPAN, STRETCHES)
@@ -70,3 +70,17 @@ def test_nothing_is_explained_by_neither():
         equations = Equations(design.T @ design, design.T @ read.reshape(-1))
         assert walk(equations, axes).log_evidence < 2
         assert law(equations, [ramp], np.ones(1)).log_evidence < 2
+
+
+def test_an_axis_of_an_effect_that_another_effect_hides_is_not_taken_as_silent():
+    """Courses with 0.7 in common that cancel each other in x: neither order of the two matters."""
+    common, size = 0.7, 12.0
+    block = np.array([[1.0, common], [common, 1.0]])
+    sizes = np.array([[size, -size / common], [size, 0.0], [0.0, size]])  # of x, y, z
+    equations = Equations(np.kron(np.eye(3), block), (sizes @ block).ravel())
+    one, other = (([[k, 2 + k, 4 + k]], np.ones(1)) for k in range(2))
+    assert equations.right[0] == pytest.approx(0.0)  # of the first in x, before the second is known
+    both = [laws(equations, effects) for effects in ([one, other], [other, one])]
+    assert both[0] == pytest.approx(both[1], abs=1.0)
+    drop = np.sum((sizes @ block) * sizes)
+    assert drop / 2 - 25 < both[0] < drop / 2 - 10  # what six sizes and their ranges cost

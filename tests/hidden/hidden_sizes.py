@@ -1,10 +1,10 @@
 """What each plan says of every effect, by a clean campaign: sizes, and the threshold of a name."""
 
 import pickle
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import permutations
+from itertools import permutations, product
 from typing import Any
 
 import chain
@@ -80,14 +80,10 @@ class Reference:
 
     def left(self, name: str, at: float | None, values: Any, other: str) -> float:
         """Which share of the square of its ratio another effect leaves, whatever its size is."""
-        information = self.said.total.information
-        signal = information[:, self.columns(name, at)] @ (values / self.typical(name))
+        hidden = {name: dict(enumerate(values))}
+        signal, square = self._together(hidden, {} if at is None else {name: at})
         candidates = next(one.candidates for one in self.asked if one.name == other)
-        taken = [
-            signal[list(own)] @ np.linalg.pinv(information[np.ix_(own, own)]) @ signal[list(own)]
-            for own in candidates
-        ]
-        return 1.0 - max(taken) / self.size(name, at, values) ** 2
+        return self._left(signal, square, candidates) / square
 
     def limits(self, name: str, ratio: float) -> dict[str, float]:
         """The power at a ratio by this plan's own threshold, and by the textbook's."""
@@ -107,24 +103,48 @@ class Reference:
     def limit_together(
         self, truth: Mapping[str, Mapping[str, float]], at: Mapping[str, float]
     ) -> float:
-        """The probability that each of several effects is beyond its threshold, the others known.
+        """The probability that each of several effects is beyond its threshold.
 
-        What they have in common with each other none can show; the search for the others is free.
+        What remains of all of them beside the others, with whatever sizes and values of their
+        scans take up most, shows an effect; and what remains beside any one effect of the
+        catalogue shows that there are several. The search for the others is free.
         """
-        information, likely = self.said.total.information, 1.0
-        own = {name: list(self.columns(name, at.get(name))) for name in truth}
-        names = [one.name for one in self.asked]
-        for name, columns in own.items():
-            others = [i for other, some in own.items() if other != name for i in some]
-            sizes = np.array([*truth[name].values()]) / self.typical(name)
-            along = information[:, columns] @ sizes
-            block = np.linalg.pinv(information[np.ix_(others, others)], 1e-9, hermitian=True)
-            left = sizes @ along[columns] - along[others] @ block @ along[others]
-            number = names.index(name)
-            threshold = self.law.threshold(number, self.noise_degrees)
+        signal, square = self._together(truth, at)
+        asked = {one.name: one.candidates for one in self.asked}
+        likely, further = 1.0, 0.0
+        beside_one = min(
+            self._left(signal, square, one.candidates) for one in self.asked if not one.free
+        )
+        for name in truth:
+            number = list(asked).index(name)
+            others = [asked[other] for other in truth if other != name]
+            joint = [[i for one in each for i in one] for each in product(*others)]
             degrees = self.law.tails[number].degrees
-            likely *= float(power(np.sqrt(max(left, 0.0)), degrees, threshold))
-        return likely
+            threshold = self.law.threshold(number, self.noise_degrees)
+            left = self._left(signal, square, joint)
+            likely *= float(power(np.sqrt(left), degrees, threshold))
+            further = max(further, float(power(np.sqrt(beside_one), degrees, threshold)))
+        return min(likely, further)
+
+    def _together(
+        self, truth: Mapping[str, Mapping[str, float]], at: Mapping[str, float]
+    ) -> tuple[Array, float]:
+        """Of several effects the right side, (k,), and the square of their ratio."""
+        columns = [i for name in truth for i in self.columns(name, at.get(name))]
+        sizes = np.concatenate(
+            [np.array([*truth[name].values()]) / self.typical(name) for name in truth]
+        )
+        signal = self.said.total.information[:, columns] @ sizes
+        return signal, float(sizes @ signal[columns])
+
+    def _left(self, signal: Array, square: float, candidates: Iterable[Sequence[int]]) -> float:
+        """What the best of some candidates leaves of the square of a ratio."""
+        information = self.said.total.information
+        taken = [
+            signal[own] @ np.linalg.pinv(information[np.ix_(own, own)], 1e-9, True) @ signal[own]
+            for own in map(list, candidates)
+        ]
+        return max(square - float(max(taken)), 0.0)
 
     def size_of(self, effect: Effect) -> float:
         """The signal-to-noise ratio of a course that is known but for its size, which is 1."""

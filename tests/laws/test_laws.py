@@ -82,6 +82,19 @@ def test_a_power_of_the_rate():
     assert sizes.loc["k_y", "value"] / DEGREE_PER_HOUR == pytest.approx(1.0, abs=0.1)
 
 
+@pytest.mark.slow
+def test_a_law_of_what_differs_from_axis_to_axis():
+    """Each gyro has the product of the forces along the two others: no product of fixed axes."""
+    told = {"k_deg_h_g2": [2.0, -1.5, 1.8]}
+    cause, sizes = named_in_memory(hiding("rates", "gyro_anisoelasticity", **told))
+    assert (cause["cause"], cause["verdict"]) == ("gyro_all_product_of_other_forces", "law")
+    found, sigma = (
+        sizes.loc[["k_x", "k_y", "k_z"], one].to_numpy() / DEGREE_PER_HOUR
+        for one in ("value", "sigma")
+    )
+    assert np.abs(found - told["k_deg_h_g2"]) == pytest.approx(0.0, abs=4 * sigma.max())
+
+
 @pytest.mark.parametrize("walk", [0.0, pytest.param(0.3, marks=pytest.mark.slow)])
 def test_a_clean_campaign_and_a_random_walk_have_no_law(walk):
     document = PLANS["positions"](seed=99)
@@ -124,13 +137,17 @@ def test_states_and_their_functions():
     first, last = (2.4 * (angles + side * rates * 2.0) for side in (-1, 1))
     exact = [np.sin(last) - np.sin(first), np.cos(first) - np.cos(last)] / (last - first)
     np.testing.assert_allclose(both, exact.T, rtol=1e-6)
+    tilted = replace(motion, up=np.tile([0.2, 0.5, -0.6], (3, 1)))
+    for axis, (own, others) in enumerate([(0.2, -0.3), (0.5, -0.12), (-0.6, 0.1)]):
+        np.testing.assert_allclose(laws.state("own_force", tilted, axis), own)
+        np.testing.assert_allclose(laws.state("other_forces", tilted, axis), others)
     np.testing.assert_allclose(laws.state("temperature_rate", motion, 0)[1], 2.0)
     hours = replace(motion, time=np.array([0.0, 3600.0, 7200.0]))
     unknown = replace(hours, temperature=np.array([290.0, 292.0, np.nan]))
     assert np.isnan(laws.temperature_rate(unknown)).all()  # not only about the one that lacks
-    cycles = np.array(laws.grid("harmonic", "rate", motion, 0))[:, 0] * 3 / (2 * np.pi)
+    cycles = np.array(laws.grid("harmonic", "rate", motion))[:, 0] * 3 / (2 * np.pi)
     np.testing.assert_allclose(np.diff(cycles), 1 / 3)  # over the span of 30 °/s
-    loops = laws.grid("hysteresis", "rate", motion, 0)
+    loops = laws.grid("hysteresis", "rate", motion)
     assert np.array(loops).max() < np.ptp(later[:, 2]) / 2
 
 
