@@ -2,9 +2,9 @@
 
     python -m commands.check --campaign demo
 
-It reads the findings of quality, segment, accelerometer and gyroscope, which parameters these
-determine, and the verdict of the diagnosis where there is one, all of which `make check` lets the
-workflow make first. It states what gets no result,
+It reads the findings of all stages up to criticism, which parameters are determined, and the
+verdict of the diagnosis, all of which `make check` lets the workflow make first; criticism and
+diagnosis only where they are there. It states what gets no result,
 and each cause with what follows from it. It ends with 0 where nothing spoils a result, with 1 where
 something does or a sensor gets none, and with 2 where the tables are missing.
 """
@@ -83,10 +83,10 @@ def recording_of(derived: Path) -> Recording:
         where one of them is missing, damaged, or of another version
     """
     sources = {each.name: DECLARED.reads[each.name] for each in fields(Findings)}
-    # Criticism comes later and is not part of the check.
-    earlier = {name: source for name, source in sources.items() if source.stage != "criticism"}
-    none = {name: source.table.empty() for name, source in sources.items() if name not in earlier}
-    findings = Findings(**read_declared(derived, earlier), **none)
+    criticised = (derived / "criticism/findings.parquet").exists()
+    made = {name: one for name, one in sources.items() if criticised or one.stage != "criticism"}
+    none = {name: source.table.empty() for name, source in sources.items() if name not in made}
+    findings = Findings(**read_declared(derived, made), **none)
     performed = performed_of(tables.PERFORMED.read(derived / "segment/performed.parquet"))
     refused = {
         row["log"]: row["lines"]

@@ -30,14 +30,20 @@ READ = (
 )
 
 
+CRITICISED = (
+    *("criticism/findings", "criticism/members", "criticism/cause_positions"),
+    "criticism/structure_manoeuvres",
+)
+
+
 @pytest.fixture
 def data(demo: Results, tmp_path: Path) -> Path:
     """A data folder with the tables of the demo that are read."""
     return copied(demo, tmp_path / "data")
 
 
-def copied(results: Results, data: Path) -> Path:
-    for name in READ:
+def copied(results: Results, data: Path, names: tuple[str, ...] = READ) -> Path:
+    for name in names:
         path = data / "derived" / NAME / f"{name}.parquet"
         path.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(results.folder / f"{name}.parquet", path)
@@ -68,6 +74,17 @@ def test_what_is_wrong_with_the_demo(data: Path, capsys: pytest.CaptureFixture[s
     )
     assert lines[-1] == "2 causes: 2 are good to know."  # a gap, and an oscillation of the case
     assert code == 0
+
+
+def test_what_the_demo_hides_is_a_cause_where_criticism_was_made(
+    demo: Results, data: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copied(demo, data, CRITICISED)
+    assert check(data) == 0  # the model allows for them
+    said = capsys.readouterr().out
+    for cause in ("gyro g-sensitivity", "oscillation"):
+        assert f" · {cause}" in said
+    assert "Detected: gyro g-sensitivity" in said
 
 
 def test_the_worst_comes_first(data: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -84,7 +84,7 @@ Scanned = tuple[Sequence[Sequence[int]], Array]  # columns of each value, and it
 def law(equations: Equations, values: Sequence[Sequence[int]], weights: Array) -> Explained:
     """An effect, of which each value of its scan has columns and a share of the prior.
 
-    Where it has a parameter for each axis, these together or any of them.
+    Where it has parameters for each axis, all axes together or any of them; see `_ways`.
     """
     ways = _ways(Explained(0.0, equations), (values, weights))
     return Explained(_sum_of(ways), max(ways, key=lambda way: way.log_evidence).rest)
@@ -109,18 +109,31 @@ def laws(equations: Equations, effects: Sequence[Scanned]) -> float:
 
 
 def _ways(before: Explained, effect: Scanned) -> list[Explained]:
-    """All axes together, or each by itself: it acts or does not, as likely beforehand."""
+    """An effect as a whole, in any of the three axes of the sensor, or one element of its matrix.
+
+    The columns of a matrix are in the order of its rows, of which each axis has one.
+    """
     values, weights = effect
-    together = _after(before, values, weights)
-    if len(values[0]) != AXES:
-        return [together]
-    half = float(np.log(2))
-    alone = [replace(before, log_evidence=before.log_evidence - AXES * half)]
-    for axis in range(AXES):
-        own = [columns[axis : axis + 1] for columns in values]
-        alone += [_after(way, own, weights) for way in alone]
-    every = [together, *alone]
-    return [replace(way, log_evidence=way.log_evidence - half) for way in every]
+    count = len(values[0])
+    whole = _after(before, values, weights)
+    if count % AXES:
+        return [whole]
+    row = count // AXES
+    any_axes = [_less(before, 2**AXES)]
+    for first in range(0, count, row):
+        own = [columns[first : first + row] for columns in values]
+        any_axes += [_after(way, own, weights) for way in any_axes]
+    kinds = [[whole], any_axes]
+    if row > 1:
+        elements = ([columns[k : k + 1] for columns in values] for k in range(count))
+        single = [_after(before, own, weights) for own in elements]
+        kinds.append([_less(way, count) for way in single])
+    return [_less(way, len(kinds)) for ways in kinds for way in ways]
+
+
+def _less(way: Explained, count: int) -> Explained:
+    """One of so many ways that are as likely beforehand."""
+    return replace(way, log_evidence=way.log_evidence - float(np.log(count)))
 
 
 def _sum_of(ways: Sequence[Explained]) -> float:

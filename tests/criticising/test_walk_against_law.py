@@ -6,7 +6,8 @@ The readings are made here: a bias of three gyros that are read in stretches, wi
 import numpy as np
 import pytest
 
-from inertial.model_selection.walk_odds import Equations, law, laws, walk
+from inertial.model_selection.effect_classes import log_evidence
+from inertial.model_selection.walk_odds import LOG_RANGE, Equations, law, laws, walk
 
 STRETCHES, SPAN, HALF_WAVES = 60, 2800.0, 8
 TIME = np.linspace(0.0, SPAN, STRETCHES)
@@ -84,3 +85,15 @@ def test_an_axis_of_an_effect_that_another_effect_hides_is_not_taken_as_silent()
     assert both[0] == pytest.approx(both[1], abs=1.0)
     drop = np.sum((sizes @ block) * sizes)
     assert drop / 2 - 25 < both[0] < drop / 2 - 10  # what six sizes and their ranges cost
+
+
+@pytest.mark.parametrize(("place", "cheaper"), [([4], 12), ([3, 4, 5], 5), (range(9), -2)])
+def test_a_matrix_acts_as_a_whole_in_rows_or_in_one_element(place, cheaper):
+    """One size in place of nine costs less, and a random direction hardly more than before."""
+    sizes = np.zeros(9)
+    sizes[list(place)] = 12.0 / np.sqrt(len(place))
+    equations = Equations(np.eye(9), sizes)
+    whole = log_evidence(np.array([144.0]), np.array([9]))[0] - LOG_RANGE
+    told = law(equations, [list(range(9))], np.ones(1)).log_evidence
+    assert told > whole + cheaper
+    assert told < 144 / 2
