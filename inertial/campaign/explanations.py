@@ -101,6 +101,7 @@ MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
 # changes it in proportion, so only effects in proportion to a rate, a force, or the earth's rate.
 SPOILING = (
     "clock_scale",
+    "wrong_time_unit",
     "wrong_scale_factor",
     "wrong_imu_type",
     "wrong_direction",
@@ -192,6 +193,11 @@ EXPLANATIONS = (
     ),
     Explanation(
         ("clock_scale", "rate_off"), _is("clock_scale", "rate_off", "wrong_rate"), anywhere
+    ),
+    Explanation(
+        ("wrong_time_unit",),
+        _is(*PERFORMANCE, *MISFITS, "wrong_scale_factor", "clock_scale", "bias_jump"),
+        anywhere,
     ),
     Explanation(
         ("gravity_error",), _is("wrong_scale_factor", "gravity_error", *MISFITS), same_sensor

@@ -36,6 +36,7 @@ from inertial.detectors.stamp_faults import (
     TimeBackwards,
     TimeStandsStill,
     WrongDay,
+    WrongTimeUnit,
 )
 from inertial.detectors.status_invalid import StatusInvalid
 from inertial.detectors.table_moving import TableMoving
@@ -66,6 +67,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     ClockStep(),
     ClockScale(),
     RateOff(),
+    WrongTimeUnit(),
     WrongDay(),
     WrongImuType(),
     # what a column holds

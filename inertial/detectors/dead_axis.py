@@ -133,15 +133,23 @@ class DeadAxis(Detector):
                 means=means,
             ),
             _("The readings are masked; what cannot do without them must be recorded again.")
-            + (
-                ""
-                if facts.level
-                else _(
-                    " Exactly 0 is also what a firmware writes below a threshold, or while it "
-                    "takes the IMU to be at rest: switch that off."
-                )
-            ),
+            + _other_cause(facts),
         )
+
+
+def _other_cause(facts: Stillness) -> str:
+    """What else reads the same, and its cure."""
+    if not facts.level:
+        return _(
+            " Exactly 0 is also what a firmware writes below a threshold, or while it takes the IMU "
+            "to be at rest: switch that off."
+        )
+    if facts.always:
+        return _(
+            " It may also be the limit of the range, exceeded throughout the log: then record it "
+            "within the range."
+        )
+    return ""
 
 
 @dataclass(frozen=True, eq=False)

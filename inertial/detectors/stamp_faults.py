@@ -286,6 +286,57 @@ def _of_rounding(events: Sequence[Event]) -> bool:
 
 
 FACTORS = (2, 4, 5, 10)  # of rates that instruments offer
+TIME_UNITS = ("s", "ms", "µs", "ns")  # each a thousandth of the one before
+
+
+def _units_apart(log: Log) -> int:
+    """By how many of TIME_UNITS the stamps are smaller than stated, 0 where by none."""
+    longer = log.step / log.given.interval
+    if not np.isfinite(longer) or longer <= 0:
+        return 0
+    thousands = round(np.log10(longer) / 3)
+    off = abs(longer / 1000.0**thousands - 1) > MAX_RATE_ERROR
+    return 0 if off or abs(thousands) >= len(TIME_UNITS) else thousands
+
+
+class WrongTimeUnit(Detector):
+    """The mean interval of a log is a thousand times the stated one, or a thousandth, or so on.
+
+    Cause: the column of the time is in milliseconds, say, and the format states seconds. Rates are
+    read as they are, and every angle, which is a rate times a time, is off by that factor.
+    """
+
+    name = "wrong_time_unit"
+    source = "a session of a stranger: its milliseconds were 359922° in a turn of 360°"
+    unit = "1"
+    severity = 3
+
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
+        if thousands := _units_apart(log):
+            facts = (thousands, log.step, log.given.interval, log.given.instrument)
+            yield log.event(1000.0**thousands, facts=facts)
+
+    def describe(self, event: Event, name: str) -> Description:
+        thousands, step, interval, instrument = event.facts
+        coarse, fine = TIME_UNITS[0], TIME_UNITS[abs(thousands)]
+        stated, likely = (coarse, fine) if thousands > 0 else (fine, coarse)
+        return Description(
+            _(
+                "{name}: by the stamps a sample is taken every {step} s, by the stated rate every "
+                "{interval} s: as if the time were in {likely} where {stated} is stated.",
+                name=name,
+                step=significant(step),
+                interval=significant(interval),
+                likely=likely,
+                stated=stated,
+            ),
+            _("Angles of turns, durations and drifts are off by this factor."),
+            _(
+                "Nothing is changed. Correct the unit of the time in the format, or rate_hz of "
+                "{instrument}.",
+                instrument=instrument,
+            ),
+        )
 
 
 class RateOff(Detector):
@@ -302,7 +353,7 @@ class RateOff(Detector):
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         factor = log.given.interval / log.step
-        if np.isfinite(factor) and abs(factor - 1) > MAX_RATE_ERROR:
+        if np.isfinite(factor) and abs(factor - 1) > MAX_RATE_ERROR and not _units_apart(log):
             facts = (1 / log.step, 1 / log.given.interval, log.given.instrument)
             yield log.event(factor, facts=facts)
 

@@ -108,6 +108,7 @@ NAMES = {
     "unknown_structure": _("structure without a name"),
     "wrong_day": _("another day"),
     "wrong_imu_type": _("another type of IMU"),
+    "wrong_time_unit": _("wrong unit of the time"),
     "wrong_scale_factor": _("wrong count size or unit"),
 }
 

@@ -67,7 +67,7 @@ def log(one: Piece, campaign: Given | None = None, **changes: Any) -> Log:
     values, time = one.values, one.time
     forward = np.diff(time)[np.diff(time) > 0]
     interval = float(np.median(forward)) if len(forward) else np.nan
-    length = round(1 / interval) if len(forward) else 1
+    length = max(round(1 / interval), 1) if len(forward) else 1
     starts = np.arange(0, len(values), length)
     equal = np.full(6, np.nan)
     for i in range(6):

@@ -48,6 +48,9 @@ def test_an_axis_that_never_changes_is_measured_by_the_other_axes():
     words = DeadAxis().describe(event, "up.asc")
     assert "accelerometer y reads 0 m/s² in all 3\u202f000 readings" in words.sentence
     assert "Their mean is 0 m/s²" in words.consequence
+    values[:, 1] = 19.6133
+    (event,) = found(values)
+    assert "limit of the range" in DeadAxis().describe(event, "up.asc").action
 
 
 def test_a_sensor_that_never_changes_is_dead_where_the_other_is_not():

@@ -25,6 +25,7 @@ from inertial.detectors.stamp_faults import (
     TimeBackwards,
     TimeStandsStill,
     WrongDay,
+    WrongTimeUnit,
 )
 from inertial.detectors.status_invalid import StatusInvalid
 
@@ -40,6 +41,7 @@ OF_TIME = (
     ClockScale(),
     RateOff(),
     WrongDay(),
+    WrongTimeUnit(),
 )
 MEMS = np.array([0.04] * 3 + [1e-3] * 3)  # of a consumer MEMS: m/s², rad/s
 
@@ -405,6 +407,22 @@ def test_another_rate_is_named_with_its_factor(stated, said):
     (event,) = seen(RateOff(), piece(rest(500), stamps(500)), given(interval=1 / stated))
     assert event.size == pytest.approx(100 / stated)
     assert said in RateOff().describe(event, "log").sentence
+
+
+@pytest.mark.parametrize(
+    ("factor", "likely", "stated"), [(1e3, "ms", "s"), (1.002e9, "ns", "s"), (1e-6, "s", "µs")]
+)
+def test_a_thousand_times_the_interval_is_another_unit_of_the_time(factor, likely, stated):
+    one = piece(rest(500), np.arange(500) * INTERVAL * factor)
+    (event,) = seen(WrongTimeUnit(), one)
+    assert not seen(RateOff(), one)
+    sentence = WrongTimeUnit().describe(event, "log").sentence
+    assert sentence.endswith(f"as if the time were in {likely} where {stated} is stated.")
+
+
+def test_a_rate_that_is_off_by_no_unit_is_none():
+    for factor in (1.0, 1000 * 1.02, 250.0, 1e12):
+        assert not seen(WrongTimeUnit(), piece(rest(500), np.arange(500) * INTERVAL * factor))
 
 
 @pytest.mark.parametrize(

@@ -64,6 +64,7 @@ OF_NO_SAMPLE = frozenset(
         "wrong_day",
         "wrong_imu_type",
         "wrong_scale_factor",
+        "wrong_time_unit",
     }
 )
 
