@@ -5,8 +5,8 @@ The random walk of a bias is estimated again given the named effects, which are 
 and against further jumps, see `rivals`.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -163,7 +163,11 @@ def _select(
         if min_snr:
             break
         min_snr = MIN_THIRD_SEARCH_SNR
-    named = replace(named, causes=tuple(_thinkable(named, rest, searched, families)))
+    thinkable = _Thinkable(named, rest, searched, families)
+    if unthinkable := thinkable.heads_without:
+        possible = [effect for effect in effects if effect.name not in unthinkable]
+        return _select(campaign, possible, level, noise_degrees, given)
+    named = replace(named, causes=tuple(map(thinkable.members_of, named.causes)))
     if given and equations.sensors:
         column = {name: i for i, name in enumerate(equations.names)}
         before = [
@@ -175,41 +179,53 @@ def _select(
     return Selection(campaign, (), equations, searched, families, named, limits)
 
 
-def _thinkable(
-    named: Named,
-    rest: Evidence,
-    searched: Sequence[SearchedEffect],
-    families: Mapping[str, Sequence[Effect]],
-) -> Iterator[Cause]:
-    """The causes without members that would have to be larger than any that is thinkable."""
-    columns = {one.name: one.candidates for one in searched}
+@dataclass(frozen=True)
+class _Thinkable:
+    """Which members of the named classes would have to be larger than any that is thinkable."""
 
-    def fits(cause: Cause, name: str, value: int) -> bool:
-        if name not in families or name == cause.effect:
+    named: Named
+    rest: Evidence
+    searched: Sequence[SearchedEffect]
+    families: Mapping[str, Sequence[Effect]]
+
+    def fits(self, cause: Cause, name: str, value: int) -> bool:
+        """Whether a member may be as large as it would have to be."""
+        if name not in self.families:
             return True
-        effect, own = families[name][value], columns[name][value]
-        others = (i for other in named.causes if other is not cause for i in other.columns)
-        values, covariance = rest.total.estimate(list(dict.fromkeys([*own, *others])))
+        effect = self.families[name][value]
+        own = next(one for one in self.searched if one.name == name).candidates[value]
+        others = (i for other in self.named.causes if other is not cause for i in other.columns)
+        values, covariance = self.rest.total.estimate(list(dict.fromkeys([*own, *others])))
         least = np.abs(values) - UNTHINKABLE_SIGMAS * np.sqrt(np.diag(covariance))
         largest = [effect.largest_of(parameter) for parameter in effect.parameters]
         return not bool((least[: len(own)] > largest).any())
 
-    for cause in named.causes:
+    def _fitting(self, cause: Cause) -> list[int]:
         pairs = zip(cause.members, cause.member_values, strict=True)
-        kept = [i for i, (name, value) in enumerate(pairs) if fits(cause, name, value)]
-        if len(kept) < len(cause.members):
-            weights = np.array([cause.weights[i] for i in kept])
-            cause = replace(
-                cause,
-                verdict=FOUND
-                if len(kept) == 1 and cause.verdict == ONE_OF_CLASS
-                else cause.verdict,
-                members=tuple(cause.members[i] for i in kept),
-                member_values=tuple(cause.member_values[i] for i in kept),
-                weights=tuple((weights / weights.sum()).tolist()),
-                captured=tuple(cause.captured[i] for i in kept),
-            )
-        yield cause
+        return [i for i, (name, value) in enumerate(pairs) if self.fits(cause, name, value)]
+
+    @property
+    def heads_without(self) -> set[str]:
+        """Causes that do not fit, where another member does."""
+        fitting = [
+            (one.effect, [one.members[i] for i in self._fitting(one)]) for one in self.named.causes
+        ]
+        return {head for head, members in fitting if members and head not in members}
+
+    def members_of(self, cause: Cause) -> Cause:
+        """The cause with the members that fit."""
+        kept = self._fitting(cause)
+        if not kept or len(kept) == len(cause.members):
+            return cause
+        weights = np.array([cause.weights[i] for i in kept])
+        return replace(
+            cause,
+            verdict=FOUND if len(kept) == 1 and cause.verdict == ONE_OF_CLASS else cause.verdict,
+            members=tuple(cause.members[i] for i in kept),
+            member_values=tuple(cause.member_values[i] for i in kept),
+            weights=tuple((weights / weights.sum()).tolist()),
+            captured=tuple(cause.captured[i] for i in kept),
+        )
 
 
 def _evidence_given(

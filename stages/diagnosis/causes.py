@@ -150,9 +150,11 @@ class Cause:
     @property
     def name(self) -> str:
         """The cause in a few words, with its class and its place."""
-        names = self.main.members or tuple(row["repair"] for row in self.main.rivals)
-        names = names[:MOST_MEMBERS] if self.verdict == ONE_OF_CLASS else ()
-        words = _(" or ").join(in_words(name) for name in names or (self.main.cause,))
+        names = [in_words(name) for name in self.main.members] or list(
+            dict.fromkeys(_of_rival(row) for row in self.main.rivals)
+        )
+        names = names[:MOST_MEMBERS] if self.verdict == ONE_OF_CLASS else []
+        words = _(" or ").join(names or [in_words(self.main.cause)])
         axis = self.main.axis
         place = self.manoeuvre
         words += _(" of the {axis} axis", axis=axis) if axis and self._one_axis() else ""
@@ -200,6 +202,13 @@ class Cause:
             "done": self.done,
             "action": main.row["action"],
         }
+
+
+def _of_rival(repair: Row) -> str:
+    """A repair of which others explain as much, in a few words."""
+    name = in_words(repair["repair"])
+    sensor = repair["sensor"]
+    return _("{name} of the {sensors}", name=name, sensors=SENSORS[sensor]) if sensor else name
 
 
 @dataclass(frozen=True)
@@ -252,6 +261,7 @@ class Evidence:
             if self._in_turns(cause) and sensor == "accel":
                 continue  # no mean of theirs is of a turn
             of_both = cause.sensor is None or cause.cause == MOUNTING_SHIFT
+            of_both = of_both or sensor in {rival["sensor"] for rival in cause.rivals}
             if of_both or cause.sensor == sensor or cause.causes & result.effects.keys():
                 yield result
 
