@@ -1,14 +1,16 @@
 """Where the manoeuvres are: in the demo, in one long log, and where plan and log disagree."""
 
+from dataclasses import fields
 from math import degrees
 
 import chain
 import numpy as np
 import pytest
 
+from inertial.campaign.records import Manoeuvre
 from inertial.signal.rests_and_motions import Stretch
 from stages.segment import windows
-from stages.segment.matching import rest_part
+from stages.segment.matching import Observation, match, rest_part
 
 
 def performed(results: chain.Results):
@@ -162,6 +164,43 @@ def test_one_long_log_is_aligned_with_the_plan(tmp_path):
     rests = done[done.index.str.contains("before|after")]
     assert (rests["seconds"] > 18).all()
     assert results["segment/findings"].empty
+
+
+def tumbled(degrees):
+    """What rests with these angles about y show: z up at 0, turned by 3° in the fixture."""
+    lean = np.radians(np.asarray(degrees, float) + 3.0)
+    forces = 9.8 * np.column_stack([np.sin(lean), np.zeros(len(lean)), np.cos(lean)])
+    zero = np.zeros(3)
+    return [Observation(False, 20.0, force, zero, zero, zero) for force in forces]
+
+
+def planned_tumble(degrees):
+    lean = np.radians(np.asarray(degrees, float))
+    nothing = dict.fromkeys(field.name for field in fields(Manoeuvre))
+    rest = nothing | {"do": "rest", "log": "log", "seconds": 20.0}
+    ups = np.column_stack([np.sin(lean), np.zeros(len(lean)), np.cos(lean)])
+    return [Manoeuvre(**rest | {"name": f"{k}", "up": up}) for k, up in enumerate(ups)]
+
+
+def test_a_position_of_a_tumble_that_was_not_done_shifts_no_other():
+    """In steps of 20 degrees: each rest after it was taken for the next one, within 25 degrees."""
+    steps = np.arange(0, 360, 20)
+    done = np.delete(steps, 5)
+    found = match(planned_tumble(steps), tumbled(done))
+    assert found["5"] is None
+    for k in range(len(steps)):
+        if k != 5:
+            assert done[found[f"{k}"]] == steps[k]
+
+
+def test_two_rests_of_one_position_that_are_one_rest_shift_no_other():
+    """There and back: the turning point is planned twice, and nothing moves there."""
+    there = [*range(0, 360, 20)]
+    plan, done = [*there, *there[::-1]], [*there, *there[-2::-1]]
+    found = match(planned_tumble(plan), tumbled(done))
+    (lost,) = (k for k in range(len(plan)) if found[f"{k}"] is None)
+    assert plan[lost] == 340
+    assert all(done[found[f"{k}"]] == plan[k] for k in range(len(plan)) if k != lost)
 
 
 def test_a_manoeuvre_that_was_not_done_is_a_finding_and_the_rest_are_still_aligned(tmp_path):

@@ -141,8 +141,8 @@ def _other_cause(facts: Stillness) -> str:
     """What else reads the same, and its cure."""
     if not facts.level:
         return _(
-            " Exactly 0 is also what a firmware writes below a threshold, or while it takes the IMU "
-            "to be at rest: switch that off."
+            " Exactly 0 is also what a firmware writes below a threshold, or while it "
+            "takes the IMU to be at rest: switch that off."
         )
     if facts.always:
         return _(

@@ -17,6 +17,7 @@ from inertial.signal.plan_detector import (
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 
+SAME_REST_COSINE = float(np.cos(np.radians(1)))  # of two rests with no move between
 MIN_SAME_COSINE = float(np.cos(np.radians(25)))  # directions that are the same
 
 
@@ -86,32 +87,40 @@ def _axis(direction: Array) -> str:
 
 
 def _left(recorded: Recorded, i: int) -> str:
-    """Which other manoeuvres observe the same direction."""
+    """Which other manoeuvres observe the same direction, the nearest first."""
     rest = recorded.do[i] == "rest"
     directions = recorded.up if rest else recorded.about
     own = directions[i]
     if not np.isfinite(own).all():
         return ""
     along = np.nan_to_num(directions) @ own
-    same = (along > MIN_SAME_COSINE) if rest else (np.abs(along) > MIN_SAME_COSINE)
-    others = same & recorded.found & (np.arange(len(along)) != i)
-    others &= np.isfinite(directions).all(axis=1)
-    if others.any():
-        names = [recorded.name[k] for k in np.flatnonzero(others)[:4]]
-        return _(
+    along = along if rest else np.abs(along)
+    along[~recorded.found | (np.arange(len(along)) == i)] = -1.0
+    nearest = [int(k) for k in np.argsort(-along, kind="stable") if along[k] > MIN_SAME_COSINE]
+    if nearest:
+        sentence = _(
             "The same {value} is seen in {names}.",
             value=_("direction") if rest else _("axis"),
-            names=", ".join(names),
+            names=", ".join(recorded.name[k] for k in nearest[:4]),
         )
+        beside = [k for k in (i - 1, i + 1) if k in nearest and along[k] > SAME_REST_COSINE]
+        if rest and beside and recorded.log[beside[0]] == recorded.log[i]:
+            sentence += " " + _(
+                "{name}, beside it in the plan, is one rest with it where nothing moved between.",
+                name=recorded.name[beside[0]],
+            )
+        return sentence
     axis = _axis(own)
-    if rest:
+    if not rest:
+        return _(
+            "No other turn is about {strip}: its scale factor is not determined.",
+            strip=axis.strip("+−"),
+        )
+    if float(np.abs(own).max()) > MIN_SAME_COSINE:
         return _(
             "No other rest has {axis} up, which parts its bias from its scale factor.", axis=axis
         )
-    return _(
-        "No other turn is about {strip}: its scale factor is not determined.",
-        strip=axis.strip("+−"),
-    )
+    return ""
 
 
 class ManoeuvreSwapped(PlanDetector):

@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
 
 MAX_MOUNTING_ANGLE = np.radians(25)  # how far an IMU may be mounted from the planned direction
+FAR_LESS = 0.5  # by which share a rest at that angle fits less than one in the planned direction
 MAX_AXIS_ANGLE = np.radians(45)  # and a turn about another axis than the planned one, as by hand
 MIN_RECORDED_SHARE = 0.9  # share of the planned direction in the axes that are recorded, to show it
 WRONG_SENSE_SCORE = 0.01  # score of a turn against the planned direction
@@ -69,18 +70,30 @@ def rest_scores(seconds: Array, planned: float | None, forces: Array, up: Array 
     up : (3,), the planned direction, None where unknown
     """
     scores = np.minimum(seconds / planned, 1.0) if planned else seconds / (seconds + 1.0)
-    return scores if up is None else np.where(points(forces, up), scores, 0.0)
+    if up is None:
+        return scores
+    # Of a table that is indexed in small steps several rests are near: the nearest fits best.
+    off = angles_from(forces, up) / MAX_MOUNTING_ANGLE
+    return np.where(off <= 1.0, scores * (1.0 - FAR_LESS * off**2), 0.0)
+
+
+def angles_from(forces: Array, up: Array) -> Array:
+    """By which angles specific forces, (…, 3), point away from the planned up, rad, (…,).
+
+    As far as their axes are recorded; 0 where the axis that would show it is not.
+    """
+    there = np.isfinite(forces)
+    known = np.where(there, forces, 0.0)
+    recorded = np.linalg.norm(there * up, axis=-1)
+    size = np.linalg.norm(known, axis=-1) * recorded
+    cosine = np.divide(known @ up, size, out=np.ones_like(size), where=size > 0)
+    angles = np.arccos(np.clip(cosine, -1.0, 1.0))
+    return np.asarray(np.where(recorded < MIN_RECORDED_SHARE, 0.0, angles))
 
 
 def points(forces: Array, up: Array) -> Booleans:
     """Whether specific forces, (…, 3), point up as planned, as far as their axes are recorded."""
-    there = np.isfinite(forces)
-    known = np.where(there, forces, 0.0)
-    recorded = np.linalg.norm(there * up, axis=-1)
-    along = known @ up
-    near = along >= np.cos(MAX_MOUNTING_ANGLE) * np.linalg.norm(known, axis=-1) * recorded
-    # Else the axis that would show it is not recorded.
-    return np.asarray(near | (recorded < MIN_RECORDED_SHARE))
+    return np.asarray(angles_from(forces, up) <= MAX_MOUNTING_ANGLE)
 
 
 def turn_scores(turned: Array, about: Array, planned: float | None) -> Array:
