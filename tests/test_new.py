@@ -3,8 +3,10 @@
 import chain
 import numpy as np
 import pytest
+import yaml
 
 from commands.new import PLANS, main
+from inertial.estimation.triad import linear_names
 from inertial.tables.campaign_files import logs_of
 
 
@@ -40,9 +42,30 @@ def test_every_axis_points_up_and_down_and_is_turned_about_both_ways(plan, tmp_p
 
 def test_a_rate_table_turns_each_axis_at_rates_of_both_signs(tmp_path):
     turns = planned("rate-table", tmp_path)["plan/manoeuvres"].query("do == 'turn'")
-    for _mount, rates in turns.groupby("mount")["rate"]:
+    for _position, rates in turns.groupby("position")["rate"]:
         assert len(rates) == 10 and sorted(rates) == pytest.approx(sorted(-rates))
-    assert turns["mount"].nunique() == 3
+    assert turns["position"].nunique() == 3
+
+
+def test_a_session_by_the_plan_of_a_rate_table_determines_all_parameters():
+    """With a mount for each axis no mount determined them, and nothing was simulated."""
+    document = chain.demo(seed=5, effects={}, faults=[])
+    steady = {"seconds": 60, "accel_deg_s2": 20}
+    plan = yaml.safe_load(PLANS["rate-table"].read_text())["plan"]
+    document["campaign"]["plan"] = [m | steady if m["do"] == "turn" else m for m in plan]
+    document["handling"] |= {"step": {"rate_deg_s": 30, "accel_deg_s2": 40}}
+    document["receiver"]["rate_hz"] = 20
+    tables = chain.in_memory_of(document, "gyroscope", ())
+    truth = document["truth"]
+    for stage, sensor, bias in (
+        ("accelerometer", "accelerometer", "bias_m_s2"),
+        ("gyroscope", "gyro", "bias_rad_s"),
+    ):
+        found = tables[f"{stage}/parameters"].query("method == 'joint'").set_index("parameter")
+        matrix = np.array(truth[sensor]["matrix"]) - np.eye(3)
+        told = dict(zip(linear_names(), [*matrix.ravel(), *truth[sensor][bias]], strict=True))
+        for name, value in told.items():
+            assert abs(found["value"][name] - value) < 4.5 * found["sigma"][name], name
 
 
 def test_by_hand_no_attitude_need_be_known(tmp_path):
