@@ -22,6 +22,7 @@ from inertial.estimation.between_positions import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import Name
 from inertial.estimation.gyroscope_equations import Linearisation, is_upright
+from inertial.estimation.gyroscope_observations import SteadyRate
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
@@ -29,7 +30,7 @@ from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_by_hand import Scatter
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.estimation.switch_ons import SwitchOns
-from inertial.physics.effect import Effect, Reading
+from inertial.physics.effect import Array, Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined
 from inertial.text.messages import _
@@ -71,6 +72,7 @@ class Campaign:
     static_forces: list[tuple[str, StaticForce, Motion]]  # by manoeuvre; of rotations too
     static_motions: list[Motion]
     turn_motions: list[Motion]
+    steady_rates: list[tuple[str, SteadyRate, Motion]]  # by manoeuvre, at a known rate
     solution: Solution
     gravity: Known
     position_sigma: float
@@ -95,9 +97,10 @@ class Campaign:
 
     @property
     def _gyro_names(self) -> list[str]:
-        """Of the gyros' static positions, then of their rotations."""
+        """Of the gyros' static positions, then of their rotations, then of those at a rate."""
         names = [position.manoeuvre.name for position in self.inputs.static_positions]
-        return [*names, *(recorded.plan.name for recorded in self._whole)]
+        names += [recorded.plan.name for recorded in self._whole]
+        return [*names, *(name for name, _, _ in self.steady_rates)]
 
     @property
     def _whole(self) -> list[Recorded]:
@@ -117,9 +120,10 @@ class Campaign:
 
     @cached_property
     def gyro_motions(self) -> list[Motion]:
-        """Those of the gyros: static positions, rotations, passages by hand."""
+        """Those of the gyros: static positions, rotations, those at a rate, passages by hand."""
         passages = self.by_hand.motions if self.by_hand else ()
-        return [*self.static_motions, *self.turn_motions, *passages]
+        steady = (motion for _, _, motion in self.steady_rates)
+        return [*self.static_motions, *self.turn_motions, *steady, *passages]
 
     @property
     def recorded(self) -> bool:
@@ -390,6 +394,12 @@ class Campaign:
             replace(turn, sensitivities=responses)
             for turn, responses in zip(self.inputs.turns, sensitivities[static:], strict=False)
         ]
+        steady = [
+            replace(rate, sensitivities=_mean_of(responses, rate.seconds))
+            for (_, rate, _), responses in zip(
+                self.steady_rates, sensitivities[static + len(self.turn_motions) :], strict=False
+            )
+        ]
         gyro = self.solution.gyro
         assert gyro is not None  # else it has no equations
         levels = {
@@ -404,7 +414,7 @@ class Campaign:
         )
         known = (self.inputs.earth, self.position_sigma)
         columns = _prior_sigmas(effects, 1.0)
-        return gyroscopes.linearised(point, turns, [], *known, columns).with_statics(rests)
+        return gyroscopes.linearised(point, turns, steady, *known, columns).with_statics(rests)
 
     def _accelerometer(
         self,
@@ -471,6 +481,12 @@ class Campaign:
         names = tuple(name for effect in effects for name in effect.columns)
         stacked = np.concatenate([getattr(trace, sensor) for trace in responses], axis=2)
         return [Sensitivities(names, stacked[part]) for part in of_sensor]
+
+
+def _mean_of(responses: Sensitivities, seconds: Array) -> Sensitivities:
+    """Those of the mean of some stretches."""
+    values = np.tensordot(seconds / seconds.sum(), responses.values, axes=1)
+    return Sensitivities(responses.names, values)
 
 
 def _first(responses: Sensitivities) -> Sensitivities:

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre, runs_of
-from inertial.campaign.static_positions import StaticPosition
-from inertial.estimation.gyroscope_observations import RateSegment
+from inertial.campaign.static_positions import Blocks, StaticPosition
+from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
 from inertial.tables import ACCEL
@@ -59,6 +59,16 @@ def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) 
     edges = np.concatenate([[0.0], (rate[1:] + rate[:-1]) / 2, [0.0]])
     acceleration = np.diff(edges) / turn.seconds
     blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
+    return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
+
+
+def at_rate(data: CampaignData, m: Manoeuvre, steady: SteadyRate, time: Array) -> Motion:
+    """A rotation at a known rate in k blocks; its angle counts from its first record."""
+    solution, set_position = data.result.since(m.switch_on), position_of(m, data.heading)
+    angle, rate = steady.rate * steady.elapsed, np.full(len(time), steady.rate)
+    directions = solution.upright(m), solution.north(set_position)
+    zero = np.zeros(len(time))
+    blocks = turning(m.axis, *directions, angle, rate, zero, time, steady.seconds)
     return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
 
 
@@ -224,11 +234,23 @@ class CampaignMotions:
         )
 
     def turning(self, rotation: Recorded, turn: RateSegment) -> Motion:
-        """A rotation in its blocks; its vibration is known only where the axis is vertical."""
-        name = rotation.plan.name
-        blocks = rotation.blocks
-        time = blocks.time if self._data.shared_clock else np.full(len(blocks), np.nan)
-        motion = in_blocks(self._data, rotation.plan, turn, time)
+        """A rotation from rest to rest in its blocks."""
+        motion = in_blocks(self._data, rotation.plan, turn, self._time_of(rotation.blocks))
+        return self._placed(rotation.plan.name, motion, rotation.blocks, turn)
+
+    def at_rate(self, rotation: Recorded, steady: SteadyRate) -> Motion:
+        """The part of a rotation at a known rate in its blocks."""
+        motion = at_rate(self._data, rotation.plan, steady, self._time_of(rotation.steady))
+        return self._placed(rotation.plan.name, motion, rotation.steady, steady)
+
+    def _time_of(self, blocks: Blocks) -> Array:
+        return blocks.time if self._data.shared_clock else np.full(len(blocks), np.nan)
+
+    def _placed(
+        self, name: str, motion: Motion, blocks: Blocks, turn: RateSegment | SteadyRate
+    ) -> Motion:
+        """With its place in the plan; the vibration is known only where the axis is vertical."""
+        time = motion.time
         upright = abs(float(turn.position.up @ turn.about)) > MIN_UPRIGHT_COSINE
         vibration = (
             self._data.noise.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)

@@ -52,12 +52,19 @@ def campaign_of(data: CampaignData) -> Campaign:
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
             parts = _turning(recorded.plan, recorded.blocks, motion, levels, edges)
             static_forces += [(m, replace(part, stretch=turn.stretch), at) for m, part, at in parts]
+    at_rate = [r for r in inputs.usable if r.plan.recorded == "steady" and not r.by_encoder]
+    steady = [
+        (rotation.plan.name, rate, motions.at_rate(rotation, rate))
+        for rotation, rate in zip(at_rate, inputs.set_rates, strict=True)
+        if solution.gyro is not None
+    ]
     handled = data.by_hand is not None  # there the support drifts, not only the bias
     return Campaign(
         inputs,
         static_forces,
         static_motions,
         turns,
+        steady,
         solution,
         data.gravity,
         data.position_sigma,

@@ -72,7 +72,7 @@ class Channels:
     def _traces(self) -> list[tuple[Motion, Truth, Array, Array]]:
         """Each stretch: motion, truth, and traces of gyros and accelerometers, (n, 3, k)."""
         campaign = self.campaign
-        motions = [*campaign.static_motions, *campaign.turn_motions]
+        motions = [*campaign.gyro_motions]
         motions += [motion for _, _, motion in campaign.static_forces]
         triads = [campaign.solution.gyro, campaign.solution.accelerometer]
         gyro, accel = (triad or Triad(np.eye(3), np.zeros(3)) for triad in triads)

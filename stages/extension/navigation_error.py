@@ -129,10 +129,10 @@ def _parts(campaign: Campaign) -> dict[str, dict[str, list[int]]]:
     whole = [r.plan.name for r in campaign.inputs.usable if r.plan.recorded == "whole"]
     names = [("gyro", position.manoeuvre.name) for position in campaign.inputs.static_positions]
     names += [("gyro", name) for name in whole[: len(campaign.turn_motions)]]
+    names += [("gyro", name) for name, _, _ in campaign.steady_rates]
     names += [("gyro", name) for name in (campaign.by_hand.moving if campaign.by_hand else ())]
     names += [("accel", name) for name, _, _ in campaign.static_forces]
-    motions = campaign.gyro_motions
-    motions += [motion for _, _, motion in campaign.static_forces]
+    motions = [*campaign.gyro_motions, *(motion for _, _, motion in campaign.static_forces)]
     parts: dict[str, dict[str, list[int]]] = {}
     start = 0
     for (sensor, name), motion in zip(names, motions, strict=True):
