@@ -115,7 +115,7 @@ def _grade(each: Explained) -> int:
 def as_text(recording: Recording, campaign: str) -> str:
     """What was recorded, what gets no result, the causes, and their number at the end."""
     paragraphs = [_recorded(recording, campaign)]
-    paragraphs += [_without(each) for each in recording.without]
+    paragraphs += [_without(each, recording.causes) for each in recording.without]
     paragraphs += [_cause(each) for each in recording.causes[:MAX_FULL_CAUSES]]
     if others := recording.causes[MAX_FULL_CAUSES:]:
         named = Counter(in_words(each.cause.cause) for each in others)
@@ -152,9 +152,17 @@ def _recorded(recording: Recording, campaign: str) -> str:
     return "\n".join(_wrapped(shortened(sentence, 300)) for sentence in sentences)
 
 
-def _without(each: NoResult) -> str:
-    """Whose result is missing, why, and what to do."""
-    answers = each.sentence, _("Why, and what helps: {action}", action=each.action)
+def _without(each: NoResult, causes: Sequence[Explained]) -> str:
+    """Whose result is missing, why, and what to do: set right first what spoils it, if anything."""
+    spoiling = dict.fromkeys(
+        in_words(one.cause.cause)
+        for one in causes
+        if _grade(one) == SPOILS and each.sensor and one.cause.sensor in (None, each.sensor)
+    )
+    what = _("Why, and what helps: {action}", action=each.action)
+    if spoiling:
+        what = _("Set right first what spoils it: {causes}, below.", causes=", ".join(spoiling))
+    answers = each.sentence, what
     title = _wrapped(" · ".join([_("NO RESULT"), each.subject]))
     return "\n".join([title, *(_wrapped(shortened(text, 600), INDENT) for text in answers)])
 

@@ -1,7 +1,7 @@
 """What leaves the report without a result, though nothing need be wrong with the recording."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,11 +22,12 @@ SEE_REPORT = _("the report shows the residuals: make report")
 
 @dataclass(frozen=True)
 class NoResult:
-    """What gets no result, or none to rely on, why, and the cure."""
+    """What gets no result, or none to rely on, why, and the cure; `sensor`: gyro or accel."""
 
     subject: str
     sentence: str
     action: str
+    sensor: str = ""
 
 
 def no_results(derived: Path) -> Iterator[NoResult]:
@@ -57,7 +58,7 @@ def no_results(derived: Path) -> Iterator[NoResult]:
                 continue  # of use for what changes with the temperature, and that is all it is for
             if not found and (sentence := verdicts.get(sensors[stage])) is not None:
                 found = [NoResult(subject, sentence, SEE_REPORT)]
-            yield from found
+            yield from (replace(each, sensor=sensors[stage]) for each in found)
     yield from _split_rests(plan, blocks)
 
 

@@ -118,6 +118,19 @@ def test_gyros_of_another_count_size_are_a_finding_and_stay_usable(tmp_path):
     assert np.abs(pulls(document, results)["gyro"]).max() < 4
 
 
+def test_degrees_that_are_stated_as_radians_are_told_by_what_no_hand_turns(tmp_path):
+    """They were a count size to be multiplied by 1.64, with a result that was right for it."""
+    document = sessions.session(3)
+    matrix = np.degrees(1.0) * np.array(document["truth"]["gyro"]["matrix"])
+    document["truth"]["gyro"]["matrix"] = matrix.tolist()
+    results = sessions.by_hand(document, tmp_path, "diagnosis")
+    causes = results["diagnosis/causes"].set_index("cause")
+    assert set(causes["sensor"]) == {"gyro"} and "gyro_count_size" not in causes.index
+    assert "no hand turns an IMU so fast" in causes.loc["wrong_scale_factor", "sentence"]
+    verdicts = results["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts["gyro"] == "not_usable" and verdicts["accel"] == "usable"
+
+
 def test_what_no_session_by_hand_can_show_has_one_reason(hiding):
     limits = hiding("gyro_g_sensitivity")[1]["criticism/detection_limits"]
     of_tables = limits[limits["effect"].str.startswith(("table_tilt", "table_wobble"))]

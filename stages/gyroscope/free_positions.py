@@ -17,10 +17,11 @@ from inertial.campaign.unknown_attitude import fitted_to, free_static_positions
 from inertial.estimation.between_positions import Prior, fit
 from inertial.estimation.least_squares import Estimate
 from inertial.signal.scale_factor import MAX_SCALE_ERROR
-from inertial.tables import AXES
+from inertial.tables import AXES, GYRO
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.parameters import FREE
+from inertial.text.units import DEGREE
 
 NOT_AT_REST = _("its gyros read otherwise than in all other rests: it moved, or it was shaken")
 SLIPPED = _(
@@ -34,6 +35,8 @@ CURES = {
     ),
 }
 CAUSE = "gyro_count_size"
+UNIT = "wrong_scale_factor"
+MAX_BY_HAND, FASTEST = 40.0, 0.99  # rad/s, of the block at this quantile: more no hand turns
 MIN_SIGMAS = 5.0  # by which a scale factor is further off than that of any gyro
 
 
@@ -58,7 +61,29 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     broken += [replace(parts[i], reason=reason[i]) for i in off]
     used = [part for i, part in enumerate(parts) if i not in off]
     estimates.add_fit(FREE, fitted, used, left_out + broken)
+    turning = np.nanquantile(np.abs(data.blocks[GYRO].to_numpy(np.float64)), FASTEST)
+    if turning > MAX_BY_HAND:
+        return [_unit(float(turning), data.mount)]
     return list(_count_size(fitted.estimate, data.mount))
+
+
+def _unit(turning: float, mount: str) -> Finding:
+    """Gyros that read faster than any hand turns, of which the motions by hand show no scale."""
+    return Finding(
+        id="/".join(("gyroscope", with_mount(UNIT, mount), "all")),
+        cause=UNIT,
+        mount=mount,
+        sensor="gyro",
+        size=1 / DEGREE,
+        severity=3,
+        sentence=_(
+            "The gyros read up to {rate}°/s, and no hand turns an IMU so fast: °/s that are stated "
+            "as rad/s read 57.3 times what they should.",
+            rate=significant(turning / DEGREE, 2),
+        ),
+        consequence=_("The scale factors of the gyros, and where they turned to, are unknown."),
+        action=_("State the unit of the gyros, deg/s, or their counts_per_unit."),
+    )
 
 
 def _count_size(estimate: Estimate, mount: str) -> Iterator[Finding]:
