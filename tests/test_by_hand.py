@@ -127,6 +127,7 @@ def test_degrees_that_are_stated_as_radians_are_told_by_what_no_hand_turns(tmp_p
     causes = results["diagnosis/causes"].set_index("cause")
     assert set(causes["sensor"]) == {"gyro"} and "gyro_count_size" not in causes.index
     assert "no hand turns an IMU so fast" in causes.loc["wrong_scale_factor", "sentence"]
+    assert causes.loc["wrong_scale_factor", "cure"] == "none"
     verdicts = results["diagnosis/verdict"].set_index("sensor")["verdict"]
     assert verdicts["gyro"] == "not_usable" and verdicts["accel"] == "usable"
 

@@ -285,7 +285,8 @@ class Evidence:
             return self._cure_of_effect(cause, own)
         if cause.cause == CLOCK and cause.sensor == "accel":
             return NONE, _moved_by_clock(1e-6 * abs(cause.row["size"]), own), None
-        if cause.stage == COUNTS or _rounds(cause):  # in M, or in the covariance
+        in_matrix = cause.stage == COUNTS and int(cause.row["severity"]) < SPOILS
+        if in_matrix or _rounds(cause):  # or in the covariance
             return MODELLED, None, None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
