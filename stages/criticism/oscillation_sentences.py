@@ -16,6 +16,7 @@ from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
 from stages.criticism.oscillation_hypotheses import ANGLE, IN_TIME
 from stages.criticism.oscillation_search import Oscillation
 
+MAX_ALIKE_LOG_ODDS = 0.7  # a factor of two
 MAX_LOG_ODDS = 40.0  # beyond which the number of the odds is not informative
 MIN_PERIODS_IN_TURN = 1.5  # below which a turn determines little of an eccentricity
 MAX_INTEGER_SIGMAS = 3.0  # within which an order is a whole number
@@ -47,6 +48,10 @@ AT_RATE = _("{frequency} Hz and {amplitude} °/s at {rate} °/s")
 UNDECIDED = _(
     " The data do not distinguish whether it is periodic in time or in the table's "
     "angle: the first is {odds} times as likely."
+)
+AS_LIKELY = _(
+    " The data do not distinguish whether it is periodic in time or in the table's "
+    "angle: both are about as likely."
 )
 NOT_IN_TIME = _(
     " As an oscillation in time, of one frequency in all turns, it would be less likely by a "
@@ -284,7 +289,8 @@ def _other_explanation(oscillation: Oscillation) -> str:
     if oscillation.log_odds <= MAX_LOG_ODDS:
         odds = significant(exp(oscillation.log_odds), 1)
     if len(oscillation.effects) > 1:
-        return UNDECIDED.format(odds=odds)
+        alike = abs(oscillation.log_odds) < MAX_ALIKE_LOG_ODDS
+        return AS_LIKELY if alike else UNDECIDED.format(odds=odds)
     if oscillation.effects[0] != IN_TIME:
         return NOT_IN_TIME.format(odds=odds)
     orders = significant(oscillation.hypotheses[1].value, 4)
