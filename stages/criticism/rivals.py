@@ -19,6 +19,7 @@ from stages.criticism.bias_drift import drift_name, likely_random_walk, walk_evi
 from stages.criticism.selection import SENSORS, Selection, walk_name
 
 MAX_LOG_ODDS = 3.0  # of two explanations that are as likely
+MIN_SURE_LOG_ODDS = 5.3  # of an effect against a walk, from which on that is not in its class: 200
 MAX_FURTHER_JUMPS = 6  # of a bias: two of them look like any effect of one manoeuvre
 MIN_INFORMATION = 1e-6  # share of what a jump has by itself: less is rounding
 MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
@@ -28,9 +29,10 @@ MIN_TEMPERATURE_SNR = 8.0  # beside a random walk, of functions of temperature t
 def weighed(law: Selection, walk: Selection, number: int) -> Selection:
     """The likelier of effects without and with a random walk of one sensor, or both as a class.
 
-    Where they are alike a single effect keeps its name and the random walk joins its class; of
-    several effects the random walk is the simpler, and they are what it may be instead. One that
-    stands for no effect must be clearly likelier than none.
+    A single effect that is not surely likelier keeps its name, and the random walk joins its class:
+    of walks some are nearly straight. Of several effects the random walk is the simpler where they
+    are alike, and they are what it may be instead. One that stands for no effect must be clearly
+    likelier than none.
     """
     walk = replace(walk, alternatives=law.alternatives, rivals=law.rivals)
     odds = _log_odds(law, walk, SENSORS[number])
@@ -38,7 +40,8 @@ def weighed(law: Selection, walk: Selection, number: int) -> Selection:
     only = [cause for cause in law.named.causes if cause.effect not in kept]
     if drift_name(SENSORS[number]) in {cause.effect for cause in only}:
         return walk  # a drift without a law has none that could be weighed
-    if odds > (MAX_LOG_ODDS if only else -MAX_LOG_ODDS):
+    sure = MIN_SURE_LOG_ODDS if len(only) == 1 else MAX_LOG_ODDS
+    if odds > (sure if only else -MAX_LOG_ODDS):
         return law
     if odds < -MAX_LOG_ODDS:
         return walk

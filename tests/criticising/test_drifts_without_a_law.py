@@ -3,7 +3,7 @@
 import chain
 import numpy as np
 import pytest
-from hidden_plans import rates
+from hidden_plans import rates, stops
 
 WALK = {"gyro_rate_random_walk_deg_h_sqrt_h": 0.4}
 G_SENSITIVITY = {"matrix_deg_h_g": [[1.4, 0, 0], [0, -1.0, 0], [0, 0, 1.2]]}
@@ -86,3 +86,13 @@ def test_an_asymmetry_is_no_ramp_of_an_unthinkable_size():
     (finding,) = results["criticism/findings"].to_dict("records")
     assert (finding["cause"], finding["verdict"]) == ("gyro_scale_asymmetry", "found")
     assert results["criticism/members"]["effect"].tolist() == ["gyro_scale_asymmetry"]
+
+
+def test_a_walk_that_is_nearly_straight_is_in_the_class_of_the_ramp():
+    """45 times less likely than a ramp of 14 sigma, as one in some 30 walks is."""
+    document = stops(seed=15_013_000_799)
+    document["noise"] |= {"gyro_rate_random_walk_deg_h_sqrt_h": 0.445}
+    tables = chain.in_memory_of(document, "criticism", chain.BESIDE)
+    (finding,) = tables["criticism/findings"].to_dict("records")
+    assert (finding["cause"], finding["verdict"]) == ("gyro_bias_ramp", "one_of_class")
+    assert "gyro_random_walk" in set(tables["criticism/members"]["effect"])
