@@ -307,7 +307,7 @@ class WrongTimeUnit(Detector):
     """
 
     name = "wrong_time_unit"
-    source = "a session of a stranger: its milliseconds were 359922° in a turn of 360°"
+    source = "milliseconds that were read as seconds: 359922° in a turn of 360°"
     unit = "1"
     severity = 3
 
