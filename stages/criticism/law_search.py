@@ -29,7 +29,7 @@ from inertial.physics import laws
 from inertial.physics.effect import Array, Effect
 from stages.criticism.bias_drift import WALK_WAVES, half_waves
 from stages.criticism.residual_structure import MIN_INFORMATION, PRIOR_SIGMA, Functions
-from stages.criticism.rivals import MAX_LOG_ODDS, MIN_SURE_LOG_ODDS
+from stages.criticism.rivals import MAX_LOG_ODDS
 from stages.criticism.selection import SENSORS, Selection, walk_name
 
 AXES = "xyz"
@@ -116,7 +116,7 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
         group.captured,
         p_value,
         score - max(walk, alone),
-        walk_name(SENSORS.index(sensor)) if score - walk < MIN_SURE_LOG_ODDS else "",
+        walk_name(SENSORS.index(sensor)) if score - walk < MAX_LOG_ODDS else "",
     )
 
 
