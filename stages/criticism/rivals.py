@@ -19,7 +19,7 @@ from stages.criticism.bias_drift import drift_name, likely_random_walk, walk_evi
 from stages.criticism.selection import SENSORS, Selection, walk_name
 
 MAX_LOG_ODDS = 3.0  # of two explanations that are as likely
-MIN_SURE_LOG_ODDS = 5.3  # of an effect against a walk, from which on that is not in its class: 200
+MIN_SURE_LOG_ODDS = 5.3  # of an effect against a walk that is then in no class with it: 1/0.005
 MAX_FURTHER_JUMPS = 6  # of a bias: two of them look like any effect of one manoeuvre
 MIN_INFORMATION = 1e-6  # share of what a jump has by itself: less is rounding
 MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
