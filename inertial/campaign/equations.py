@@ -1,6 +1,6 @@
 """The observation equations of a campaign with effects of the catalogue as further unknowns."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import accumulate, pairwise
@@ -187,9 +187,12 @@ class Campaign:
         """The same with constant biases."""
         return self.with_random_walks((0.0, 0.0))
 
-    def without_drift_at_rest(self) -> "Campaign":
-        """The same without the drift that the noise at rest shows; switch-ons remain."""
-        drifts = {sensor: drift.between_switch_ons for sensor, drift in self.drifts.items()}
+    def without_drift_at_rest(self, sensors: Collection[str] = SENSORS) -> "Campaign":
+        """The same without the drift that the noise at rest shows of some; switch-ons remain."""
+        drifts = {
+            sensor: drift.between_switch_ons if sensor in sensors else drift
+            for sensor, drift in self.drifts.items()
+        }
         return replace(self, drifts=drifts)
 
     @property
@@ -353,9 +356,8 @@ class Campaign:
         used = [only is None or name in only for name in self._gyro_names]
         if not any(used):
             return None
-        equations = replace(
-            self._linearised(effects), effect_sigma=prior_sigmas, measured=self.drifts["gyro"]
-        )
+        drift = self.drifts["gyro"]
+        equations = replace(self._linearised(effects), effect_sigma=prior_sigmas, measured=drift)
         return equations.only(used).drifting()
 
     def _carried(
@@ -371,11 +373,12 @@ class Campaign:
 
     def _linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
         """The equations of all static positions and rate segments, with no prior of the effects."""
-        key = tuple(effect.key for effect in effects)
+        effect_keys = tuple(effect.key for effect in effects)
+        key = (*effect_keys, tuple(self.drifts["gyro"].instability.tolist()))
         if key in self._linear:
             return self._linear[key]
         made = self._newly_linearised(effects)
-        if all(known in self._known for known in key):
+        if all(known in self._known for known in effect_keys):
             if len(self._linear) >= MAX_KEPT:
                 self._linear.clear()
             self._linear[key] = made
@@ -414,7 +417,9 @@ class Campaign:
         )
         known = (self.inputs.earth, self.position_sigma)
         columns = _prior_sigmas(effects, 1.0)
-        return gyroscopes.linearised(point, turns, steady, *known, columns).with_statics(rests)
+        drift = self.drifts["gyro"]
+        made = gyroscopes.linearised(point, turns, steady, *known, columns, drift)
+        return made.with_statics(rests)
 
     def _accelerometer(
         self,

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from inertial.campaign.motions import CampaignMotions, Merged, mean_motions, pos
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.accelerometers import StaticForce
-from inertial.estimation.random_walk import NO_DRIFT
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
 from inertial.physics.motion import Motion, mean_turned
 from inertial.tables import ACCEL
 
@@ -35,6 +35,8 @@ def campaign_of(data: CampaignData) -> Campaign:
         inputs = replace(inputs, static_positions=_in_pieces(inputs.static_positions))
         statics = _in_pieces(statics)
     motions, solution = CampaignMotions(data), data.result
+    handled = data.by_hand is not None  # there the support drifts, not only the bias
+    drifts = {sensor: NO_DRIFT if handled else data.drift(sensor) for sensor in SENSORS}
     static_motions = [motions.at_rest(position) for position in inputs.static_positions]
     turns: list[Motion] = []
     static_forces: list[tuple[str, StaticForce, Motion]] = []
@@ -51,14 +53,17 @@ def campaign_of(data: CampaignData) -> Campaign:
             levels = [data.noise.of(recorded.plan.name, at, ACCEL) for at in ("steady", "rest")]
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
             parts = _turning(recorded.plan, recorded.blocks, motion, levels, edges)
-            static_forces += [(m, replace(part, stretch=turn.stretch), at) for m, part, at in parts]
+            stretches = _stretches(turn.stretch, [at for _, _, at in parts], drifts["accel"])
+            static_forces += [
+                (m, replace(part, stretch=own), at)
+                for (m, part, at), own in zip(parts, stretches, strict=True)
+            ]
     at_rate = [r for r in inputs.usable if r.plan.recorded == "steady" and not r.by_encoder]
     steady = [
         (rotation.plan.name, rate, motions.at_rate(rotation, rate))
         for rotation, rate in zip(at_rate, inputs.set_rates, strict=True)
         if solution.gyro is not None
     ]
-    handled = data.by_hand is not None  # there the support drifts, not only the bias
     return Campaign(
         inputs,
         static_forces,
@@ -71,7 +76,7 @@ def campaign_of(data: CampaignData) -> Campaign:
         positions_of(data.plan),
         [m.name for m in data.plan],
         _by_hand(data, motions),
-        {sensor: NO_DRIFT if handled else data.drift(sensor) for sensor in SENSORS},
+        drifts,
     )
 
 
@@ -97,6 +102,21 @@ def _in_pieces(positions: Sequence[StaticPosition]) -> list[StaticPosition]:
     total = sum(float(position.seconds.sum()) for position in positions)
     seconds = max(MIN_PIECE_S, total / MAX_PIECES)
     return [piece for position in positions for piece in position.pieces(seconds)]
+
+
+def _stretches(
+    whole: Stretch | None, motions: Sequence[Motion], drift: MeasuredDrift
+) -> list[Stretch | None]:
+    """The stretch of each part of a rotation: one for all, unless the bias drifts within it."""
+    if whole is None or not drift:
+        return [whole] * len(motions)
+    seconds = [float(motion.seconds.sum()) for motion in motions]
+    return [
+        replace(whole, name=f"{whole.name} {number}", start=whole.start + before, seconds=own)
+        for number, (own, before) in enumerate(
+            zip(seconds, accumulate(seconds, initial=0.0), strict=False)
+        )
+    ]
 
 
 def _static_force(position: StaticPosition) -> StaticForce:

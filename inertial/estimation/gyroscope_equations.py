@@ -42,6 +42,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.estimation.bias_instability import wave, waves_within
 from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.gyroscope_observations import (
     Earth,
@@ -57,6 +58,7 @@ from inertial.physics.motion import all_level_axes, cross, level_axes, turned_al
 Array = NDArray[np.float64]
 
 SQRT2 = float(np.sqrt(2))
+COURSE = "course"  # of the bias of an axis about its mean, a wave of it
 UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
 MIN_UPRIGHT_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
 # What is known of an encoder before: it is read within 50 ms, and off its axis by no more than
@@ -224,6 +226,7 @@ def segment_equations(
     prior: Array,
     effects: Sequence[str],
     sigma: dict[Name, float],
+    instability: Array,
 ) -> EquationBlock | None:
     """The equations of a rate segment in few rows; None where no recorded gyro senses its axis.
 
@@ -232,6 +235,7 @@ def segment_equations(
     name : of the segment, for its own errors; `position_sigma`: rad
     prior : (s,), of the shared unknowns, of which `effects` are the last
     sigma : of the errors, to which those of the segment are added
+    instability : (3,), rad/s, by which the biases go about their mean
     """
     recorded = np.isfinite(segment.sums).all(axis=0) & np.isfinite(segment.density)
     weight = np.where(recorded, 1 / np.where(recorded, segment.density, 1.0), 0.0)
@@ -251,6 +255,7 @@ def segment_equations(
             own[("gap angle", name)] = segment.gap_sigma
     if segment.clock_sigma:
         own[(CLOCK, segment.clock)] = segment.clock_sigma
+    own |= _course(segment, name, instability * recorded)
     sigma |= own
     sums = np.where(recorded, segment.sums, 0.0)
     angle = _block_angles(segment, sums, weight, point, earth)
@@ -290,6 +295,17 @@ def segment_equations(
     known = known[np.isfinite(known).all(axis=1)]
     stacked, count = np.vstack([*rows, known]), count - 1 + len(known)
     return EquationBlock(compressed(stacked), tuple(own), count, 0.0)
+
+
+def _course(segment: RateSegment, name: str, instability: Array) -> dict[Name, float]:
+    """The waves of each bias about its mean within a segment, and their sigmas, rad/s."""
+    sigma = waves_within(float(segment.seconds.sum()), instability, segment.density)
+    return {
+        (f"{COURSE} {wave_number} {axis}", name): size
+        for wave_number, sizes in enumerate(sigma.tolist(), 1)
+        for axis, size in enumerate(sizes)
+        if size
+    }
 
 
 def _block_angles(
@@ -350,6 +366,11 @@ class _Blocks:
         for axis in tilt_axes(position, about):
             rows[:, :, column] = np.outer(angle, matrix @ cross(axis, about))
             column += 1
+        fraction = segment.elapsed / segment.elapsed[-1]
+        for number, (kind, _name) in enumerate(self.own):
+            if kind.startswith(COURSE):
+                order, axis = map(int, kind.split()[1:])
+                rows[:, axis, s + number] = seconds * wave(order, fraction[some])
         observed = self.sums[some] + rows[:, :, UNKNOWNS] * earth.up
         rows[:, :, -1] = observed - rows[:, :, :s] @ self.prior
         return rows

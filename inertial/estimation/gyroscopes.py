@@ -233,7 +233,7 @@ def linearised(
     blocks: list[tuple[str, EquationBlock, Stretch] | None] = []
     for number, segment in enumerate(segments):
         name = f"{segment.position.name} {number}"
-        block = segment_equations(segment, name, point, *common)
+        block = segment_equations(segment, name, point, *common, measured.instability)
         stretch = segment.stretch or Stretch(name)
         blocks.append(None if block is None else (segment.position.name, block, stretch))
     for number, steady in enumerate(steadies):

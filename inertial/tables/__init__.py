@@ -104,6 +104,7 @@ from inertial.tables.shared import (
 from inertial.tables.unmodelled import (
     CAUSE_POSITIONS,
     DETECTION_LIMITS,
+    DRIFTS_AT_REST,
     EFFECT_FINDINGS,
     EFFECTS,
     FIDELITY,

@@ -301,6 +301,20 @@ RANDOM_WALKS = Table(
         Column("finding", TEXT, "", "id of the finding that reports it"),
     ),
 )
+DRIFTS_AT_REST = Table(
+    "drifts_at_rest",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel, where noise/levels has a drift of its biases"),
+        Column(
+            "kept",
+            TRUTH,
+            "",
+            "whether it is in the equations; if not, effects or a random walk are likelier",
+        ),
+    ),
+)
 STRUCTURES = Table(
     "structures",
     2,

@@ -20,6 +20,7 @@ from laboratory.effects.accel_scale_ramp import AccelScaleRamp
 from laboratory.effects.accel_scale_temperature import AccelScaleTemperature
 from laboratory.effects.accel_vibration_rectification import AccelVibrationRectification
 from laboratory.effects.accel_warm_up import AccelWarmUp
+from laboratory.effects.bias_flicker import AccelFlicker, GyroFlicker
 from laboratory.effects.bias_random_walk import BiasRandomWalk
 from laboratory.effects.clock_scale import ClockScale
 from laboratory.effects.clock_step import ClockStep
@@ -36,7 +37,6 @@ from laboratory.effects.gyro_coefficient_drift import GyroCoefficientDrift
 from laboratory.effects.gyro_cubic_drift import GyroCubicDrift
 from laboratory.effects.gyro_dead_band import GyroDeadBand
 from laboratory.effects.gyro_disturbance import GyroDisturbance
-from laboratory.effects.gyro_flicker import GyroFlicker
 from laboratory.effects.gyro_g2_sensitivity import GyroG2Sensitivity
 from laboratory.effects.gyro_g_sensitivity import GyroGSensitivity
 from laboratory.effects.gyro_hysteresis import GyroHysteresis
@@ -148,6 +148,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "accel_warm_up": AccelWarmUp.specified,
     "accel_bias_temperature": AccelBiasTemperature.specified,
     "accel_bias_jump": AccelBiasJump.specified,
+    "accel_flicker": AccelFlicker.specified,
     "accel_vibration_rectification": AccelVibrationRectification.specified,
     "accel_hysteresis": AccelHysteresis.specified,
     "accel_saturation": AccelSaturation.specified,

@@ -16,6 +16,7 @@ DECLARED = Declared(
         "detection_limits": tables.DETECTION_LIMITS,
         "lines": tables.LINES,
         "random_walks": tables.RANDOM_WALKS,
+        "drifts_at_rest": tables.DRIFTS_AT_REST,
         "structures": tables.STRUCTURES,
         "structure_points": tables.STRUCTURE_POINTS,
         "structure_manoeuvres": tables.STRUCTURE_MANOEUVRES,

@@ -25,13 +25,14 @@ from stages.criticism.block_results import (
 )
 from stages.criticism.class_splitting import ExtendedCampaigns, ExtendedPlan, extended_plans
 from stages.criticism.declared import DECLARED
+from stages.criticism.drift_at_rest import select_beside_drift
 from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.law_selection import with_laws
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
 from stages.criticism.pooled_evidence import pooled_evidence_rows
-from stages.criticism.residual_structure import structure_rows, structure_tests
-from stages.criticism.selection import SENSORS
+from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
+from stages.criticism.selection import SENSORS, Selection
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_selection import select_with_temperature
 from stages.criticism.without_law import without_law
@@ -73,23 +74,31 @@ def _of_mount(
     turns = steady_turns(data, simulated)
     spectrum = find_oscillations(turns, level * SPECTRUM_SHARE, lowest_hz)
     quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
-    # A jump or a warm-up within a stretch looks like a random walk there. So effects are weighed
-    # against a random walk between stretches that is estimated beside them, see `select_effects`.
     measured = campaign_of(replace(data, blocks=quiet))
-    campaign = measured.without_drift_at_rest()
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
-    selection = select_with_temperature(
-        campaign,
-        in_blocks,
-        level * BLOCKS_SHARE,
-        level * TEMPERATURE_SHARE,
-        degrees,
-    )
-    tested = structure_tests(selection.campaign, selection.fitted, degrees, level * STRUCTURE_SHARE)
     levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
-    selection, tested = with_laws(selection, tested, campaign, in_blocks, *levels, degrees)
+
+    def selected(campaign: Campaign) -> tuple[Selection, Tested]:
+        temperature_level = level * TEMPERATURE_SHARE
+        effects = select_with_temperature(
+            campaign, in_blocks, levels[0], temperature_level, degrees
+        )
+        tested = structure_tests(effects.campaign, effects.fitted, degrees, levels[1])
+        return with_laws(effects, tested, campaign, in_blocks, *levels, degrees)
+
+    selection, tested, campaign = select_beside_drift(measured, selected, levels[0])
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
+    for sensor, drift in measured.drifts.items():
+        if drift:
+            yield (
+                "drifts_at_rest",
+                {
+                    "mount": mount,
+                    "sensor": sensor,
+                    "kept": bool(campaign.drifts[sensor]),
+                },
+            )
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
     plans = {} if data.by_hand else extended_plans(data.plan, data.performed, quiet)
     extended = {name: partial(_with, plan, data) for name, plan in plans.items()}

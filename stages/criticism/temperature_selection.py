@@ -66,7 +66,7 @@ def select_with_temperature(
     fewer = functions(plain.effects)
     if fewer and _pieces(fewer) < _pieces(models):
         rival = selected(fewer)
-        selection = max(selection, rival, key=_score)
+        selection = max(selection, rival, key=log_evidence)
     return _weighed(selection, plain)
 
 
@@ -121,7 +121,7 @@ def temperature_models(
 
 def _weighed(functions: Selection, plain: Selection) -> Selection:
     """The likelier selection; where both are as likely, one class of both."""
-    odds = _score(functions) - _score(plain)
+    odds = log_evidence(functions) - log_evidence(plain)
     if odds > MAX_LOG_ODDS:
         return functions
     if odds < -MAX_LOG_ODDS:
@@ -162,7 +162,7 @@ def _weighed(functions: Selection, plain: Selection) -> Selection:
     return replace(functions, named=replace(functions.named, causes=causes))
 
 
-def _score(selection: Selection) -> float:
+def log_evidence(selection: Selection) -> float:
     """Log evidence of the named effects beside the random walks of a selection."""
     total = selection.evidence.observable().total
     start = walk_odds.Explained(0.0, walk_odds.Equations(total.information, total.right))

@@ -12,6 +12,7 @@ DECLARED = Declared(
         "effects": From("criticism", tables.EFFECTS),
         "cause_positions": From("criticism", tables.CAUSE_POSITIONS),
         "random_walks": From("criticism", tables.RANDOM_WALKS),
+        "drifts_at_rest": From("criticism", tables.DRIFTS_AT_REST),
         **RECORDED,
         **FITTED,
         "accelerometer_fit_manoeuvres": From("accelerometer", tables.FIT_MANOEUVRES),

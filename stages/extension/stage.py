@@ -56,6 +56,7 @@ def extension(
     simulated: Stream,
     causes: tuple[Sequence[Row], Sequence[Row], Sequence[Row], Sequence[Row]],
     random_walks: pd.DataFrame,
+    drifts_at_rest: pd.DataFrame,
     joint: Mapping[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]],
     *,
     settled_accel: float,
@@ -74,6 +75,7 @@ def extension(
     """
     walk_of: dict[tuple[str, str], float] = defaultdict(float)
     walk_of |= {(row["mount"], row["sensor"]): row["value"] for row in rows_of(random_walks)}
+    replaced = drifts_at_rest[~drifts_at_rest["kept"].astype(bool)]
     rows: dict[str, list[Any]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
         extended = Extension(
@@ -85,6 +87,7 @@ def extension(
                 for method in [FREE if sensor in data.result.free else JOINT]
             },
             (walk_of[data.mount, "gyro"], walk_of[data.mount, "accel"]),
+            replaced.loc[replaced["mount"] == data.mount, "sensor"].tolist(),
             {"gyro": settled_gyro, "accel": settled_accel},
         )
         for table, row in extended.rows(simulated):
@@ -142,7 +145,8 @@ class Extension:
     """The candidates of one mount.
 
     `joint`: rows of the joint result, by sensor; `random_walks`: of the biases of gyros and
-    accelerometers given the named effects; `bands`: in which a bias counts as settled, by sensor.
+    accelerometers given the named effects; `replaced`: the sensors whose drift at rest is not in
+    the equations; `bands`: in which a bias counts as settled, by sensor.
     """
 
     def __init__(
@@ -151,10 +155,11 @@ class Extension:
         named: Named,
         joint: Mapping[str, Joint],
         random_walks: tuple[float, float],
+        replaced: Sequence[str],
         bands: Mapping[str, float],
     ) -> None:
         self.data, self.named, self.joint, self.bands = data, named, joint, bands
-        self.random_walks = random_walks
+        self.random_walks, self.replaced = random_walks, replaced
         self.scatters: dict[str, float] = {}
         self.switch_ons: dict[str, SwitchOns] = {}
 
@@ -225,9 +230,7 @@ class Extension:
 
     def _campaign(self) -> Campaign:
         """The equations, with what biases differ by between switch-ons, and positions by hand."""
-        # The random walks of criticism were estimated beside the effects, without the drift that is
-        # measured at rest: a jump or a warm-up within a stretch would be counted again in it.
-        campaign = campaign_of(self.data).without_drift_at_rest()
+        campaign = campaign_of(self.data).without_drift_at_rest(self.replaced)
         named = [c.members[0].effect for c in self.named.classes]
         known = [effect for effect in named if effect.scan is None or effect.at is not None]
         self.switch_ons = campaign.switch_ons(known)

@@ -5,6 +5,7 @@ import pytest
 from inference.walking import DEGREE_PER_HOUR, EARTH, TILT, UNIT, campaign
 from scipy.integrate import quad
 
+from inertial.estimation.bias_instability import wave, waves_within
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock
 from inertial.estimation.gyroscopes import fit, joint
@@ -134,3 +135,21 @@ def test_a_drift_of_one_axis_leaves_the_others_as_they_are():
     )
     assert noisy[0] > 2 * quiet[0]
     np.testing.assert_allclose(noisy[1:], quiet[1:], rtol=0.02)
+
+
+def test_within_a_stretch_the_bias_goes_as_flicker_noise_does():
+    """The means of the two halves differ by the Allan variance of 1/f noise, 2 ln 2/π B² (IEEE)."""
+    sigma = waves_within(40.0, np.array([2.0]), np.array([1e-3]))[:, 0]
+    middle = (np.arange(4000) + 0.5) / 4000
+    halves = [2 * float(wave(k, middle)[:2000].mean()) for k in range(1, len(sigma) + 1)]
+    variance = float(np.square(halves) @ np.square(sigma))
+    assert variance / 2 == pytest.approx(2 * np.log(2) / np.pi * 2.0**2, rel=0.05)
+
+
+def test_waves_that_are_less_than_the_white_noise_are_left_out():
+    """1 °/h and 0.0667 °/√h, 40 s: S(k/2T)/T = B²/(π k) is a tenth of N²/T at k = 8."""
+    degree = np.pi / 180
+    white = np.array([0.0667 * degree / 60, np.nan, 0.0667 * degree / 60])
+    sigma = waves_within(40.0, np.array([1, 0, 0.5]) * degree / 3600, white)
+    assert sigma.shape == (7, 3) and (sigma[:, 1] == 0).all()
+    assert not len(waves_within(40.0, np.zeros(3), white))

@@ -1,0 +1,58 @@
+"""Whether the drift that the noise at rest shows is in the equations, or effects take its place.
+
+A bias instability goes on between the stretches, and there it would be named as effects, or leave a
+structure. A jump or a warm-up within a stretch looks like such a drift at rest, and would be hidden
+by it. So the effects that are named beside the drift are weighed against those without it and with
+a random walk that is estimated between the stretches, by evidence, one sensor after the other. What
+few manoeuvres carry is no drift: that is in all of them.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from inertial.campaign.equations import Campaign
+from inertial.effects.law import Law
+from stages.criticism.residual_structure import Tested, carrying
+from stages.criticism.rivals import MAX_LOG_ODDS, members_of
+from stages.criticism.selection import SENSORS, Selection
+from stages.criticism.temperature_selection import log_evidence
+
+
+def select_beside_drift(
+    measured: Campaign, select: Callable[[Campaign], tuple[Selection, Tested]], level: float
+) -> tuple[Selection, Tested, Campaign]:
+    """The likeliest selection, its tests, and the campaign with the drifts at rest that are kept.
+
+    Parameters
+    ----------
+    measured : with the drifts of both sensors at rest
+    select : of a campaign the effects and laws, and the tests of its residuals
+    level : accepted probability of a law that is not there, which its evidence pays for
+    """
+    kept = measured
+    selection, tested = select(kept)
+    for sensor in SENSORS:
+        if not measured.drifts[sensor]:
+            continue
+        without = kept.without_drift_at_rest([sensor])
+        law, law_tested = select(without)
+        odds = _log_evidence(law, level) - _log_evidence(selection, level)
+        if odds > MAX_LOG_ODDS or carrying(law_tested, sensor):
+            selection, tested, kept = law, law_tested, without
+        elif odds > -MAX_LOG_ODDS:
+            selection = _with_alternatives(selection, law)
+    return selection, tested, kept
+
+
+def _log_evidence(selection: Selection, level: float) -> float:
+    laws = sum(isinstance(effect, Law) for effect in selection.effects)
+    return log_evidence(selection) + laws * float(np.log(level))
+
+
+def _with_alternatives(selection: Selection, law: Selection) -> Selection:
+    """The same; what is named without the drift may be instead of it."""
+    others = dict.fromkeys([*selection.alternatives, *members_of(law)])
+    named = members_of(selection)
+    return replace(selection, alternatives=tuple(o for o in others if o not in named))

@@ -1,0 +1,58 @@
+"""The drift that the noise at rest shows goes on between the rests, and is no effect there."""
+
+from typing import Any
+
+import chain
+import numpy as np
+import pytest
+
+from inertial.estimation.triad import linear_names
+
+CLEAR = ("found", "one_of_class")
+MOST = 4.0  # sigma, of the largest of nine errors
+
+
+def criticised(effects: dict[str, Any]) -> tuple[dict[str, Any], Any]:
+    document = chain.demo(seed=2711, effects=effects)
+    document["campaign"]["table"] |= {"angle_sigma_arcsec": 0.01}  # the simulated table is exact
+    return document, chain.in_memory_of(document, "criticism", chain.BESIDE)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "effects", "stage", "truth"),
+    [
+        (
+            "accel",
+            {"accel_flicker": {"instability_micro_g": 50}},
+            "accelerometer",
+            "accelerometer",
+        ),
+        ("gyro", {"gyro_flicker": {"instability_deg_h": 5}}, "gyroscope", "gyro"),
+    ],
+)
+def test_bias_instability_is_no_effect_and_no_structure(
+    sensor: str, effects: dict[str, Any], stage: str, truth: str
+) -> None:
+    """Once "not noise, they drift smoothly with time", p < 10⁻¹², and gyros 3 sigma rms off.
+
+    Of the turns, too: there it goes about its mean, as fast as the table turns.
+    """
+    document, results = criticised(effects)
+    assert results["criticism/drifts_at_rest"].values.tolist() == [["", sensor, True]]
+    assert not results["criticism/findings"]["verdict"].isin(CLEAR).any()
+    assert not results["criticism/structures"]["detected"].any()
+    table = results.parameters(stage, "joint")
+    true = (np.array(document["truth"][truth]["matrix"]) - np.eye(3)).ravel()
+    own = table.loc[list(linear_names())[:9]]
+    errors = (own["value"].to_numpy(float) - true) / own["sigma"].to_numpy(float)
+    assert np.abs(errors).max() < MOST
+
+
+def test_a_jump_within_a_rest_is_seen_there_as_a_drift_and_stays_a_jump() -> None:
+    jump = {"size_deg_h": [12, -9, 10], "at_s": 1000}
+    _, results = criticised({"gyro_bias_jump": jump})
+    assert results["criticism/drifts_at_rest"].values.tolist() == [["", "gyro", False]]
+    (found,) = results["criticism/findings"].to_dict("records")
+    assert (found["cause"], found["verdict"]) == ("gyro_bias_jump", "found")
+    (at,) = results["criticism/effects"].query("parameter == 't0'").to_dict("records")
+    assert at["value"] == pytest.approx(1000, abs=4 * at["sigma"])
