@@ -19,14 +19,8 @@ from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
 from inertial.detectors.gap import Gap
 from inertial.detectors.repeated_records import Duplicate, HeldRecord
-from inertial.detectors.stamp_faults import (
-    ClockStep,
-    RateOff,
-    TimeBackwards,
-    TimeStandsStill,
-    WrongDay,
-    WrongTimeUnit,
-)
+from inertial.detectors.stamp_faults import ClockStep, TimeBackwards, TimeStandsStill
+from inertial.detectors.stamps_misstated import RateOff, WrongDay, WrongTimeUnit
 from inertial.detectors.status_invalid import StatusInvalid
 
 OF_TIME = (
