@@ -57,7 +57,7 @@ class Imu:
 
     @property
     def rates(self) -> np.ndarray:
-        """What `between_rests` should find."""
+        """What `between_positions.fit` should find."""
         return np.append(self.gyro.ravel(), self.rate_bias)
 
     def rest(self, name: str, up: np.ndarray, seconds: float) -> FreeRest:

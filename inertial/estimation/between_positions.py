@@ -99,27 +99,14 @@ class Prior:
     earth: Earth
 
 
-def between_rests(
-    stops: Sequence[Stop],
-    passages: Sequence[Passage],
-    known: Prior,
-    scatter: Scatter = NONE,
-) -> Estimate:
-    """M by rows and bias of the gyros, in the order of `triad`, and all other unknowns.
-
-    `stops` in the order of time.
-    """
-    data = _data(stops, passages, known)
-    return solve_iterated(partial(equations, data, scatter), data.start)
-
-
 def fit(
     stops: Sequence[Stop], passages: Sequence[Passage], known: Prior, noise_degrees: float = np.inf
 ) -> tuple[ScatterFit, list[int]]:
-    """The same with the scatters of largest restricted likelihood, and what is left out.
+    """M by rows and bias of the gyros, in the order of `triad`, all other unknowns, and omissions.
 
-    The likelihood is that of the equations linear about the last result. Left out are stops, then
-    passages, by number; of a stop the gyros alone.
+    `stops` in the order of time. With the scatters of largest restricted likelihood; that is of the
+    equations linear about the last result. Left out are stops, then passages, by number; of a stop
+    the gyros alone.
     """
     stops, places, left_out = list(stops), list(range(len(passages))), list[int]()
     while True:

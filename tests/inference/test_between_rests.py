@@ -15,7 +15,7 @@ from moved_by_hand import (
 from scipy.spatial.transform import Rotation
 
 from inertial.estimation.attitude import integrate, running_product
-from inertial.estimation.between_positions import Prior, Stop, between_rests, fit
+from inertial.estimation.between_positions import Prior, Stop, fit
 from inertial.estimation.carried_attitude import Passage
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.multi_position import FREE, FreeRest
@@ -68,7 +68,7 @@ def test_24_positions_by_hand_give_the_gyros_with_honest_sigmas():
     for seed in range(30):
         imu = Imu(np.random.default_rng(seed))
         ups = imu.rng.permutation(TWENTY_FOUR)
-        estimate = between_rests(*handled(imu, ups, 60), GIVEN)
+        estimate = fit(*handled(imu, ups, 60), GIVEN)[0].estimate
         error = (estimate.values - np.append(imu.rates, estimate.values[UNKNOWNS:]))[:UNKNOWNS]
         pulls.append(error / estimate.sigma[:UNKNOWNS])
         errors.append(error)
@@ -85,7 +85,7 @@ def test_a_better_gyro_tells_the_angle_that_lengths_do_not():
     # Six faces tell nothing of how far the accelerometers are from square; turns between them do.
     imu = Imu(np.random.default_rng(2))
     ups = np.tile(FACES[[0, 2, 4, 1, 3, 5]], (3, 1))
-    estimate = between_rests(*handled(imu, ups, 60), GIVEN)
+    estimate = fit(*handled(imu, ups, 60), GIVEN)[0].estimate
     angles = slice(UNKNOWNS + 3, UNKNOWNS + 6)
     assert (estimate.sigma[angles] < 1e-4).all()
     pulls = (estimate.values[angles] - imu.free[3:6]) / estimate.sigma[angles]
@@ -95,7 +95,7 @@ def test_a_better_gyro_tells_the_angle_that_lengths_do_not():
 def test_a_motion_that_is_left_out_starts_the_unknown_azimuth_anew():
     imu = Imu(np.random.default_rng(3))
     stops, passages = handled(imu, TWENTY_FOUR, 60)
-    estimate = between_rests(stops, [p for p in passages if p.first not in (7, 15)], GIVEN)
+    estimate = fit(stops, [p for p in passages if p.first not in (7, 15)], GIVEN)[0].estimate
     assert [name for kind, name in estimate.names if kind == "level 0"] == [
         "rest-00",
         "rest-08",
@@ -109,10 +109,10 @@ def test_by_hand_the_rate_of_a_clock_is_an_error_of_all_gyros_alike():
     """σ² of each scale factor grows by σ_c²; a clock of 300 ppm that is known to 200 is found."""
     imu = Imu(np.random.default_rng(6))
     stops, passages = handled(imu, TWENTY_FOUR, 60)
-    certain = between_rests(stops, passages, GIVEN)
+    certain = fit(stops, passages, GIVEN)[0].estimate
     timed = 2e-4
     uncertain = [replace(passage, clock="log", clock_sigma=timed) for passage in passages]
-    estimate = between_rests(stops, uncertain, GIVEN)
+    estimate = fit(stops, uncertain, GIVEN)[0].estimate
     # The earth's rate at rest tells scales to 0.1 % without any time.
     np.testing.assert_allclose(estimate.values[:9], certain.values[:9], atol=0.1 * timed)
     scales = [0, 4, 8]
@@ -122,7 +122,7 @@ def test_by_hand_the_rate_of_a_clock_is_an_error_of_all_gyros_alike():
     late = [replace(p, seconds=p.seconds * (1 + 3e-4)) for p in uncertain[:12]] + uncertain[12:]
     late = [replace(p, clock=f"log {i // 12}") for i, p in enumerate(late)]
     late[12:] = [replace(p, clock_sigma=1e-9) for p in late[12:]]
-    found = between_rests(stops, late, GIVEN)
+    found = fit(stops, late, GIVEN)[0].estimate
     place = found.names.index(("clock", "log 0"))
     assert found.values[place] == pytest.approx(3e-4, abs=4 * found.sigma[place])
     assert found.sigma[place] < timed / 2
@@ -131,7 +131,7 @@ def test_by_hand_the_rate_of_a_clock_is_an_error_of_all_gyros_alike():
 def test_without_motions_only_the_biases_are_told():
     imu = Imu(np.random.default_rng(4), noise=MPU6050, bias=(0.02, 1e-2))
     stops, _ = handled(imu, TWENTY_FOUR, 60)
-    estimate = between_rests(stops, [], GIVEN)
+    estimate = fit(stops, [], GIVEN)[0].estimate
     assert np.flatnonzero(estimate.determined[:UNKNOWNS]).tolist() == [9, 10, 11]
     assert (
         np.abs((estimate.values - 0)[9:12] - imu.rate_bias).max() < 4 * estimate.sigma[9:12].max()
@@ -155,7 +155,7 @@ def test_turns_about_one_axis_tell_one_column_of_the_matrix():
             )
             rates = 100 * (way[:-1].inv() * way[1:]).as_rotvec() + way[:-1].inv().apply(earth)
             passages.append(imu.passage(i, rates))
-    estimate = between_rests(stops, passages, GIVEN)
+    estimate = fit(stops, passages, GIVEN)[0].estimate
     told = estimate.determined[:9].reshape(3, 3)
     assert told[0, 0] and not told[:, 1:].any()
 
