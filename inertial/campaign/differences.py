@@ -10,7 +10,7 @@ from inertial import tables
 from inertial.campaign.records import Row, with_mount
 from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, fixed, p_is, with_sigma
+from inertial.text.numbers import fixed, p_is, plus_minus
 from inertial.text.parameters import PARTS, SENSOR_OF
 from inertial.text.units import quantity
 
@@ -82,7 +82,7 @@ class Difference:
             return f"{subject}: {self.remark}."
         unit = quantity(self.quantity, self.unit).laboratory
         sigma = unit.of(self.sigma)
-        size = " ± ".join(with_sigma(unit.of(self.value), sigma, decimals_of(sigma)))
+        size = plus_minus(unit.of(self.value), sigma)
         far = _(
             "{size} {name}, {fixed} sigma",
             size=size,

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, with_sigma
+from inertial.text.numbers import plus_minus
 from inertial.text.parameters import sign_of
 from inertial.text.units import quantity
 
@@ -82,5 +82,5 @@ def _significant(parameters: Sequence[Estimated]) -> list[Estimated]:
 def _number(parameter: Estimated) -> str:
     unit = quantity(parameter.name, parameter.unit).laboratory
     sigma = unit.of(parameter.sigma or 0.0)
-    value = " ± ".join(with_sigma(unit.of(parameter.value or 0.0), sigma, decimals_of(sigma)))
+    value = plus_minus(unit.of(parameter.value or 0.0), sigma)
     return f"{sign_of(parameter.name)} = {value} {unit.name}"

@@ -76,6 +76,18 @@ def with_sigma(value: float | None, sigma: float | None, decimals: int | None) -
     return fixed(value, decimals), fixed(sigma, decimals)
 
 
+def with_own_sigma(
+    value: float | None, sigma: float | None, digits: int = DIGITS_OF_SIGMA
+) -> tuple[str, str]:
+    """A value and its sigma, to so many digits of that."""
+    return with_sigma(value, sigma, decimals_of(sigma, digits))
+
+
+def plus_minus(value: float | None, sigma: float | None, digits: int = DIGITS_OF_SIGMA) -> str:
+    """The same in a sentence: value ± sigma."""
+    return " ± ".join(with_own_sigma(value, sigma, digits))
+
+
 def aligned(texts: Sequence[str]) -> list[str]:
     """`texts` padded on the right so that their decimal points stand below each other."""
     found = [NUMBER.fullmatch(text) for text in texts]

@@ -225,12 +225,7 @@ def _sizes(rows: Rows) -> outline.Table:
 
 def _cells(row: Row, value: float, sigma: float | None) -> tuple[str, str, str]:
     unit = quantity_of(row).laboratory
-    return (*_both(unit.of(value), unit.of(sigma)), unit.name)
-
-
-def _both(value: float | None, sigma: float | None) -> tuple[str, str]:
-    """A value and its sigma, to two digits of that."""
-    return numbers.with_sigma(value, sigma, numbers.decimals_of(sigma))
+    return (*numbers.with_own_sigma(unit.of(value), unit.of(sigma)), unit.name)
 
 
 # ---- Populations.
@@ -275,7 +270,7 @@ def _parameters(sensor: str, rows: Sequence[Row], spreads: Sequence[Row]) -> out
         lines.append(
             outline.table_row(
                 symbol(row["parameter"]),
-                *_both(unit.of(row["mean"]), unit.of(row["mean_sigma"])),
+                *numbers.with_own_sigma(unit.of(row["mean"]), unit.of(row["mean_sigma"])),
                 numbers.significant(row["mean_degrees"], 2),
                 *cells,
                 numbers.significant(unit.of(row["prior_sigma"]), 3),
@@ -312,7 +307,7 @@ def _spread(spread: Row | None, row: Row) -> tuple[str, str]:
     if not spread["value"] or spread["sigma"] is None:
         return "0", ""
     unit = quantity_of(row).laboratory
-    return _both(unit.of(spread["value"]), unit.of(spread["sigma"]))
+    return numbers.with_own_sigma(unit.of(spread["value"]), unit.of(spread["sigma"]))
 
 
 def _outliers(rows: Sequence[Row]) -> Iterator[outline.Part]:
@@ -343,7 +338,7 @@ def _correlations(rows: Sequence[Row]) -> Iterator[outline.Part]:
     lines = [
         outline.table_row(
             *(capital(row[key].replace("_", " ")) for key in ("first", "second")),
-            *_both(row["correlation"], row["sigma"]),
+            *numbers.with_own_sigma(row["correlation"], row["sigma"]),
             numbers.probability(row["p_value"]),
         )
         for row in ordered[:count][:MOST_CORRELATIONS]

@@ -26,7 +26,7 @@ from inertial.physics.motion import Motion, stretches
 from inertial.tables import GYRO
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, fixed, with_sigma
+from inertial.text.numbers import decimals_of, fixed, with_own_sigma
 from inertial.text.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
 from stages.compensation.correction import UNKNOWN
 
@@ -62,7 +62,7 @@ class Check:
         """The row of the table; `mount` is empty where there is a single one."""
         name, unit, fine = UNITS[self.quantity]
         off, sigma = fine.of(self.after - self.expected), fine.of(self.sigma)
-        remaining, spread = with_sigma(off, sigma, decimals_of(sigma))
+        remaining, spread = with_own_sigma(off, sigma)
         before = fixed(fine.of(self.before - self.expected), decimals_of(sigma) or 0)
         far = (self.after - self.expected) / self.sigma
         verdict = (

@@ -15,7 +15,7 @@ from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.tables import AXES
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, significant, with_sigma
+from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import quantity
 from stages.extension.estimates import Solved
 
@@ -63,7 +63,7 @@ def warm_up_rows(
             continue
         variance = float(away[last, i] @ covariance @ away[last, i])
         sigma = float(np.sqrt(variance) / abs(slope))
-        words |= {"time": f"{' ± '.join(with_sigma(at, sigma, decimals_of(sigma)))} s"}
+        words |= {"time": f"{plus_minus(at, sigma)} s"}
         seconds = {"seconds": float(at), "sigma": sigma}
         yield {**own, **seconds, "sentence": SETTLED.format_map(words)}
 

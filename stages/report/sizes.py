@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi
 
 from inertial.text import units
-from inertial.text.numbers import counted, decimals_of, significant, with_sigma
+from inertial.text.numbers import counted, plus_minus, significant
 from stages.report.tables import Record
 
 COUNTS = frozenset({"samples", "records", "readings", "days", "manoeuvres", "positions"})
@@ -36,7 +36,7 @@ def size_in_words(row: Record) -> str | None:
     value, sigma = shown.of(size), shown.of(row.get("sigma"))
     number = significant(value)
     if sigma is not None:
-        number = " ± ".join(with_sigma(value, sigma, decimals_of(sigma)))
+        number = plus_minus(value, sigma)
     return number + (shown.name if shown.name in ("°", "″") else f" {shown.name}".rstrip())
 
 

@@ -217,14 +217,12 @@ def _known(tables: Tables) -> Iterator[tuple[str, str, str]]:
     gravity = known.get("gravity")
     if gravity is not None and gravity["value"] is not None:
         spread = COVERAGE_FACTOR * gravity["sigma"] if gravity["sigma"] else None
-        value, error = numbers.with_sigma(gravity["value"], spread, numbers.decimals_of(spread))
+        value, error = numbers.with_own_sigma(gravity["value"], spread)
         text = f"{value} m/s²" + (f", U = {error} m/s²" if spread else "")
         yield capital(term("gravity")), text, gravity["origin"]
     if latitude := known.get("latitude"):
         spread = DEGREES.of(COVERAGE_FACTOR * latitude["sigma"])
-        value, error = numbers.with_sigma(
-            DEGREES.of(latitude["value"]), spread, numbers.decimals_of(spread)
-        )
+        value, error = numbers.with_own_sigma(DEGREES.of(latitude["value"]), spread)
         yield capital(term("latitude")), f"{value}°, U = {error}°", latitude["origin"]
     sources = {row["source"] for row in tables.rows("uncertainty_budget")}
     for quantity, source in TABLE_ERRORS.items():
@@ -298,7 +296,7 @@ def _with_uncertainty(rows: Sequence[Record]) -> dict[str, tuple[str, str, str]]
 
 def _pair(row: Record, unit: Unit) -> tuple[str, str]:
     spread = _expanded(row, unit)
-    return numbers.with_sigma(unit.of(row["value"]), spread, numbers.decimals_of(spread))
+    return numbers.with_own_sigma(unit.of(row["value"]), spread)
 
 
 def _expanded(row: Record, unit: Unit) -> float | None:

@@ -10,7 +10,7 @@ from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, fixed, shortened, significant, whole, with_sigma
+from inertial.text.numbers import fixed, plus_minus, shortened, significant, whole
 from inertial.text.units import DEGREES_PER_SECOND, Unit
 from stages.report.results import Shift, quantity_of
 from stages.report.tables import Record, Tables, once
@@ -319,7 +319,7 @@ def _largest(rows: Sequence[Record], what: str, unit: str) -> tuple[str, str]:
     """The largest error with the joint result, and what the extended one leaves there at most."""
     entry = max(rows, key=lambda row: float(row[f"{what}_joint"]))
     value, sigma = (entry[f"{what}_joint{more}"] / PER_THOUSAND for more in ("", "_sigma"))
-    text = " ± ".join(with_sigma(value, sigma, decimals_of(sigma, 1)))
+    text = plus_minus(value, sigma, 1)
     remaining = max(row[f"{what}_extended"] for row in rows) / PER_THOUSAND
     return f"{text} {unit}", f"{significant(remaining, 2)} {unit}"
 
@@ -333,7 +333,7 @@ def largest_shift(shifts: Sequence[Shift]) -> str:
     assert most.joint is not None  # for it has moved
     unit = quantity_of(most.joint).shown
     before, after = (
-        " ± ".join(with_sigma(unit.of(row["value"]), sigma, decimals_of(sigma)))
+        plus_minus(unit.of(row["value"]), sigma)
         for row in (most.joint, most.extended)
         for sigma in [unit.of(row["sigma"])]
     )

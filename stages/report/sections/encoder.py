@@ -90,7 +90,7 @@ def _row(row: Record) -> Row:
     return table_row(
         numbers.shortened(row["manoeuvre"] or _("all"), 60),
         QUANTITIES[row["quantity"]].format(order=row["order"] or 0),
-        *numbers.with_sigma(unit.of(row["value"]), sigma, numbers.decimals_of(sigma)),
+        *numbers.with_own_sigma(unit.of(row["value"]), sigma),
         unit.name,
         numbers.probability(row["p_value"]),
     )

@@ -119,7 +119,7 @@ def _cell(row: Record | None, unit: Unit) -> str:
         return numbers.significant(value, 2)
     if sigma is None or row["value"] < row["sigma"]:
         return f"< {numbers.significant(unit.of(row['upper']), 2)}"
-    return " ± ".join(numbers.with_sigma(value, sigma, numbers.decimals_of(sigma)))
+    return numbers.plus_minus(value, sigma)
 
 
 def _forecast(rows: Sequence[Record]) -> Iterator[outline.Part]:
@@ -235,7 +235,7 @@ def _value_and_sigma(row: Record | None, unit: Unit) -> tuple[str, str]:
     if row is None:
         return "—", "—"
     value, sigma = unit.of(row["value"]), unit.of(row["sigma"])
-    return numbers.with_sigma(value, sigma, numbers.decimals_of(sigma))
+    return numbers.with_own_sigma(value, sigma)
 
 
 def _stability(rows: Sequence[Record]) -> outline.Table:

@@ -467,7 +467,7 @@ def _cells(own: dict[str, Record], quantities: Sequence[str]) -> Iterator[str]:
         else:
             size = DEGREE if "rad" in row["unit"] else 1.0
             sigma = row["sigma"] / size
-            yield from numbers.with_sigma(row["value"] / size, sigma, numbers.decimals_of(sigma))
+            yield from numbers.with_own_sigma(row["value"] / size, sigma)
 
 
 def _was_set(rows: Sequence[Record]) -> str:
