@@ -312,9 +312,6 @@ def _normal(equations: DriftingEquations) -> Array:
 
 def _forces(data: CampaignData) -> tuple[list[StaticForce], Reference]:
     """Static positions and steady turns of the accelerometers, and what is known."""
-    rests = [
-        StaticForce(p.manoeuvre.position, p.up_now, *p.over(), stretch=p.stretch)
-        for p in data.accelerometer_positions[0]
-    ]
+    rests = [position.force() for position in data.accelerometer_positions[0]]
     rests += [rest for _, rest in turning_rests(data)]
     return rests, data.reference

@@ -41,7 +41,7 @@ def campaign_of(data: CampaignData) -> Campaign:
     turns: list[Motion] = []
     static_forces: list[tuple[str, StaticForce, Motion]] = []
     for position in statics:
-        force = (position.manoeuvre.name, _static_force(position), motions.at_rest(position))
+        force = (position.manoeuvre.name, position.force(), motions.at_rest(position))
         static_forces.append(force)
     whole = [r for r in inputs.usable if r.plan.recorded == "whole"]
     for recorded, turn in zip(whole, inputs.turns, strict=True):
@@ -117,13 +117,6 @@ def _stretches(
             zip(seconds, accumulate(seconds, initial=0.0), strict=False)
         )
     ]
-
-
-def _static_force(position: StaticPosition) -> StaticForce:
-    mean, sigma = position.over()
-    return StaticForce(
-        position.manoeuvre.position, position.up_now, mean, sigma, stretch=position.stretch
-    )
 
 
 def _turning(

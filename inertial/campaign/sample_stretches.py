@@ -9,7 +9,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.masked_samples import Masks, Repairs, pieces
-from inertial.tables import CHANNELS
+from inertial.campaign.records import Manoeuvre
+from inertial.tables import CHANNELS, STATIC_PHASES
 from inertial.tables.parquet import Stream
 
 Array = NDArray[np.float64]
@@ -22,6 +23,14 @@ class Stretch:
     log: str
     first: int
     after: int
+
+
+def records_of(m: Manoeuvre, segments: pd.DataFrame, *, moving: bool = False) -> Stretch:
+    """All the records of a manoeuvre, rests before and after a turn included unless `moving`."""
+    rows = segments[(segments["manoeuvre"] == m.name) & (segments["log"] == m.log)]
+    if moving:
+        rows = rows[~rows["phase"].isin(STATIC_PHASES)]
+    return Stretch(m.log, int(rows["from_record"].min()), int(rows["to_record"].max()))
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Manoeuvre, Part, Performed
+from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import turned
@@ -138,6 +139,12 @@ class StaticPosition:
         with np.errstate(invalid="ignore", divide="ignore"):  # a channel that is not recorded
             summed, samples, duration = self._so_far[:, count - 1]
             return summed / samples, self.density * self._louder / np.sqrt(duration)
+
+    def force(self, seconds: float = np.inf) -> StaticForce:
+        """The observation of the accelerometers in the first `seconds`."""
+        mean, sigma = self.over(seconds)
+        stretch = self.during(seconds)
+        return StaticForce(self.manoeuvre.position, self.up_now, mean, sigma, stretch=stretch)
 
     def mean_of(self, values: Array) -> float:
         """The mean of a quantity over all samples, from its means in the blocks, (k,)."""

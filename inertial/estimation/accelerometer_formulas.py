@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.least_squares import pseudo_inverse
-from inertial.physics.motion import cross, level_axes
 
 CROSS_SIGMA = 0.01  # rad, of a cross term that is not determined: mounting within half a degree
 
@@ -118,7 +117,5 @@ def pooled_positions(
     readings = Readings(means, np.hypot(np.array([static.sigma for static in statics]), scatter))
     for j, static in enumerate(statics):
         readings.add_cause("gravity", "", j, matrix @ static.up * gravity_sigma)
-        for i, axis in enumerate(level_axes(static.up)):
-            change = gravity * cross(axis, static.up) * position_sigma
-            readings.add_cause(f"tilt {i}", static.position, j, matrix @ change)
+        readings.add_tilts(j, static.position, static.up, gravity, matrix, position_sigma)
     return readings.solution(weights, np.ones((3, 4), dtype=np.bool_))

@@ -1,16 +1,20 @@
 """The gyros by the formulas of the sources."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
 from inertial.estimation.gyroscope_observations import Earth, Position, WholeTurn
+from inertial.estimation.horizontal_earth_rate import SummedEarthRate
+from inertial.physics.motion import cross, level_axes
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
+Turn = TypeVar("Turn")
 
 MIN_EARTH_RATE_SIGMAS = 3.0  # of the upward earth rate, else it determines no scale factor
 
@@ -62,6 +66,22 @@ class Readings:
         if (kind, name) not in self.causes:
             self.causes[kind, name] = np.zeros_like(self.values)
         self.causes[kind, name][reading] += size
+
+    def add_earth(
+        self, reading: int, sensed: SummedEarthRate, matrix: Array, up_sigma: float
+    ) -> None:
+        """The uncertain parts of the earth's rate in a reading by sensors with this M."""
+        self.add_cause("earth", "up", reading, matrix @ sensed.up * up_sigma)
+        for (kind, name), size in sensed.level.items():
+            self.add_cause(kind, name, reading, matrix @ size)
+
+    def add_tilts(
+        self, reading: int, position: str, along: Array, size: float, matrix: Array, sigma: float
+    ) -> None:
+        """The tilt, rad, of a position in which `size` is sensed along a direction, (3,)."""
+        for i, level in enumerate(level_axes(along)):
+            change = size * cross(level, along) * sigma
+            self.add_cause(f"tilt {i}", position, reading, matrix @ change)
 
     def solution(self, weights: Array, determined: Booleans) -> Solution:
         """The parameters by the formula, with their covariance.
@@ -158,6 +178,18 @@ def _combined(
         coupled[name] = coupled.get(name, np.zeros(2)) + part
     variance += sum(float(part @ part) / 2 for part in coupled.values())
     return float(value), float(variance)
+
+
+def paired(
+    forward: Iterable[Turn], backward: Iterable[Turn], alike: Callable[[Turn, Turn], bool]
+) -> list[tuple[Turn, Turn]]:
+    """Each turn forward with the first one backward that is alike and has no other yet."""
+    left, pairs = list(backward), list[tuple[Turn, Turn]]()
+    for turn in forward:
+        place = next((i for i, other in enumerate(left) if alike(turn, other)), None)
+        if place is not None:
+            pairs.append((turn, left.pop(place)))
+    return pairs
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,6 @@ from inertial.estimation.horizontal_earth_rate import summed_earth_rate
 from inertial.estimation.least_squares import pseudo_inverse
 from inertial.estimation.regression import NestedTest, nested_test
 from inertial.estimation.triad import linear_names
-from inertial.physics.motion import cross, level_axes
 from inertial.text.messages import _
 from inertial.text.parameters import AXES, PARTS
 
@@ -124,12 +123,8 @@ def rate_table(
     readings = Readings(values, noise)
     for j, (run, earth_rate) in enumerate(zip(runs, earth_rates, strict=True)):
         readings.add_cause("rate", str(j), j, matrix @ run.about * run.rate_sigma)
-        readings.add_cause("earth", "up", j, matrix @ earth_rate.up * earth.up_sigma)
-        for (kind, name), size in earth_rate.level.items():
-            readings.add_cause(kind, name, j, matrix @ size)
-        for i, axis in enumerate(level_axes(run.about)):
-            change = run.rate * cross(axis, run.about) * position_sigma
-            readings.add_cause(f"tilt {i}", run.position.name, j, matrix @ change)
+        readings.add_earth(j, earth_rate, matrix, earth.up_sigma)
+        readings.add_tilts(j, run.position.name, run.about, run.rate, matrix, position_sigma)
     return RateTable(
         readings.solution(weights, determined),
         np.array([inverse.rank for inverse in inverses]),

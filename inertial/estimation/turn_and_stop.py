@@ -25,11 +25,11 @@ from numpy.typing import NDArray
 
 from inertial.estimation.accelerometer_formulas import pooling
 from inertial.estimation.gyroscope_equations import CLOCK
-from inertial.estimation.gyroscope_formulas import Readings, Solution
+from inertial.estimation.gyroscope_formulas import Readings, Solution, paired
 from inertial.estimation.gyroscope_observations import Earth, RateSegment, StaticRate
 from inertial.estimation.horizontal_earth_rate import SummedEarthRate, summed_earth_rate
 from inertial.estimation.least_squares import pseudo_inverse
-from inertial.physics.motion import cross, level_axes, turned
+from inertial.physics.motion import turned
 
 Array = NDArray[np.float64]
 
@@ -56,15 +56,9 @@ def pairs_of(turns: Sequence[RateSegment]) -> list[tuple[int, int]]:
     Turns with gaps are not used.
     """
     turns = [_upward(turn) for turn in turns]
-    pairs: list[tuple[int, int]] = []
     whole = [j for j, turn in enumerate(turns) if not turn.gaps]
-    backward = [j for j in whole if turns[j].angle < 0]
-    for i in whole:
-        alike = [j for j in backward if turns[i].angle > 0 and _alike(turns[i], turns[j])]
-        if alike:
-            backward.remove(alike[0])
-            pairs.append((i, alike[0]))
-    return pairs
+    forward, backward = ([j for j in whole if turns[j].angle * sign > 0] for sign in (1, -1))
+    return paired(forward, backward, lambda i, j: _alike(turns[i], turns[j]))
 
 
 def _upward(turn: RateSegment) -> RateSegment:
@@ -135,9 +129,7 @@ def turn_and_stop(
     noise += [static.sigma for static in statics]
     readings = Readings(less_earth, np.hypot(np.array(noise).reshape(-1, 3), scatters[:, None]))
     for j, rate in enumerate(earth_rates):
-        readings.add_cause("earth", "up", j, matrix @ rate.up * earth.up_sigma)
-        for (kind, name), size in rate.level.items():
-            readings.add_cause(kind, name, j, matrix @ size)
+        readings.add_earth(j, rate, matrix, earth.up_sigma)
         for gyro, axis in np.argwhere(~columns):
             change = CROSS_SIGMA * rate.known[axis] * np.eye(3)[gyro]
             readings.add_cause("unknown", f"{gyro} {axis}", j, change)
@@ -145,9 +137,7 @@ def turn_and_stop(
         readings.add_cause("angle", str(j), j, matrix @ turn.about * turn.angle_sigma)
         timed = matrix @ turn.about * turn.angle * turn.clock_sigma
         readings.add_cause(CLOCK, turn.clock, j, timed)
-        for i, level in enumerate(level_axes(turn.about)):
-            change = turn.angle * cross(level, turn.about) * position_sigma
-            readings.add_cause(f"tilt {i}", turn.position.name, j, matrix @ change)
+        readings.add_tilts(j, turn.position.name, turn.about, turn.angle, matrix, position_sigma)
 
     def solution(bias_factors: Array) -> Solution:
         """M, and the bias as a mean of readings that hold D + M E."""

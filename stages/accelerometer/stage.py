@@ -9,7 +9,7 @@ from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.records import omissions
 from inertial.campaign.rotating_positions import LEVER_ARM, turning_rests
-from inertial.campaign.static_positions import StaticPosition, averaging_times
+from inertial.campaign.static_positions import averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
 from inertial.estimation.accelerometers import Reference, StaticForce, equations, triad_of, weighted
@@ -56,7 +56,8 @@ def accelerometer(
         turns = turning_rests(data)
         effect_sigma = LEVER_ARM if turns else None
         moving = [rest for _, rest in turns]
-        rests = [*(_static_force(position) for position in positions), *moving]
+        stops = [position.force() for position in positions]
+        rests = [*stops, *moving]
         drift = data.noise.drift("accel")
         fitted = accelerometers.fit(rests, reference, data.noise.degrees, effect_sigma, drift)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
@@ -73,12 +74,11 @@ def accelerometer(
         if not weighed and fitted.p_value < MIN_CONSISTENT_P_VALUE:
             raised += _position_findings(rests, reference, result, effect_sigma, drift, data.mount)
         for seconds in averaging_times(positions, averaging_steps):
-            part = [*(_static_force(position, seconds) for position in positions), *moving]
+            part = [*(position.force(seconds) for position in positions), *moving]
             shorter = equations(
                 part, reference, fitted.scatter, result, effect_sigma, fitted.random_walk, drift
             )
             estimates.add_averaging("joint", seconds, shorter.solve_shared())
-        stops = [_static_force(position) for position in positions]
         planned = [
             pair for pair in zip(positions, stops, strict=True) if pair[0].manoeuvre.do == "rest"
         ]
@@ -101,13 +101,6 @@ def _position_findings(
     if off is not None:
         joint = weighted(rests, reference, effect_sigma=effect_sigma, measured=drift)
         yield from findings(off, joint.sigma[: triad.UNKNOWNS], mount)
-
-
-def _static_force(position: StaticPosition, seconds: float = np.inf) -> StaticForce:
-    stretch = position.during(seconds)
-    return StaticForce(
-        position.manoeuvre.position, position.up_now, *position.over(seconds), stretch=stretch
-    )
 
 
 STAGE = Stage(accelerometer, DECLARED, gathers=MOUNTS)

@@ -5,13 +5,12 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement
 from inertial.campaign.records import Manoeuvre, Performed
-from inertial.campaign.sample_stretches import Samples, Stretch
+from inertial.campaign.sample_stretches import Samples
 from inertial.physics.motion import stretches
 from inertial.tables import ACCEL, GYRO
 
@@ -53,12 +52,6 @@ def _alike(first: Manoeuvre, other: Manoeuvre) -> bool:
     if first.up is None or other.up is None or first.up @ other.up < 1 - 1e-9:
         return False
     return other.do == "rest" or abs(float(other.axis @ first.up)) > 1 - 1e-9
-
-
-def records_of(m: Manoeuvre, segments: pd.DataFrame) -> Stretch:
-    """All the records of a manoeuvre, rests before and after a turn included."""
-    rows = segments[(segments["manoeuvre"] == m.name) & (segments["log"] == m.log)]
-    return Stretch(m.log, int(rows["from_record"].min()), int(rows["to_record"].max()))
 
 
 @dataclass(frozen=True)

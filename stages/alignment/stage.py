@@ -11,7 +11,7 @@ from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.measurement import Measurement, measurements_of
 from inertial.campaign.records import Row, rows_of
-from inertial.campaign.sample_stretches import samples_in
+from inertial.campaign.sample_stretches import records_of, samples_in
 from inertial.estimation.alignment import (
     AttitudeError,
     CoarseAlignment,
@@ -27,7 +27,7 @@ from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import BIAS
 from stages.alignment.declared import DECLARED
-from stages.alignment.runs import LEVEL, Group, Run, groups, records_of, run_of, since_alignment
+from stages.alignment.runs import LEVEL, Group, Run, groups, run_of, since_alignment
 
 Array = NDArray[np.float64]
 

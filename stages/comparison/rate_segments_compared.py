@@ -9,7 +9,7 @@ from inertial.campaign.differences import Difference
 from inertial.campaign.gyroscope_methods import upright_positions
 from inertial.campaign.rate_segments import angles_about
 from inertial.estimation.consistency import outliers
-from inertial.estimation.gyroscope_formulas import both_ways, two_positions
+from inertial.estimation.gyroscope_formulas import both_ways, paired, two_positions
 from inertial.estimation.gyroscope_observations import Earth, SteadyRate, WholeTurn
 from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.estimation.rate_table import columns_of, nonlinearities, own_axis
@@ -59,12 +59,8 @@ def _pairs(turns: list[tuple[str, WholeTurn]]) -> list[Pair]:
     pairs: list[Pair] = []
     for up in (1, -1):
         same_end = [(name, turn) for name, turn in turns if turn.up * up > 0]
-        backward = [turn for turn in same_end if turn[1].angle < 0]
-        for turn in same_end:
-            alike = [b for b in backward if abs(b[1].angle + turn[1].angle) < 1e-9]
-            if turn[1].angle > 0 and alike:
-                backward.remove(alike[0])
-                pairs.append((turn, alike[0]))
+        forward, backward = ([t for t in same_end if t[1].angle * way > 0] for way in (1, -1))
+        pairs += paired(forward, backward, lambda a, b: abs(a[1].angle + b[1].angle) < 1e-9)
     return pairs
 
 

@@ -1,8 +1,9 @@
 """The gain of a candidate in words."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from stages.extension.candidates import Candidate
 from stages.extension.cross_validation import CrossValidation
@@ -34,7 +35,8 @@ def sentence_of(
     """What the model gains on held-out data, and which manoeuvres alone show its effects."""
     if validated is None:
         return WITHOUT
-    effects, expected = _listed([e.name for e in candidate.effects]), validated.expected_drop
+    effects = listed([in_words(e.name) for e in candidate.effects])
+    expected = validated.expected_drop
     if validated.drop >= 0:
         sentence = REDUCED.format(effects=effects, drop=validated.drop, expected=expected)
     else:
@@ -48,12 +50,3 @@ def sentence_of(
         if manoeuvre:
             sentence += CARRIED.format(manoeuvre=manoeuvre, effect=in_words(effect))
     return sentence
-
-
-def _listed(causes: Sequence[str]) -> str:
-    names = [in_words(cause) for cause in causes]
-    return (
-        names[0]
-        if len(names) == 1
-        else _("{names} and {names_2}", names=", ".join(names[:-1]), names_2=names[-1])
-    )

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import wraps
 from typing import Any, TypeVar
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from inertial.tables.parquet import Stream
 
@@ -77,3 +79,8 @@ def records(frame: pd.DataFrame) -> list[Record]:
         for name, column in frame.items()
     }
     return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def arrays(rows: Sequence[Record], *keys: str) -> list[NDArray[np.float64]]:
+    """Columns of rows of numbers, a gap as NaN."""
+    return [np.array([row[key] for row in rows], np.float64) for key in keys]

@@ -13,10 +13,11 @@ from inertial.signal.detector import channel_name
 from inertial.signal.rests_and_motions import Stretch
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
+from inertial.text.numbers import fixed
 from inertial.text.units import STANDARD_GRAVITY
 from stages.segment.explanations import Explained
 from stages.segment.matching import AS_NAMED, Located, motion
-from stages.segment.windows import Binned
+from stages.segment.windows import Binned, rate_about
 
 Array = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
@@ -230,7 +231,7 @@ def turn(
         return Performed(m.name, _("it turns, but its gyros are masked."), True, False)
     binned = located.binned
     first, after = motion(binned, located.stretches, place)
-    about = _about(moving, m.axis, level)
+    about = rate_about(m.axis, moving[list(CHANNELS[3:])].to_numpy(np.float64) - level)
     length = moving["seconds"].to_numpy(np.float64)
     timed = bool(np.isfinite(length).all())
     of_log = gaps[gaps["log"] == binned.window.log]
@@ -289,7 +290,7 @@ def _at_steady_rate(turned: _Turned) -> Performed:
     m, rate, missing_s = turned.m, turned.rate, turned.missing.seconds
     sentence = _("no steady rate.")
     if rate is not None:
-        sentence = _("steady at {signed} °/s.", signed=_signed(degrees(rate), 4))
+        sentence = _("steady at {signed} °/s.", signed=fixed(degrees(rate), 4))
     whole = missing_s == 0
     return Performed(
         m.name, sentence, True, whole, turned.angle, None, missing_s, rate, turned.seconds
@@ -301,8 +302,8 @@ def _from_rest_to_rest(turned: _Turned, tolerance: float) -> Performed:
     m, angle, rate, missing = turned.m, turned.angle, turned.rate, turned.missing
     if angle is None:
         return Performed(m.name, _("it turns, but has no time."), True, False, rate=rate)
-    of = f"{_signed(degrees(angle), 2)}°"
-    of += _(" of {signed}°", signed=_signed(degrees(m.angle), 0)) if m.angle else ""
+    of = f"{fixed(degrees(angle), 2)}°"
+    of += _(" of {signed}°", signed=fixed(degrees(m.angle), 0)) if m.angle else ""
     reasons = list(turned.reasons)
     known = 0.0 if missing.hindrance else missing.angle
     off = m.angle and abs((angle + known) / m.angle - 1) > tolerance
@@ -322,7 +323,7 @@ def _from_rest_to_rest(turned: _Turned, tolerance: float) -> Performed:
     why = _(", and ").join([*lost, *reasons])
     sentence = _("{of} recorded{remark}: {why}", of=of, remark=turned.remark, why=why)
     sentence += (
-        _("; {signed}° are missing.", signed=_signed(degrees(lacking), 2))
+        _("; {signed}° are missing.", signed=fixed(degrees(lacking), 2))
         if lacking is not None
         else "."
     )
@@ -360,13 +361,6 @@ def with_clipped(done: Performed, clipped: Mapping[str, Booleans]) -> Performed:
     return replace(done, sentence=sentence)
 
 
-def _about(moving: pd.DataFrame, axis: Array, level: Array) -> Array:
-    """The rates of blocks about an axis, (k,), rad/s; NaN where no gyro is recorded."""
-    rates = moving[list(CHANNELS[3:])].to_numpy(np.float64) - level
-    recorded = np.isfinite(rates).any(axis=1)
-    return np.where(recorded, np.nan_to_num(rates) @ axis, np.nan)
-
-
 def _cut_off(
     binned: Binned, first: int, after: int, about: Array, m: Manoeuvre
 ) -> tuple[list[str], str]:
@@ -388,11 +382,6 @@ def _cut_off(
         else:
             reasons.append(_("the log {what} while it turns", what=what))
     return reasons, remark
-
-
-def _signed(value: float, digits: int) -> str:
-    """A number with a minus sign, not a hyphen."""
-    return f"{value:.{digits}f}".replace("-", "−")
 
 
 def _steady_rate(moving: pd.DataFrame, about: Array) -> float | None:

@@ -21,6 +21,7 @@ from stages.segment.matching import (
     Axes,
     Division,
     Located,
+    Observation,
     divide,
     locate,
 )
@@ -442,24 +443,24 @@ def earth_seen(located: Sequence[Located], axes: Axes, earth_rate: float) -> lis
 
 def _rates(located: Located, axes: Axes) -> Iterator[tuple[Array, Array, Array]]:
     """The rests of a window: what points up, rates, and their sigmas, along the plan's axes."""
-    for m in located.plan:
-        place = located.place(m) if m.do == "rest" else located.rest_before(m)
-        if place is None or m.up is None or located.place(m) is None:
-            continue
-        observation = located.observed[place]
-        unsigned = replace(axes.gyro, signs=(1, 1, 1))
-        yield axes.accel.of(m.up), axes.gyro.of(observation.rate), unsigned.of(observation.unsure)
+    unsigned = replace(axes.gyro, signs=(1, 1, 1))
+    for up, observation in _rests(located):
+        yield axes.accel.of(up), axes.gyro.of(observation.rate), unsigned.of(observation.unsure)
 
 
 def _forces(located: Located) -> Iterator[tuple[Array, Array]]:
     """The specific forces at the rests of a window, each with the direction that was planned up."""
+    for up, observation in _rests(located):
+        if np.isfinite(observation.force).all():
+            yield observation.force, up
+
+
+def _rests(located: Located) -> Iterator[tuple[Array, Observation]]:
+    """The rests of a window, those before turns too: what was planned up, and what was seen."""
     for m in located.plan:
         place = located.place(m) if m.do == "rest" else located.rest_before(m)
-        if place is None or m.up is None or located.place(m) is None:
-            continue
-        force = located.observed[place].force
-        if np.isfinite(force).all():
-            yield force, m.up
+        if place is not None and m.up is not None and located.place(m) is not None:
+            yield m.up, located.observed[place]
 
 
 def unlike(axes: Axes, others: Axes) -> Iterator[tuple[str, Permutation]]:

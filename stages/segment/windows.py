@@ -31,6 +31,12 @@ class Window:
         return len(self.manoeuvres) == 1
 
 
+def rate_about(axis: Array, rates: Array) -> Array:
+    """The rate about an axis, (k,), of rates (k, 3); NaN where no gyro is recorded."""
+    recorded = np.isfinite(rates).any(axis=1)
+    return np.where(recorded, np.nan_to_num(rates) @ axis, np.nan)
+
+
 @dataclass(frozen=True)
 class Binned:
     """A window in k bins of equal length.
@@ -65,9 +71,7 @@ class Binned:
 
     def about(self, axis: Array, level: Array) -> Array:
         """Rate about an axis, (k,), rad/s; `level` is what the gyros read at rest."""
-        rates = self.rates - level
-        recorded = np.isfinite(rates).any(axis=1)
-        return np.where(recorded, np.nan_to_num(rates) @ axis, np.nan)
+        return rate_about(axis, self.rates - level)
 
     def duration(self, first: int, after: int) -> float:
         """From the first record of the bins [first, after) to the last, s; 0 without time."""

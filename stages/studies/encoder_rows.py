@@ -4,11 +4,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Recorded
-from inertial.campaign.sample_stretches import Samples, Stretch
+from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.encoder_angle import Ripple, against_encoder, low_pass, ripple
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.time_angle import Valued
@@ -25,13 +24,6 @@ COMMON = ("delay", "spread", "sine", "cosine")  # what is the same in all turns
 def with_rests(m: str) -> str:
     """The name of the stretch of a turn with its rests; no manoeuvre has a blank in its name."""
     return f"{m} with rests"
-
-
-def whole_stretch(rotation: Recorded, segments: pd.DataFrame) -> Stretch:
-    """All the records of a turn, rests before and after it included."""
-    m = rotation.plan
-    rows = segments[(segments["manoeuvre"] == m.name) & (segments["log"] == m.log)]
-    return Stretch(m.log, int(rows["from_record"].min()), int(rows["to_record"].max()))
 
 
 def of_turn(

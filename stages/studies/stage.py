@@ -7,7 +7,7 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
-from inertial.campaign.sample_stretches import samples_in
+from inertial.campaign.sample_stretches import records_of, samples_in
 from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -24,7 +24,6 @@ from stages.studies.table_motion import (
     motion_of,
     pairs_of,
     steady_times,
-    stretch_of,
 )
 from stages.studies.window_rows import growing, middle, pair_of, sliding
 
@@ -53,8 +52,8 @@ def studies(
     blocks = mounts[0].blocks if mounts else pd.DataFrame()
     encoded = set(blocks.loc[blocks["table_angle"].notna(), "manoeuvre"]) if len(blocks) else set()
     for r in (r for found in turns.values() for r in found):
-        wanted[r.plan.name] = stretch_of(r, segments)
-        wanted[encoder_rows.with_rests(r.plan.name)] = encoder_rows.whole_stretch(r, segments)
+        wanted[r.plan.name] = records_of(r.plan, segments, moving=True)
+        wanted[encoder_rows.with_rests(r.plan.name)] = records_of(r.plan, segments)
     read = samples_in(samples, wanted, masks, Repairs(channel_repairs))
 
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}

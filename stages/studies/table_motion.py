@@ -13,9 +13,10 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.motions import measured_angles
 from inertial.campaign.rate_segments import Recorded, position_of
 from inertial.campaign.records import Manoeuvre
-from inertial.campaign.sample_stretches import Samples, Stretch
+from inertial.campaign.sample_stretches import Samples
 from inertial.campaign.solution import joint_rows
 from inertial.estimation.encoder_angle import corrected
+from inertial.estimation.gyroscope_formulas import paired
 from inertial.estimation.periodic_in_time import strongest
 from inertial.estimation.time_angle import (
     Errors,
@@ -27,7 +28,7 @@ from inertial.estimation.time_angle import (
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross
-from inertial.tables import AXES, GYRO, STATIC_PHASES
+from inertial.tables import AXES, GYRO
 from inertial.text.messages import _
 
 Array = NDArray[np.float64]
@@ -135,17 +136,6 @@ class WholeMotion:
         if seconds is None:
             return np.asarray(ripple_angle(line.amplitude, line.frequency))
         return ripple_window(line.amplitude, line.frequency, seconds)
-
-
-def stretch_of(rotation: Recorded, segments: pd.DataFrame) -> Stretch:
-    """The records of a turn from the first motion to the last."""
-    rows = segments[
-        (segments["manoeuvre"] == rotation.plan.name) & (segments["log"] == rotation.plan.log)
-    ]
-    moving = rows[~rows["phase"].isin(STATIC_PHASES)]
-    return Stretch(
-        rotation.plan.log, int(moving["from_record"].min()), int(moving["to_record"].max())
-    )
 
 
 def steady_times(rotation: Recorded, segments: pd.DataFrame) -> tuple[float, float]:
@@ -276,21 +266,15 @@ def pairs_of(motions: Mapping[str, WholeMotion]) -> list[tuple[int, WholeMotion,
     Forward and backward are about the body axis, whose number comes first.
     """
     forward: list[tuple[int, WholeMotion]] = []
-    backward: dict[str, tuple[int, WholeMotion]] = {}
-    for name, motion in motions.items():
+    backward: list[tuple[int, WholeMotion]] = []
+    for motion in motions.values():
         i = axis_of(motion.plan)
         if i is None or motion.plan.rate is None or motion.plan.angle is None:
             continue
-        if motion.plan.angle * motion.plan.axis[i] > 0:
-            forward.append((i, motion))
-        else:
-            backward[name] = (i, motion)
-    pairs = []
-    for i, motion in forward:
-        alike = [name for name, (j, b) in backward.items() if i == j and _same(motion, b, i)]
-        if alike:
-            pairs.append((i, motion, backward.pop(alike[0])[1]))
-    return pairs
+        way = forward if motion.plan.angle * motion.plan.axis[i] > 0 else backward
+        way.append((i, motion))
+    pairs = paired(forward, backward, lambda a, b: a[0] == b[0] and _same(a[1], b[1], a[0]))
+    return [(i, motion, back) for (i, motion), (_, back) in pairs]
 
 
 def _same(first: WholeMotion, second: WholeMotion, i: int) -> bool:

@@ -12,7 +12,7 @@ from inertial.text.messages import _
 from stages.report import drawing
 from stages.report.outline import Column, Figure, Paragraph, Part, Row, Section, Table, columns
 from stages.report.outline import table_row as line_of
-from stages.report.tables import Record, Tables
+from stages.report.tables import Record, Tables, arrays
 
 MOST_FIGURES = 4
 MARGINS = drawing.Margins(left=0.5, across=0.5)
@@ -107,7 +107,7 @@ def _figure(number: int, key: tuple[str, str, str], rows: Sequence[Record]) -> F
         runs = {name: list(own) for name, own in groupby(rows, key=lambda row: row["manoeuvre"])}
         for name, own in runs.items():
             colour = drawing.AXIS_COLOUR["z" if own[0]["modulated"] else "x"]
-            seconds, sigma = (_values(own, of) for of in ("seconds", "sigma"))
+            seconds, sigma = arrays(own, "seconds", "sigma")
             for panel, level in zip(axes, (True, False), strict=True):
                 measured, predicted = (_size(own, prefix, level) for prefix in ("", "predicted_"))
                 reach = sigma / ARC_MINUTE.size
@@ -132,22 +132,16 @@ def _figure(number: int, key: tuple[str, str, str], rows: Sequence[Record]) -> F
     )
 
 
-def _values(rows: Sequence[Record], key: str) -> drawing.Array:
-    return np.array([row[key] for row in rows], dtype=np.float64)
-
-
 def _size(rows: Sequence[Record], prefix: str, level: bool) -> drawing.Array:
     """The error of the levels, or that about the vertical, arc minutes."""
     if not level:
-        return _values(rows, f"{prefix}up") / ARC_MINUTE.size
-    east, north = (_values(rows, f"{prefix}{axis}") for axis in ("east", "north"))
+        return arrays(rows, f"{prefix}up")[0] / ARC_MINUTE.size
+    east, north = arrays(rows, f"{prefix}east", f"{prefix}north")
     return np.asarray(np.hypot(east, north) / ARC_MINUTE.size)
 
 
 def _gain(row: Record) -> str:
-    factor, sigma = numbers.with_sigma(
-        row["factor"], row["factor_sigma"], numbers.decimals_of(row["factor_sigma"])
-    )
+    factor, sigma = numbers.with_own_sigma(row["factor"], row["factor_sigma"])
     still, modulated = (
         numbers.significant(ARC_MINUTE.of(row[key]), 3)
         for key in ("still_error", "modulated_error")

@@ -13,9 +13,8 @@ from inertial.text.numbers import counted, fixed, significant, whole
 from inertial.text.parameters import PARTS
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
-from stages.report.drawing import Array
 from stages.report.results import BIAS_UNIT, Estimate, by_kind, kind_of
-from stages.report.tables import Record, Tables
+from stages.report.tables import Record, Tables, arrays
 from stages.report.words import SENSOR_OF_STAGE, plain, sensor_of_stage
 
 MOST_PANELS = 24
@@ -86,7 +85,7 @@ def _figure(
 ) -> outline.Figure:
     def panel_of(panel: Axes, name: str) -> None:
         rows = sorted(curves[name], key=lambda row: float(row["seconds"]))
-        seconds, value, sigma = _arrays(rows, "seconds", "value", "sigma")
+        seconds, value, sigma = arrays(rows, "seconds", "value", "sigma")
         away, sigma = (value - value[-1]) / units[name].size, sigma / units[name].size
         panel.axhline(0, color=drawing.INK, linewidth=0.6)
         drawing.band(
@@ -125,12 +124,6 @@ def _shortens(rows: Sequence[Record]) -> bool:
     by_time = sorted(rows, key=lambda row: float(row["seconds"]))
     first, last = by_time[0]["sigma"], by_time[-1]["sigma"]
     return first is None or last is None or bool(first > MIN_FALL * last)
-
-
-def _arrays(rows: Sequence[Record], *keys: str) -> Iterator[Array]:
-    """Columns of the rows, a gap as NaN."""
-    for key in keys:
-        yield np.array([np.nan if row[key] is None else row[key] for row in rows], np.float64)
 
 
 def _colour(parameter: str) -> str:
@@ -204,7 +197,7 @@ def _epochs(group: Group, key: str, curves: Mapping[str, Sequence[Record]]) -> o
     def panel_of(panel: Axes, name: str) -> None:
         rows = curves[name]
         unit = quantity(name, rows[0]["unit"]).shown
-        seconds, *each = _arrays(rows, "seconds", "single", "running_mean", "running_mean_sigma")
+        seconds, *each = arrays(rows, "seconds", "single", "running_mean", "running_mean_sigma")
         single, running, sigma = (values / unit.size for values in each)
         final, colour = rows[-1]["running_mean"] / unit.size, _colour(name)
         panel.plot(seconds, single - final, color=drawing.QUIET, linewidth=0.35, alpha=0.6)

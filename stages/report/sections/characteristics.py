@@ -102,9 +102,7 @@ def _bandwidth_rows(rows: Sequence[Record]) -> Iterator[Row]:
             for row in own:
                 value, sigma = "", ""
                 if row["value"] is not None:
-                    value, sigma = numbers.with_sigma(
-                        row["value"], row["sigma"], numbers.decimals_of(row["sigma"])
-                    )
+                    value, sigma = numbers.with_own_sigma(row["value"], row["sigma"])
                 mount = f" ({row['mount']})" if row["mount"] else ""
                 yield table_row(
                     row["axis"] + mount,

@@ -52,8 +52,7 @@ def parts(tables: Tables) -> Iterator[Part]:
     for gravity in tables.rows("known"):
         if gravity["quantity"] != "gravity":
             continue
-        decimals = numbers.decimals_of(gravity["sigma"])
-        value, sigma = numbers.with_sigma(gravity["value"], gravity["sigma"], decimals)
+        value, sigma = numbers.with_own_sigma(gravity["value"], gravity["sigma"])
         yield Paragraph(
             _(
                 "Normal gravity of the site is {normal} m/s²; the calibration takes gravity as "

@@ -19,7 +19,7 @@ from inertial.text.numbers import significant
 from inertial.text.units import DEGREES_PER_HOUR, MICRO_G, MILLI_G, RANDOM_WALK, Unit
 from stages.report import drawing, outline
 from stages.report.drawing import Array
-from stages.report.tables import Record
+from stages.report.tables import Record, arrays
 from stages.report.words import SENSORS, capital
 
 HEIGHT = 1.95  # inches, of a panel
@@ -137,7 +137,7 @@ def _allan_panel(panel: Axes, sensor: str, rows: Sequence[Record], sheet: Sequen
     unit = _unit(sensor, [row["deviation"] for row in rows])
     for axis in AXES:
         own = _sorted(rows, f"{sensor}_{axis}", "tau")
-        tau, deviation, lower, upper, model = _arrays(
+        tau, deviation, lower, upper, model = arrays(
             own, "tau", "deviation", "lower", "upper", "model"
         )
         colour = drawing.AXIS_COLOUR[axis]
@@ -172,7 +172,7 @@ def _spectrum_panel(
     unit = RANDOM_WALK[sensor]
     for axis in AXES:
         own = _sorted(rows, f"{sensor}_{axis}", "frequency")
-        place, model = _arrays(own, "frequency", "model")
+        place, model = arrays(own, "frequency", "model")
         frequency, density, degrees = pooled(own)
         root, part = np.sqrt(density) / unit.size, np.sqrt(2 / degrees) / 2
         colour = drawing.AXIS_COLOUR[axis]
@@ -232,7 +232,7 @@ def pooled(rows: Sequence[Record]) -> tuple[Array, Array, Array]:
             last.append(row)
     points = []
     for group in groups:
-        frequency, density, degrees = _arrays(group, "frequency", "density", "degrees")
+        frequency, density, degrees = arrays(group, "frequency", "density", "degrees")
         middle = np.exp(np.average(np.log(frequency), weights=degrees))
         points.append((middle, np.average(density, weights=degrees), degrees.sum()))
     frequency, density, degrees = np.array(points, np.float64).reshape(-1, 3).T
@@ -310,8 +310,3 @@ def _oscillations(rows: Sequence[Record]) -> list[float]:
 def _sorted(rows: Sequence[Record], channel: str, key: str) -> list[Record]:
     own = [row for row in rows if row["channel"] == channel]
     return sorted(own, key=lambda row: float(row[key]))
-
-
-def _arrays(rows: Sequence[Record], *keys: str) -> list[Array]:
-    """Columns of rows, NaN for gaps."""
-    return [np.array([row[key] for row in rows], np.float64) for key in keys]

@@ -10,9 +10,8 @@ from matplotlib.axes import Axes
 
 from inertial.text import numbers
 from inertial.text.messages import _
-from inertial.text.units import DEGREE, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC, Unit
+from inertial.text.units import DEGREE, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC
 from stages.report import drawing
-from stages.report.drawing import Array
 from stages.report.outline import (
     Column,
     Equation,
@@ -30,7 +29,7 @@ from stages.report.outline import (
 )
 from stages.report.sections.averaging import epoch_parts
 from stages.report.sections.encoder import encoder_parts
-from stages.report.tables import Record, Tables
+from stages.report.tables import Record, Tables, arrays
 from stages.report.words import plain
 
 Pair = tuple[str, str, str]  # axis, turn forward, turn backward
@@ -139,10 +138,6 @@ def _by_time(rows: Sequence[Record], wholes: Wholes, by: str = "set rate") -> By
     return dict(list(by_pair.items())[:MOST_PAIRS])
 
 
-def _column(rows: Sequence[Record], key: str, unit: Unit) -> Array:
-    return np.array([row[key] for row in rows], dtype=np.float64) / unit.size
-
-
 def _sliding(slides: By, wholes: Wholes) -> Figure:
     with drawing.style():
         figure, axes = drawing.panels(len(slides), 3, 0.95, MARGINS, sharex=False)
@@ -210,7 +205,7 @@ def _panel(
 ) -> None:
     """Value ± sigma by each window, and that of the whole turn."""
     axis, unit = whole_turn["axis"], UNIT[key]
-    value, sigma = _column(rows, key, unit), _column(rows, SIGMA[key], unit)
+    value, sigma = (column / unit.size for column in arrays(rows, key, SIGMA[key]))
     colour = drawing.AXIS_COLOUR.get(axis, drawing.INK)
     drawing.band(panel, place, value - sigma, value + sigma, colour, alpha=0.2, linewidth=0)
     panel.plot(place, value, color=colour, linewidth=0.8)
@@ -226,7 +221,7 @@ def _panel(
 
 def _on_place(rows: Sequence[Record], whole_turn: Record) -> str:
     """How far the result varies with the start of the window."""
-    value = _column(rows, "scale", PPM)
+    value = arrays(rows, "scale")[0] / PPM.size
     mean = float(value.mean())
     least, most, rms, allowed, off, sigma = (
         numbers.fixed(size, 1)
@@ -391,9 +386,8 @@ def _time_and_angle(tables: Tables) -> Iterator[Part]:
 
 
 def _angle(panel: Axes, name: str, rows: Sequence[Record]) -> None:
-    time, angle, set_angle, sigma, swing = (
-        np.array([np.nan if row[key] is None else row[key] for row in rows], dtype=np.float64)
-        for key in ("seconds", "angle", "set_angle", "sigma", "swing")
+    time, angle, set_angle, sigma, swing = arrays(
+        rows, "seconds", "angle", "set_angle", "sigma", "swing"
     )
     off, sigma, swing = (
         values / SECONDS_OF_ARC.size for values in (angle - set_angle, sigma, swing)
