@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from commands.campaign_folder import free_folder
+from commands.new_campaign import free_folder
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.numbers import visible

@@ -9,8 +9,7 @@ import pytest
 
 from inertial.campaign.measurement import measurement_of
 from inertial.effects import CATALOGUE
-from inertial.physics.forward import Triad
-from inertial.physics.inverse import force_of, rate_of
+from inertial.physics.forward import Triad, force_of, rate_of
 from inertial.physics.motion import Motion, stretches
 from inertial.tables import CHANNELS, parquet
 from inertial.tables.errors import Refusal

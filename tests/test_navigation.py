@@ -17,8 +17,7 @@ from inertial.physics.strapdown import Start, aligned, navigated
 from inertial.text.parameters import PARTS
 from stages.navigation.corridor import uncertain
 from stages.navigation.navigator import Navigator
-from stages.navigation.not_determined import why_not
-from stages.navigation.stage import published_triads
+from stages.navigation.stage import published_triads, why_not
 from stages.navigation.windows import readings, windows
 
 G = 9.80665

@@ -19,7 +19,6 @@ from pathlib import Path
 import numpy as np
 from ruamel.yaml import YAML
 
-from commands.campaign_folder import free_folder
 from commands.design import for_campaign, printed
 from commands.design.campaign_text import new_campaign, with_more
 from commands.design.for_campaign import Splitting, campaign_tables, classes_of
@@ -27,6 +26,7 @@ from commands.design.from_nothing import Designed, best, foreseen_of
 from commands.design.turntable import FULL_SCALE_SHARE, Instrument, Turntable, instrument, turntable
 from commands.design.visits import Item, possible, published
 from commands.design.wanted import reach, wanted_sigmas
+from commands.new_campaign import free_folder
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.foreseen import session_seconds

@@ -1,6 +1,5 @@
 """The campaign file of a design: a new one, or a recorded one with what is to be added."""
 
-import textwrap
 from collections.abc import Sequence
 from io import StringIO
 from pathlib import Path
@@ -10,10 +9,9 @@ from ruamel.yaml import YAML
 
 from commands.design.turntable import Instrument, Turntable
 from commands.design.visits import Item
-from commands.flow_yaml import flow
+from commands.new_campaign import LINE_WIDTH, comment, flow
 from inertial.text.messages import _
 
-LINE_WIDTH = 100
 TABLE_KEYS = ("name", "heading_deg", "position_sigma_arcsec", "angle_sigma_arcsec")
 
 
@@ -34,7 +32,7 @@ def new_campaign(
     )
     receiver = instrument.entry.get("format", {}).get("kind") == "rawimus"
     lines = [
-        *_comment(head),
+        *comment(head),
         "campaign: 1",
         f"instrument: {instrument.name}",
         "serial: unknown",
@@ -73,9 +71,3 @@ def with_more(text: str, items: Sequence[Item], mount: str, minutes: float) -> t
     stream = StringIO()
     yaml.dump(content, stream)
     return stream.getvalue(), log
-
-
-def _comment(text: str) -> list[str]:
-    return textwrap.wrap(
-        text, LINE_WIDTH, initial_indent="# ", subsequent_indent="# ", break_on_hyphens=False
-    )

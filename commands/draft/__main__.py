@@ -13,11 +13,11 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from commands.campaign_folder import free_folder
 from commands.draft.campaign_file import campaign_file
 from commands.draft.manoeuvres import plan_of
 from commands.draft.raw_log import raw_log
 from commands.draft.sensors import kinds_of
+from commands.new_campaign import free_folder
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.numbers import visible

@@ -1,7 +1,6 @@
 """The campaign file as text: what the logs show, each guess marked, questions at the top."""
 
 import re
-import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -12,7 +11,7 @@ from commands.draft.columns import Triad
 from commands.draft.manoeuvres import Manoeuvre, missing
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
-from commands.flow_yaml import flow, in_flow, scalar
+from commands.new_campaign import comment, flow, in_flow, scalar
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole
 
@@ -21,7 +20,6 @@ HAND_TURN, FEW_TURNS = 10.0, 3  # °, sigma of an angle by hand; turns that show
 BEST_HAND_TURN = 5.0  # degrees, sigma of an angle by hand that the gyros confirm
 TABLE_RATE = 1000  # ppm, of a table of which nothing is known
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
-LINE_WIDTH = 100
 LARGEST_COUNT = 32767
 
 
@@ -91,7 +89,7 @@ def _where(m: Manoeuvre, kinds: Sequence[Kind]) -> dict[str, Any]:
 def _head(
     kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str, by_hand: bool
 ) -> Iterator[str]:
-    yield from _comment(
+    yield from comment(
         _(
             "{name}, drafted from its logs. What is marked `guessed:` is a guess with a sigma that "
             "fits one; whoever knows better writes it here. Then: make check CAMPAIGN={name}, "
@@ -100,23 +98,23 @@ def _head(
         )
     )
     yield "#"
-    yield from _comment(_("Questions that only a person can answer:"))
+    yield from comment(_("Questions that only a person can answer:"))
     for number, question in enumerate(_questions(kinds, plan, by_hand), 1):
-        yield from _comment(question, f"#   {number}. ")
+        yield from comment(question, f"#   {number}. ")
     yield "#"
-    yield from _comment(_("What the logs are:"))
+    yield from comment(_("What the logs are:"))
     for kind in kinds:
         for text in _evidence(kind):
-            yield from _comment(text, "#   - ")
+            yield from comment(text, "#   - ")
     yield "#"
     lacking = list(missing(plan))
-    yield from _comment(
+    yield from comment(
         _("What is missing for a calibration of both sensors:")
         if lacking
         else _("Nothing is missing for a calibration of both sensors.")
     )
     for text in lacking:
-        yield from _comment(text, "#   - ")
+        yield from comment(text, "#   - ")
 
 
 def _questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
@@ -181,13 +179,6 @@ def _evidence(kind: Kind) -> Iterator[str]:
 def _logs(kind: Kind) -> str:
     names = list(dict.fromkeys(log.path.name for part in kind.parts for log in part.logs))
     return ", ".join(names[:4]) + (_(" and {more} more", more=len(names) - 4) if names[4:] else "")
-
-
-def _comment(text: str, first: str = "# ") -> list[str]:
-    indent = "#" + " " * (len(first) - 1)
-    return textwrap.wrap(
-        text, LINE_WIDTH, initial_indent=first, subsequent_indent=indent, break_on_hyphens=False
-    )
 
 
 # ---- instrument and formats

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.formats.columns import column_reader, vectornav_lines
-from inertial.formats.columns.labelled_fields import names_in, without_names
-from inertial.formats.columns.text_lines import BYTE_ORDER_MARK
+from inertial.formats.columns.text_lines import BYTE_ORDER_MARK, names_in, without_names
 from inertial.formats.file_type import FileType, file_type_of
 from inertial.formats.gps_time import NANOSECONDS
 from inertial.formats.novatel import novatel_reader

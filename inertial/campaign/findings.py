@@ -10,10 +10,13 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from inertial import tables
 from inertial.campaign.detection import Events
+from inertial.campaign.masked_samples import RecordIndex, rows_between
 from inertial.signal.detector import CHANNELS, UNITS, Detector, Event, Log
 from inertial.signal.plan_detector import PlanDetector
 from inertial.tables import FINDINGS, MASKS
+from inertial.tables.parquet import Stream
 
 MAX_SINGLE_EVENTS = 8  # of a kind in one place; more of them are one finding with a count
 
@@ -179,3 +182,32 @@ def _of_many(finding: Finding, detector: Detector, group: Sequence[Named]) -> Fi
         consequence=description.consequence,
         action=description.action,
     )
+
+
+# ---- The samples around each finding, for a figure that shows it close up
+
+MAX_FINDINGS = 40  # that are shown
+MARGIN = 60  # records on each side
+MAX_RECORDS = 400  # of a close-up; of a longer stretch its beginning is shown
+COLUMNS = ["record", "line", "time", *tables.CHANNELS]
+
+
+def close_ups(samples: Stream, index: RecordIndex, detections: Sequence[Detection]) -> pd.DataFrame:
+    """The records around the place of each finding, the most severe findings first.
+
+    Parameters
+    ----------
+    index : the rows of the records, from a pass over the samples
+    """
+    placed = [each for each in detections if each.events]
+    frames = []
+    for detection in sorted(placed, key=lambda each: -each.finding.severity)[:MAX_FINDINGS]:
+        log, event = max(detection.events, key=lambda pair: abs(pair[1].size))
+        first = event.first - MARGIN
+        after = min(event.after + MARGIN, first + MAX_RECORDS)
+        for batch in rows_between(samples, *index.rows(log, first, after), COLUMNS):
+            shown = pd.DataFrame(batch.columns)
+            shown = shown[(shown["record"] >= first) & (shown["record"] < after)]
+            inside = (shown["record"] >= event.first) & (shown["record"] < event.after)
+            frames.append(shown.assign(finding=detection.finding.id, log=log, concerned=inside))
+    return pd.concat(frames) if frames else tables.CLOSE_UPS.empty()

@@ -15,8 +15,7 @@ from inertial.campaign.records import Row, rows_of
 from inertial.effects import KNOWN
 from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Effect
-from inertial.physics.forward import Triad
-from inertial.physics.inverse import Sized, force_of, rate_of
+from inertial.physics.forward import Sized, Triad, force_of, rate_of
 from inertial.physics.motion import Motion
 from inertial.text.parameters import BIAS
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Clock, Part
 from inertial.campaign.unknown_attitude import FreeStaticPosition
-from inertial.estimation.carried_attitude import Passage
+from inertial.estimation.attitude import Passage
 from inertial.tables import GYRO
 from inertial.text.messages import _
 

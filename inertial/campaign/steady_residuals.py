@@ -11,10 +11,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.estimation.noise_shape import noise_shape
 from inertial.estimation.periodic_in_angle import Course
 from inertial.estimation.periodic_in_time import Line
-from inertial.estimation.spectrum import WHITE, NoiseShape, band_levels, white_level
+from inertial.estimation.spectrum import WHITE, NoiseShape, band_levels, noise_shape, white_level
 from inertial.tables import AXES, GYRO
 from inertial.tables.parquet import Stream
 

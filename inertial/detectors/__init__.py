@@ -33,8 +33,7 @@ from inertial.detectors.stamp_faults import ArrivalStamps, ClockStep, TimeBackwa
 from inertial.detectors.stamps_misstated import RateOff, WrongDay, WrongTimeUnit
 from inertial.detectors.status_invalid import StatusInvalid
 from inertial.detectors.table_moving import TableMoving
-from inertial.detectors.temperature_drift import TemperatureDrift
-from inertial.detectors.temperature_misstated import TemperatureMisstated
+from inertial.detectors.temperatures import TemperatureDrift, TemperatureMisstated
 from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate
 from inertial.detectors.wrong_imu_type import WrongImuType
 from inertial.detectors.wrong_scale_factor import (

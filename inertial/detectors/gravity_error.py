@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.physics.gravity_anomalies import ANOMALY_SIGMA
+from inertial.physics.site import ANOMALY_SIGMA
 from inertial.signal.detector import Description, Detector, Event, Given
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant

@@ -27,8 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation import multi_position as forces
-from inertial.estimation.attitude import integrate
-from inertial.estimation.carried_attitude import IntegratedMotion, Passage, integrated_motion
+from inertial.estimation.attitude import IntegratedMotion, Passage, integrate, integrated_motion
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock, whitened
 from inertial.estimation.gyroscope_observations import Earth

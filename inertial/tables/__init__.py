@@ -1,6 +1,5 @@
 """The tables that pass between stages, each column with its unit, frame and meaning."""
 
-from inertial.tables.aligned import ALIGNMENTS, ATTITUDE_ERRORS, MODULATION_GAINS
 from inertial.tables.calibrated import (
     ARCHIVED,
     CALIBRATION,
@@ -57,6 +56,9 @@ from inertial.tables.estimated import (
 )
 from inertial.tables.historical import FORECAST, JUMPS, REPEATABILITY
 from inertial.tables.navigated import (
+    ALIGNMENTS,
+    ATTITUDE_ERRORS,
+    MODULATION_GAINS,
     NAVIGATION_COURSES,
     NAVIGATION_ERRORS,
     NAVIGATION_SHARES,

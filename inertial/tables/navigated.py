@@ -1,7 +1,7 @@
-"""Free inertial navigation with the readings before and after calibration."""
+"""Free inertial navigation with the readings before and after calibration; alignment at rest."""
 
 from inertial.tables.shared import MOUNT
-from inertial.tables.table import DOUBLE, SENTENCE, TEXT, Column, Table
+from inertial.tables.table import DOUBLE, SENTENCE, TEXT, TRUTH, Column, Table
 
 MOTION = Column("motion", TEXT, "", "rest, or turn: a whole one, from rest to rest")
 SECONDS = Column("seconds", DOUBLE, "s", "of free inertial navigation, from the end of alignment")
@@ -104,5 +104,94 @@ NAVIGATION_SHARES = Table(
             "of the predicted variance, mean over the manoeuvres; what two parameters share counts"
             " by half for each, so one may be negative, and all add up to 1",
         ),
+    ),
+)
+
+
+# ---- Alignment at rest, and the error of the attitude with and without rotation
+
+_READINGS = Column("readings", TEXT, "", "recorded; or compensated, by the result that counts")
+_ALIGNMENT = Column("alignment", TEXT, "", "manoeuvre by which the IMU was aligned")
+_LEVEL = "east, north, up"
+
+ALIGNMENTS = Table(
+    "alignments",
+    1,
+    (
+        MOUNT,
+        _ALIGNMENT,
+        _READINGS,
+        Column(
+            "method", TEXT, "", "static: by means at rest; rotation: by the turn that follows it"
+        ),
+        Column(
+            "quantity",
+            TEXT,
+            "",
+            "tilt_x, tilt_y, tilt_z: rotation about a body axis from the planned up to the one"
+            " found, static of the case, by rotation of the axis of the turn; azimuth of"
+            " `direction`; level_rate: horizontal part of the earth's rate",
+        ),
+        Column("direction", TEXT, "", "body direction of an azimuth: mark, x, y, z", nullable=True),
+        Column("value", DOUBLE, "as unit", "its value"),
+        Column("sigma", DOUBLE, "as unit", "by noise, and by the calibration where compensated"),
+        Column(
+            "per_bias",
+            DOUBLE,
+            "s",
+            "of an azimuth: by how much a bias of the gyros to the east, 1 rad/s, turns it; 0 where"
+            " the rotation separates the two",
+            nullable=True,
+        ),
+        Column("known", DOUBLE, "as unit", "what the campaign states, if known", nullable=True),
+        Column("unit", TEXT, "", "rad or rad/s"),
+    ),
+)
+ATTITUDE_ERRORS = Table(
+    "attitude_errors",
+    1,
+    (
+        MOUNT,
+        _ALIGNMENT,
+        Column("manoeuvre", TEXT, "", "over which the rate that remains is integrated"),
+        Column("modulated", TRUTH, "", "the table turns the IMU about the vertical"),
+        _READINGS,
+        Column("seconds", DOUBLE, "s", "since its start"),
+        Column("east", DOUBLE, "rad", "error of the attitude about east", _LEVEL),
+        Column("north", DOUBLE, "rad", "about north", _LEVEL),
+        Column("up", DOUBLE, "rad", "about up", _LEVEL),
+        Column("sigma", DOUBLE, "rad", "of each of them by white noise"),
+        Column(
+            "predicted_east",
+            DOUBLE,
+            "rad",
+            "at rest by the rate that remains in the alignment; under rotation by what is fixed in"
+            " the case, carried round by the table",
+            _LEVEL,
+        ),
+        Column("predicted_north", DOUBLE, "rad", "likewise", _LEVEL),
+        Column("predicted_up", DOUBLE, "rad", "likewise", _LEVEL),
+        Column(
+            "predicted_sigma", DOUBLE, "rad", "of the level ones, by the noise of what is fixed"
+        ),
+    ),
+)
+MODULATION_GAINS = Table(
+    "modulation_gains",
+    1,
+    (
+        MOUNT,
+        _ALIGNMENT,
+        _READINGS,
+        Column("modulated", TEXT, "", "manoeuvre with rotation"),
+        Column("still", TEXT, "", "manoeuvre without"),
+        Column("seconds", DOUBLE, "s", "time from the start of either that is compared"),
+        Column("still_error", DOUBLE, "rad", "largest error of the levels without rotation"),
+        Column("still_sigma", DOUBLE, "rad", "its sigma by white noise"),
+        Column("modulated_error", DOUBLE, "rad", "with rotation"),
+        Column("modulated_sigma", DOUBLE, "rad", "its sigma by white noise"),
+        Column("factor", DOUBLE, "1", "error without rotation over error with it"),
+        Column("factor_sigma", DOUBLE, "1", "its sigma"),
+        Column("predicted_factor", DOUBLE, "1", "likewise, by what is fixed in the case"),
     ),
 )

@@ -1,20 +1,85 @@
-"""A log of columns."""
+"""A log of columns, with its times where the stamps are those of arrival."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from inertial.formats.account import Integers
 from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
-from inertial.signal.signed_counts import signed
+from inertial.formats.columns.data_rows import Rows
+from inertial.signal.regular_clock import RegularClock, are_regular, regular_clock
+from inertial.signal.signed_counts import bits_without_sign, signed
 from inertial.tables import AXES
-from inertial.text.units import CHANNEL_UNITS, ICE_POINT
-from stages.decode.arrival_times import ArrivalTimes, Stamped, arrival_times
+from inertial.tables.errors import Refusal
+from inertial.text.messages import _
+from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
 from stages.decode.decoded import Decoded, Reals, first_of, intervals_of, on_axis
 from stages.decode.table_angle import ANGLE_UNITS, Continuous
-from stages.decode.unsigned_counts import refuse_unsigned
+
+
+@dataclass(frozen=True)
+class Stamped:
+    """The stamps of one sensor, for two may come in rows of their own.
+
+    record, ticks: (n,), of its rows; repeated: (n,), which have stamp and readings of the row
+    before, so that no sample is taken with them.
+    """
+
+    record: Integers
+    ticks: Reals | Integers
+    repeated: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, rows: Rows, sensor: str) -> "Stamped":
+        """The stamps of accelerometer or gyro in some rows of a log with time."""
+        own = rows.accelerometer if sensor == "accelerometer" else rows.gyro
+        there = np.isfinite(own).any(axis=1)
+        all_ticks = np.zeros(0) if rows.ticks is None else rows.ticks  # of a log without rows
+        ticks, values = all_ticks[there], np.hstack([rows.accelerometer, rows.gyro])[there]
+        repeated = np.append(False, np.diff(ticks) == 0)[: len(ticks)]
+        still = np.flatnonzero(repeated)
+        same = np.nan_to_num(values[still]) == np.nan_to_num(values[still - 1])
+        repeated[still] = same.all(axis=1)
+        return cls(rows.record[there], ticks, repeated)
+
+    @classmethod
+    def joined(cls, parts: Iterable["Stamped"]) -> "Stamped":
+        """Those of consecutive rows."""
+        columns = zip(*((each.record, each.ticks, each.repeated) for each in parts), strict=True)
+        return cls(*(np.concatenate(column) for column in columns))
+
+
+class ArrivalTimes:
+    """The times of a log's records, s since the first, by the clock of one sensor's samples.
+
+    `first`: the stamp of time 0 by that clock, ticks; `ticks`: in a second.
+    """
+
+    def __init__(self, stamped: Stamped, clock: RegularClock, ticks: float) -> None:
+        self.clock = clock
+        self.first = float(stamped.ticks[0] + clock.start * ticks)
+        self._record = stamped.record
+        self._time = clock.time[np.cumsum(~stamped.repeated) - 1]
+
+    def of(self, record: Integers) -> Reals:
+        """The time of each record, (n,), s; one of the other sensor lies between its neighbours."""
+        return np.asarray(np.interp(record, self._record, self._time))
+
+
+def arrival_times(
+    beginning: NDArray[Any], stamps: Callable[[], Iterable[Stamped]], ticks: float
+) -> ArrivalTimes | None:
+    """The times of a log whose first stamps are not regular; None where these are, or no clock."""
+    if are_regular((beginning - beginning[0]) / ticks):
+        return None
+    stamped = Stamped.joined(stamps())
+    clock = regular_clock((stamped.ticks[~stamped.repeated] - stamped.ticks[0]) / ticks)
+    return None if clock is None else ArrivalTimes(stamped, clock, ticks)
 
 
 def _count_size(triad: Mapping[str, Any]) -> Reals:
@@ -128,3 +193,68 @@ class ColumnLog:
     def epoch(self, origin: int) -> dict[str, Any]:
         """Nothing: its clock is its own."""
         return {"epoch_gps": None, "recorded_on": None}
+
+
+# ---- Unsigned counts that were not said to be unsigned: refused, with their zero or their bits
+
+ZEROS = {1 << (bits - 1): bits for bits in (16, 12, 24)}  # middle of the counts of converters
+
+
+def refuse_unsigned(file: str, sensor: str, triad: Mapping[str, Any], values: Reals) -> None:
+    """Refuse the first readings of a triad, (n, 3), where their zero is that of unsigned counts.
+
+    All three channels then lie in the middle half of a converter's counts: no gyro turns so about
+    all its axes at once. Accelerometers could, so their |f| must be nearer to gravity with that
+    zero than without. A stated `zero_counts`, 0 included, or `signed_bits` is believed.
+
+    Raises
+    ------
+    Refusal
+        where they are such counts
+    """
+    values = values[np.isfinite(values).all(axis=1)]
+    if "zero_counts" in triad or "signed_bits" in triad or not len(values):
+        return
+    if "counts_per_unit" in triad and (size := bits_without_sign([values])) is not None:
+        raise Refusal(
+            file,
+            sensor,
+            _(
+                "counts that leap between 0 and {most:g}: they are written without their sign",
+                most=2**size - 1,
+            ),
+            _("counts with their sign, or signed_bits"),
+            _("add signed_bits: {size} to {sensor} in its format", size=size, sensor=sensor),
+        )
+    for zero, bits in ZEROS.items():
+        usual = np.median(values, axis=0)
+        inside = values.min() >= 0 and values.max() < 2 * zero
+        if inside and (abs(usual - zero) < zero / 2).all() and _fits(sensor, triad, usual, zero):
+            raise Refusal(
+                file,
+                sensor,
+                _(
+                    "counts from {least:g} to {most:g}, as unsigned ones of {bits} bits, whose "
+                    "zero is {zero}",
+                    least=values.min(),
+                    most=values.max(),
+                    bits=bits,
+                    zero=zero,
+                ),
+                _("zero_counts, the count that stands for zero"),
+                _(
+                    "add zero_counts: {zero} to {sensor} in its format; zero_counts: 0 if they "
+                    "are right as they are",
+                    zero=zero,
+                    sensor=sensor,
+                ),
+            )
+
+
+def _fits(sensor: str, triad: Mapping[str, Any], usual: Reals, zero: int) -> bool:
+    """Whether the usual readings, (3,), make more sense from this zero than from 0."""
+    if sensor != "accelerometer" or "counts_per_unit" not in triad:
+        return True
+    size = CHANNEL_UNITS[triad["unit"]] / np.array(triad["counts_per_unit"]) / STANDARD_GRAVITY
+    with_zero, without = (np.linalg.norm((usual - z) * size) for z in (zero, 0))
+    return bool(abs(np.log(with_zero)) < abs(np.log(without))) if with_zero > 0 else False

@@ -9,7 +9,7 @@ null in the files, never 0 or 1.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import exp, isfinite
 from statistics import median
 
 import numpy as np
@@ -35,13 +35,12 @@ from inertial.campaign.records import (
 )
 from inertial.estimation.triad import linear_names
 from inertial.physics import forward as physics
-from inertial.physics.inverse import Sized, force_of, rate_of
+from inertial.physics.forward import Sized, force_of, rate_of
 from inertial.physics.motion import stretches
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
 from stages.export.examples import Example
-from stages.export.use import Use
 
 Array = NDArray[np.float64]
 
@@ -56,6 +55,31 @@ COMPENSATED = _(
     "IMU, and would be wrong for its raw readings. To export a calibration, give "
     "the raw logs."
 )
+
+
+@dataclass(frozen=True)
+class Use:
+    """The use for which a filter is to be right.
+
+    seconds : T, over which the filter integrates before something else corrects it
+    rate_rms, force_rms : rad/s and m/s², of the motion about and along each axis, mean 0
+    correlation : τ, s, after which the motion is another one
+    """
+
+    seconds: float
+    rate_rms: float
+    force_rms: float
+    correlation: float
+
+    def rms(self, kind: str) -> float:
+        """The rms of what the sensors of a kind feel of the motion."""
+        return self.rate_rms if kind == "gyroscope" else self.force_rms
+
+    @property
+    def moving(self) -> float:
+        """Variance of the integral over T of a motion with rms 1, over T, s."""
+        t, tau = self.seconds, self.correlation
+        return 2 * tau * (1 - tau / t * (1 - exp(-t / tau)))
 
 
 @dataclass(frozen=True)

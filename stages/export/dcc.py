@@ -5,10 +5,14 @@ and nobody stated is `not stated`; a country that is not stated is ZZ (ISO 3166-
 users), and a day that is not known is the first of the year 1.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import date
 from xml.etree.ElementTree import Element, indent, tostring
 
-from inertial.campaign.records import Row
+import pandas as pd
+
+from inertial.campaign.records import Row, rows_of
 from inertial.text.messages import _
 from inertial.text.statements import (
     IN_FULL_ONLY,
@@ -18,9 +22,16 @@ from inertial.text.statements import (
     TRACEABILITY,
 )
 from stages.export.d_si import Value, add, add_line, add_real
-from stages.export.dcc_results import NO_VALUES, add_conformity, add_noise, add_result, unusable
-from stages.export.dcc_texts import add_data, add_rich, add_text
-from stages.export.stated import Stated, calendar_day
+from stages.export.dcc_results import (
+    NO_VALUES,
+    add_conformity,
+    add_data,
+    add_noise,
+    add_result,
+    add_rich,
+    add_text,
+    unusable,
+)
 
 SCHEMA_VERSION = "3.2.1"
 LANGUAGE = "en"
@@ -33,6 +44,58 @@ CONDITIONS = {
     "conditions.humidity": _("relative humidity"),
     "conditions.warm_up": _("warm-up"),
 }
+
+
+# ---- What the laboratory states beside the numbers, and what follows from them
+
+
+@dataclass(frozen=True)
+class Stated:
+    """The items of a certificate by key, where stated, and its tables.
+
+    standards, conformity : rows of these tables
+    days : on which the logs were recorded, by their own clock, YYYY-MM-DD, in order
+    """
+
+    items: Mapping[str, Row]
+    standards: Sequence[Row]
+    conformity: Sequence[Row]
+    days: Sequence[str]
+
+    def text(self, item: str) -> str | None:
+        """A text that is stated; none where it is not."""
+        row = self.items.get(item)
+        return None if row is None else row["text"]
+
+    def day(self, item: str) -> str | None:
+        """A day that is stated, if it is one of the calendar."""
+        return calendar_day(self.text(item))
+
+
+def calendar_day(text: str | None) -> str | None:
+    """A day YYYY-MM-DD; none where the text is none, such as `unknown` or 2026-02-30."""
+    try:
+        return date.fromisoformat(text or "").isoformat()
+    except ValueError:
+        return None
+
+
+def stated_by(
+    certificate: pd.DataFrame,
+    standards: pd.DataFrame,
+    conformity: pd.DataFrame,
+    clocks: Sequence[Row],
+) -> Stated:
+    """From the tables of the plan, of the diagnosis and of the logs."""
+    return Stated(
+        {row["item"]: row for row in rows_of(certificate) if row["file"]},
+        rows_of(standards),
+        rows_of(conformity),
+        sorted({row["recorded_on"] for row in clocks if row["recorded_on"]}),
+    )
+
+
+# ---- the certificate
 
 
 def dcc(content: Row, stated: Stated) -> str:

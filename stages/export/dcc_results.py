@@ -8,15 +8,33 @@ from inertial.tables import AXES
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
-from inertial.text.statements import RULES, STATEMENTS
+from inertial.text.statements import NOT_STATED, RULES, STATEMENTS
 from stages.export.calibration import NOT_USABLE
 from stages.export.d_si import Value, add, add_list, add_real, values_of
-from stages.export.dcc_texts import add_data, add_rich, add_text
 
 MEASURED = "basic_measuredValue"
 NO_VALUES = _("No values")
 KIND_OF = {sensor: kind for kind, sensor in SENSOR_OF.items()}
 CONFORMS = {"conforms": "pass", "does_not_conform": "fail"}  # not_assessed: neither
+
+
+def add_text(parent: Element, tag: str, text: str | None) -> None:
+    """A name; `not stated` where there is none."""
+    add(add(parent, tag), "dcc:content", text or NOT_STATED)
+
+
+def add_rich(parent: Element, tag: str, *paragraphs: str) -> None:
+    """A description of several paragraphs."""
+    own = add(parent, tag)
+    for paragraph in paragraphs:
+        add(own, "dcc:content", paragraph)
+
+
+def add_data(parent: Element, *paragraphs: str) -> Element:
+    """The data of a result, which begin with a text."""
+    data = add(parent, "dcc:data")
+    add_rich(data, "dcc:text", *paragraphs)
+    return data
 
 
 def unusable(triad: Row) -> bool:

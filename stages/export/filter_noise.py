@@ -35,8 +35,7 @@ from inertial.physics.effect import Reading, Truth
 from inertial.physics.motion import stretches
 from inertial.tables import AXES
 from inertial.text.parameters import SENSOR_OF
-from stages.export.calibration import PARAMETERS, Triad
-from stages.export.use import Use
+from stages.export.calibration import PARAMETERS, Triad, Use
 
 Array = NDArray[np.float64]
 

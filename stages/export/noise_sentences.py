@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import degrees
 
 from inertial.text.messages import _
+from stages.export.calibration import Use
 from stages.export.filter_noise import FilterNoise
-from stages.export.use import Use
 
 UNITS = {
     "accelerometer": ("(m/s^2)/sqrt Hz", "(m/s^3)/sqrt Hz"),

@@ -17,20 +17,19 @@ from stages.export.calibration import (
     COMPENSATED,
     Calibration,
     Fitted,
+    Use,
     epoch_of,
     mounts_of,
     noise_of,
     sample_rate,
     temperature_of,
 )
-from stages.export.dcc import dcc
+from stages.export.dcc import dcc, stated_by
 from stages.export.declared import DECLARED
 from stages.export.document import as_json, as_yaml, document
 from stages.export.examples import examples_of
 from stages.export.kalibr import imu_yaml
 from stages.export.ros import ros_yaml
-from stages.export.stated import stated_by
-from stages.export.use import Use
 
 FITTED = ("accelerometer", "gyroscope", "extension")  # stages that keep fits
 

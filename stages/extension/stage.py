@@ -22,7 +22,13 @@ from inertial.physics.effect import Effect
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import EXTENDED, FREE, JOINT
-from stages.extension.candidates import Candidate, candidates_of, carriers_of, normalised
+from stages.extension.candidates import (
+    Candidate,
+    candidates_of,
+    carriers_of,
+    normalised,
+    sentence_of,
+)
 from stages.extension.combinations import combinations_of, compared
 from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
 from stages.extension.declared import DECLARED
@@ -41,7 +47,6 @@ from stages.extension.navigation_error import change_of, worth
 from stages.extension.proposed import proposed_rows
 from stages.extension.scanned_values import with_scanned_values
 from stages.extension.selected_sizes import SelectedSizes, selected_sizes
-from stages.extension.sentences import sentence_of
 from stages.extension.temperature_shapes import with_shapes
 from stages.extension.warm_up import warm_up_rows
 

@@ -1,22 +1,24 @@
 """This calibration into its IMU's archive, against the earlier ones and what others published."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from inertial.campaign.differences import Difference, table_of
-from inertial.campaign.measurement import measurements_of
+from inertial.campaign.measurement import Measurement, measurements_of
 from inertial.campaign.records import Row, rows_of
 from inertial.campaign.references import reference_rows, references_of
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
+from inertial.text.messages import _
+from inertial.text.parameters import STAGES
 from stages.history.archive import Archive, results
 from stages.history.declared import DECLARED
 from stages.history.fencepost_error import off_by_a_sample
-from stages.history.published import against_published
 from stages.history.repeatability import (
     forecast_rows,
     jump_rows,
@@ -161,6 +163,61 @@ def _made_by(provenance: Iterable[Mapping[str, Any]]) -> list[Row]:
         }
         for stage, made in sorted(by_stage.items())
     ]
+
+
+# ---- The result that counts against what others published of the same IMU
+
+PUBLISHED = "published"
+RATE_TABLE = "rate_table"
+
+
+def against_published(
+    published: pd.DataFrame, result: Measurement, mount: str, gyro_methods: Sequence[Row]
+) -> Iterator[Difference]:
+    """Every published parameter; the sigma is of both, of ours alone where none is published.
+
+    `gyro_methods`: the parameters of the gyros by all methods, on this mount.
+    """
+    of_table = {r["parameter"]: r["reason"] for r in gyro_methods if r["method"] == RATE_TABLE}
+    sensors = {"accel": result.accelerometer, "gyro": result.gyro}
+    for row in rows_of(published):
+        name, alone = row["quantity"], row["sigma"] is None
+        ours = sensors[row["sensor"]].rows.get(name)
+        value = None if ours is None else ours["value"]
+        reason = ours["reason"] if ours else _("nothing was recorded that shows it")
+        if row["sensor"] == "gyro" and of_table.get(name):  # with the rank of what was put in
+            reason = of_table[name]
+        yield Difference(
+            kind=PUBLISHED,
+            mount=mount,
+            stage=STAGES[row["sensor"]],
+            quantity=name,
+            unit=row["unit"],
+            first=ours["id"] if ours else _("the final result"),
+            second=row["source"],
+            first_value=value,
+            second_value=row["value"],
+            sigma=(
+                None
+                if ours is None or value is None
+                else float(np.hypot(ours["sigma"], 0.0 if alone else row["sigma"]))
+            ),
+            between=(
+                _("this calibration"),
+                _("the published value ({source})", source=row["source"]),
+            ),
+            remark=(
+                _(
+                    "it has no value here, so {source} cannot be judged: {reason}",
+                    source=row["source"],
+                    reason=reason,
+                )
+                if value is None
+                else _("No sigma is published, so it is ours alone")
+                if alone
+                else ""
+            ),
+        )
 
 
 STAGE = Stage(

@@ -12,8 +12,7 @@ from scipy.spatial.transform import Rotation
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import position_of
 from inertial.campaign.records import Manoeuvre, Part, Row, with_mount
-from inertial.physics.forward import Site, Triad
-from inertial.physics.inverse import force_of, rate_of
+from inertial.physics.forward import Site, Triad, force_of, rate_of
 from inertial.physics.motion import stretches, turned
 from inertial.physics.strapdown import Course, Start, aligned, navigated
 from inertial.tables import ACCEL, CHANNELS, GYRO, STATIC_PHASES

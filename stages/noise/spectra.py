@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.estimation.noise_shape import shape_of
-from inertial.estimation.spectrum import NoiseShape, in_band, level_of_pieces
+from inertial.estimation.spectrum import NoiseShape, in_band, level_of_pieces, shape_of
 from inertial.signal.scatter import smallest_step
 from stages.noise.static_stretches import SENSORS
 

@@ -3,21 +3,21 @@
 This is the only stage that reads YAML, so a bad campaign fails here, by name.
 """
 
-from collections.abc import Sequence
-from math import radians
+from collections.abc import Iterator, Sequence
+from math import copysign, pi, radians
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from inertial import tables
+from inertial.physics.ideal_triad import at_steady_speed, in_free_fall
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from stages.plan.certificate import Statements, allowed_changes
 from stages.plan.declared import DECLARED
-from stages.plan.ideal_readings import ideal_readings
 from stages.plan.manoeuvres import expanded
 from stages.plan.published import published_values
 from stages.plan.recording import (
@@ -199,6 +199,35 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list
                     _("state the same log and format of the gyros for both"),
                 )
     return list(rows.values())
+
+
+# ---- What ideal sensors would read at the site of the campaign, elsewhere, and under way
+
+SPEED, HIGH = 100.0, 10_000.0  # m/s, m: of the triads under way
+
+
+def ideal_readings(site: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Rows of the table; none where the latitude of the site is not known."""
+    if site["latitude_deg"] is None:
+        return
+    latitude, height = radians(site["latitude_deg"]), site.get("height_m", 0.0)
+    pole = copysign(pi / 2, latitude)
+    readings = [
+        ("at_rest", latitude, height, 0.0, at_steady_speed(latitude, height)),
+        ("in_free_fall", latitude, height, 0.0, in_free_fall(latitude)),
+        ("at_equator", 0.0, height, 0.0, at_steady_speed(0.0, height)),
+        ("at_pole", pole, height, 0.0, at_steady_speed(pole, height)),
+    ]
+    if latitude != pole:  # where there is neither north nor east
+        for name, velocity in (("north", (SPEED, 0.0, 0.0)), ("east", (0.0, SPEED, 0.0))):
+            for level in (height, HIGH):
+                read = at_steady_speed(latitude, level, velocity)
+                readings.append((f"under_way_{name}", latitude, level, SPEED, read))
+    for situation, phi, level, speed, read in readings:
+        place = {"situation": situation, "latitude": phi, "height": level, "speed": speed}
+        for sensor, values in (("accel", read.force), ("gyro", read.rate)):
+            components = dict(zip(("north", "east", "down"), map(float, values), strict=True))
+            yield place | {"sensor": sensor} | components
 
 
 STAGE = Stage(plan, DECLARED)

@@ -4,8 +4,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import cos, radians, sin
 from typing import Any
 
-from inertial.physics.gravity_anomalies import ANOMALY_SIGMA, is_refuted, latitude_of
-from inertial.physics.site import EARTH_RATE, earth_rate, normal_gravity
+from inertial.physics.site import (
+    ANOMALY_SIGMA,
+    EARTH_RATE,
+    earth_rate,
+    is_refuted,
+    latitude_of,
+    normal_gravity,
+)
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
 from inertial.text.numbers import significant

@@ -6,9 +6,8 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
-from inertial.campaign.close_ups import close_ups
 from inertial.campaign.detection import Examination, ExaminationOfLogs
-from inertial.campaign.findings import Detection, detections_of, masks_of, table_of
+from inertial.campaign.findings import Detection, close_ups, detections_of, masks_of, table_of
 from inertial.campaign.log_properties import ChannelStatistics, Stated, stated_by, windows_of
 from inertial.campaign.masked_samples import Batch, RecordIndex, read_once
 from inertial.campaign.records import rows_of

@@ -7,8 +7,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from inertial.campaign.close_ups import close_ups
-from inertial.campaign.findings import Detection, table_of
+from inertial.campaign.findings import Detection, close_ups, table_of
 from inertial.campaign.log_properties import Stated, records_of, stated_by
 from inertial.campaign.masked_samples import Masks, RecordIndex, Repairs, read_once
 from inertial.campaign.records import Manoeuvre, Performed, Row, clocks_of, manoeuvres_of, rows_of

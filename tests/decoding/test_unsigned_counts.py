@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from inertial.tables.errors import Refusal
-from stages.decode.unsigned_counts import refuse_unsigned
+from stages.decode.column_log import refuse_unsigned
 
 G = 9.80665
 

@@ -7,9 +7,9 @@ import pytest
 from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, rest, seen, stamps
 
 from inertial.detectors.gravity_error import GravityError
-from inertial.detectors.temperature_drift import TemperatureDrift
+from inertial.detectors.temperatures import TemperatureDrift
 from inertial.detectors.wrong_scale_factor import WrongScaleFactor
-from inertial.physics.gravity_anomalies import is_refuted, latitude_of
+from inertial.physics.site import is_refuted, latitude_of
 from inertial.signal.scale_factor import explanation_of
 
 

@@ -8,8 +8,8 @@ import pytest
 from judge import parameters_of
 
 from inertial.signal.scatter import noise_before_rounding, rounded_mean
-from stages.noise.rounding import rounding_levels
 from stages.noise.spectra import Spectra
+from stages.noise.stage import rounding_levels
 
 SEEDS = (1801, 1802, 1803)
 

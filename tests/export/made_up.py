@@ -10,9 +10,8 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from inertial.campaign.measurement import measurement_of
-from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
+from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad, Use
 from stages.export.examples import Example
-from stages.export.use import Use
 
 REASON = "no whole turn about y was recorded: add one of 360° about y"
 ERRORS = {

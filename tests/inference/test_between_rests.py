@@ -14,9 +14,8 @@ from moved_by_hand import (
 )
 from scipy.spatial.transform import Rotation
 
-from inertial.estimation.attitude import integrate, running_product
+from inertial.estimation.attitude import Passage, integrate, running_product
 from inertial.estimation.between_positions import Prior, Stop, fit
-from inertial.estimation.carried_attitude import Passage
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.multi_position import FREE, FreeRest
 from inertial.estimation.triad import UNKNOWNS

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import butter, freqz, lfilter
 
-from inertial.estimation.noise_shape import noise_shape
 from inertial.estimation.periodic_in_time import pooled, strongest
-from inertial.estimation.spectrum import WHITE
+from inertial.estimation.spectrum import WHITE, noise_shape
 from inertial.signal.outliers import Channel
 
 RATE, SAMPLES = 100.0, 3600

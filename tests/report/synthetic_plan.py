@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from inertial import tables
-from stages.plan.ideal_readings import ideal_readings
+from stages.plan.stage import ideal_readings
 from tests.report.synthetic_values import AXES, DEGREE, GRAVITY, INTERVAL, REST_S, TURN_S, Rows
 
 

@@ -11,8 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from commands.browser import CHROMIUM, Page, browser
-from commands.screenshots import VIEWS, screenshots
+from commands.screenshots import CHROMIUM, VIEWS, Page, browser, screenshots
 from tests.report import synthetic
 
 MEASURED = (Path(__file__).parent / "measured.js").read_text(encoding="utf-8")

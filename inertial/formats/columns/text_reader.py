@@ -37,12 +37,12 @@ from inertial.formats.columns.column_layout import (
 )
 from inertial.formats.columns.column_values import ColumnValues, NumberValues, TextValues
 from inertial.formats.columns.data_rows import Place, Reading, sort_rows
-from inertial.formats.columns.labelled_fields import LabelledLines
 from inertial.formats.columns.text_lines import (
     CHUNK_BYTES,
     MAX_LINE_BYTES,
     Chunk,
     HeaderLines,
+    LabelledLines,
     RowLines,
     text_chunks,
 )

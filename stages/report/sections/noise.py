@@ -7,10 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from inertial.tables import AXES
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
-from inertial.text.numbers import common_decimals, significant, with_sigma
+from inertial.text.numbers import common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
-from stages.report.sections.data_sheets import DATA_SHEET, of_data_sheets
 from stages.report.sections.noise_figures import allan_figure, spectrum_figure
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSORS, capital
@@ -194,3 +193,21 @@ def _levels(levels: Sequence[Record], sheet: Sequence[Record]) -> outline.Table:
         [outline.table_row(*line) for line in lines],
         _("None: no manoeuvre is long enough to estimate the noise."),
     )
+
+
+# ---- The data sheets with which the noise is compared
+
+DATA_SHEET = _("data sheet")
+
+
+def of_data_sheets(sheet: Sequence[Record]) -> str:
+    """Whence the data sheet of each sensor is; nothing without one."""
+    sensors: dict[str, list[str]] = {}
+    for row in sheet:
+        if row["source"] and SENSORS[row["sensor"]] not in sensors.setdefault(row["source"], []):
+            sensors[row["source"]].append(SENSORS[row["sensor"]])
+    each = (
+        _("{sensors}: {source}.", sensors=capital(listed(names)), source=shortened(source, 300))
+        for source, names in sensors.items()
+    )
+    return _("Data sheet. {each}", each=" ".join(each)) if sensors else ""

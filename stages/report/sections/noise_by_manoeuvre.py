@@ -12,7 +12,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import aligned, common_decimals, shortened, significant, with_sigma
 from inertial.text.units import RANDOM_WALK
 from stages.report import drawing, outline
-from stages.report.sections.data_sheets import DATA_SHEET, of_data_sheets
+from stages.report.sections.noise import DATA_SHEET, of_data_sheets
 from stages.report.tables import Record, Tables
 from stages.report.words import term
 
