@@ -10,11 +10,10 @@ from matplotlib.axes import Axes
 
 from inertial.text import numbers
 from inertial.text.messages import _
-from inertial.text.units import DEGREE, DEGREES_PER_HOUR, PPM, SECONDS_OF_ARC
+from inertial.text.units import DEGREES_PER_HOUR, PPM
 from stages.report import drawing
 from stages.report.outline import (
     Column,
-    Equation,
     Figure,
     Heading,
     Paragraph,
@@ -23,12 +22,11 @@ from stages.report.outline import (
     Section,
     Sentences,
     Table,
-    more,
     table_row,
     value_and_sigma,
 )
 from stages.report.sections.averaging import epoch_parts
-from stages.report.sections.encoder import encoder_parts
+from stages.report.sections.table_motion import LIMITS, encoder_parts, time_and_angle
 from stages.report.tables import Record, Tables, arrays
 from stages.report.words import plain
 
@@ -63,7 +61,7 @@ def parts(tables: Tables) -> Iterator[Part]:
     yield from list(_windows(tables)) or [_none(tables, "turns")]
     yield from encoder_parts(tables)
     yield Heading(_("Angle of the table against time"))
-    yield from list(_time_and_angle(tables)) or [_none(tables, "turns")]
+    yield from list(time_and_angle(tables)) or [_none(tables, "turns")]
     yield _middles(tables)
     yield from map(Paragraph, LIMITS)
     if left_out := tables.rows("not_studied"):
@@ -321,154 +319,3 @@ def _middle(row: Record, whole_turn: Record) -> Row:
         numbers.with_sigma(PPM.of(row["scale"]), PPM.of(row["scale_sigma"]), own_decimals)[1],
         *numbers.with_sigma(PPM.of(off), PPM.of(sigma), decimals),
     )
-
-
-# ---- time and angle of the table
-
-MOST_TURNS = 9
-COLOUR = "#0072b2"
-RAMPS = ((_("Spin-up"), "spin-up"), (_("Spin-down"), "spin-down"))
-SET = (
-    ("speed", DEGREE, "°/s"),
-    ("spin-up acceleration", DEGREE, "°/s²"),
-    ("spin-up seconds", 1.0, _("s a ramp")),
-)
-LIMITS = (
-    _(
-        "Use: the function gives the motion of the table between its ends, so its real "
-        "speed and its ramps, for other gyros, for other turns and for marks at fixed "
-        "angles. With the speed from turns about other axes the middle 180° become as "
-        "good as their noise, whatever the set rate, if the table keeps the same speed "
-        "in all turns."
-    ),
-    _(
-        "Limits: with the angle of its own turn a window gives the scale factor of the "
-        "whole turn again, since the gyro is compared with itself; the agreement shows "
-        "only that nothing changed within the turn. If all gyros had the same scale "
-        "error, the same logs would be those of a table that turned faster and further "
-        "by that share: without the known whole angle a common scale factor and the "
-        "table's speed are one unknown. An angle recorded by the table resolves this."
-    ),
-)
-
-
-def _time_and_angle(tables: Tables) -> Iterator[Part]:
-    """The equation, a figure of what the angle differs by from what was set, speed and ramps."""
-    turns: dict[str, list[Record]] = {}
-    for row in tables.rows("time_angle"):
-        turns.setdefault(row["manoeuvre"], []).append(row)
-    if not turns:
-        return
-    yield Equation(
-        "θ(t) = A · C(t) / C(T)",
-        _("C: what the gyro along the axis summed, less bias and earth; A: the known whole angle."),
-    )
-
-    def draw(panel: Axes, name: str) -> None:
-        _angle(panel, name, turns[name])
-
-    names = list(turns)[:MOST_TURNS]
-    rest = more(len(turns) - len(names), _(" in the table time_angle"))
-    margins = drawing.Margins(left=0.45, across=0.4, down=0.3)
-    yield Figure(
-        _(
-            "Angle of the table less that of the set trapezoid, which is laid through the "
-            "steady part, arcsec, and ± σ of the angle. σ is zero at the start and that of "
-            "the known whole angle at the end. Light blue: the amplitude of motion that is "
-            "faster than the line resolves. {rest}",
-            rest=rest,
-        ).rstrip(),
-        drawing.grid(names, draw, 0.95, margins, _("Time, s"), "time-angle"),
-        _("The table's angle against time, less the trapezoid that was set."),
-    )
-    yield from map(Paragraph, _sentences(turns, tables.rows("motions")))
-    yield _motions(tables.rows("motions"))
-
-
-def _angle(panel: Axes, name: str, rows: Sequence[Record]) -> None:
-    time, angle, set_angle, sigma, swing = arrays(
-        rows, "seconds", "angle", "set_angle", "sigma", "swing"
-    )
-    off, sigma, swing = (
-        values / SECONDS_OF_ARC.size for values in (angle - set_angle, sigma, swing)
-    )
-    panel.axhline(0, color=drawing.INK, linewidth=0.6)
-    drawing.band(panel, time, -sigma, sigma, drawing.QUIET, alpha=0.25, linewidth=0)
-    drawing.band(panel, time, off - swing, off + swing, COLOUR, alpha=0.3, linewidth=0)
-    panel.plot(time, off, color=COLOUR, linewidth=0.7)
-    panel.set_title(numbers.shortened(name, 30), pad=3)
-    drawing.ticks(panel, 4)
-
-
-def _sentences(turns: dict[str, list[Record]], rows: Sequence[Record]) -> Iterator[str]:
-    """The deviation of the table from its set rate, and how well its angle is known."""
-    speeds = [row for row in rows if row["quantity"] == "speed" and row["set_value"]]
-    if speeds:
-        off = [(row["value"] / row["set_value"] - 1) / PPM.size for row in speeds]
-        sigmas = [row["sigma"] / row["set_value"] / PPM.size for row in speeds]
-        least, most, best, worst = (
-            numbers.fixed(size, 1) for size in (min(off), max(off), min(sigmas), max(sigmas))
-        )
-        yield (
-            _(
-                "In the steady part of {counted} the table deviated from its set rate by "
-                "{least} to {most} ppm, with a σ of {best} to {worst} ppm in each. The scale "
-                "factor of a window by time is in error by the same share.",
-                counted=numbers.counted(len(speeds), "turn"),
-                least=least,
-                most=most,
-                best=best,
-                worst=worst,
-            )
-        )
-    sigma, name = max((row["sigma"], name) for name, own in turns.items() for row in own)
-    angle, turn = numbers.significant(SECONDS_OF_ARC.of(sigma), 2), numbers.shortened(name, 30)
-    yield (
-        _(
-            "Between the ends of a turn the σ of the angle is at most {angle} arcsec "
-            "({turn}); an oscillation of the case counts as motion.",
-            angle=angle,
-            turn=turn,
-        )
-    )
-
-
-def _motions(rows: Sequence[Record]) -> Table:
-    turns: dict[str, dict[str, Record]] = {}
-    for row in rows:
-        turns.setdefault(row["manoeuvre"], {})[row["quantity"]] = row
-    ramps: list[Column] = []
-    quantities = ["speed"]
-    for name, ramp in RAMPS:
-        ramps += [*value_and_sigma(name, "s"), *value_and_sigma(name, "°/s²")]
-        quantities += [f"{ramp} seconds", f"{ramp} acceleration"]
-    return Table(
-        _("Speed and ramps by time and angle; the ramps as if their acceleration were constant."),
-        (Column(_("Turn"), "name"), *value_and_sigma(_("Speed"), "°/s"), *ramps),
-        [
-            table_row(numbers.shortened(turn, 40), *_cells(own, quantities))
-            for turn, own in turns.items()
-        ],
-        note=_was_set(rows),
-    )
-
-
-def _cells(own: dict[str, Record], quantities: Sequence[str]) -> Iterator[str]:
-    for quantity in quantities:
-        row = own.get(quantity)
-        if row is None:
-            yield from ("—", "—")
-        else:
-            size = DEGREE if "rad" in row["unit"] else 1.0
-            sigma = row["sigma"] / size
-            yield from numbers.with_own_sigma(row["value"] / size, sigma)
-
-
-def _was_set(rows: Sequence[Record]) -> str:
-    """What was set, where it is the same for all turns."""
-    settings = []
-    for quantity, size, unit in SET:
-        values = {row["set_value"] for row in rows if row["quantity"] == quantity}
-        if len(values) == 1 and None not in values:
-            settings.append(f"{numbers.significant(values.pop() / size, 4)} {unit}")
-    return _("Set: {settings}.", settings=", ".join(settings)) if settings else ""
