@@ -16,6 +16,8 @@ from inertial.signal.detector import (
     Log,
     Piece,
 )
+from inertial.signal.mean_changes import changes
+from inertial.signal.scatter import in_blocks
 from inertial.signal.stamps import (
     MAX_RATE_ERROR,
     STAMP_DIGIT_S,
@@ -26,7 +28,6 @@ from inertial.signal.stamps import (
     stamps_of,
     unit_of,
 )
-from inertial.signal.steps import changes
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
 
@@ -236,7 +237,7 @@ def _parts(series: Array, interval: float) -> list[_Part]:
 def _part(series: Array, start: int, end: int, length: int, interval: float) -> _Part:
     """A part of the intervals; its sigma from means of blocks, within which errors cancel."""
     own = series[start:end]
-    blocks = own[: len(own) // length * length].reshape(-1, length).mean(axis=1)
+    blocks = in_blocks(own, length).mean(axis=1)
     few = len(blocks) < MIN_BLOCKS
     scatter = own.std() / np.sqrt(len(own)) if few else blocks.std() / np.sqrt(len(blocks))
     return _Part(

@@ -50,9 +50,9 @@ def smallest_step(values: Array) -> float:
     return float(changes[real].min(initial=np.inf))
 
 
-def in_blocks(changes: Array) -> Array:
-    """Changes in blocks, (k, BLOCK), without those that are left over."""
-    return changes[: len(changes) // BLOCK * BLOCK].reshape(-1, BLOCK)
+def in_blocks(values: Array, length: int = BLOCK) -> Array:
+    """Values in blocks, (k, length), without those that are left over."""
+    return values[: len(values) // length * length].reshape(-1, length)
 
 
 def rounded_mean(noise: Array | float) -> Array:

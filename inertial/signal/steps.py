@@ -2,16 +2,15 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.ndimage import median_filter, uniform_filter1d
-from scipy.special import ndtri, stdtr
+from scipy.special import stdtr
 from scipy.stats import chi2
 
 from inertial.signal.detector import Array, Integers
-from inertial.signal.scatter import MAD_TO_SIGMA, median
+from inertial.signal.scatter import MAD_TO_SIGMA, in_blocks, median
 
 MAX_SIDE_S = 10.0  # s on each side that are compared at most: further away a bias may have wandered
 MIN_LEVEL_S = 0.2  # s that a level has to last: what is shorter is a knock or a spike
@@ -130,9 +129,7 @@ def _chance_in_walk(readings: Array, place: int) -> float:
     """
     per = -(-len(readings) // FIT_POINTS)
     before, after = readings[place % per : place], readings[place:]
-    means = [
-        part[: len(part) // per * per].reshape(-1, per).mean(axis=1) for part in (before, after)
-    ]
+    means = [in_blocks(part, per).mean(axis=1) for part in (before, after)]
     change = np.diff(np.concatenate(means))
     count, drift = len(change), np.ones(len(change))
     step = np.zeros(count)
@@ -294,7 +291,7 @@ def _within(rest: Array, first: int, after: int, noise: _Noise, quick: float) ->
         return None
     # Chi-squared of block means is that of the readings, less what is within the blocks.
     per = -(-len(y) // FIT_POINTS)
-    blocks = y[: len(y) // per * per].reshape(-1, per).mean(axis=1)
+    blocks = in_blocks(y, per).mean(axis=1)
     at = np.asarray((np.arange(len(blocks)) + 0.5) * per, np.float64)
     weight = per / sigma**2
     best = _misfit(blocks, at, np.clip((at - step.place) / per + 0.5, 0, 1)) * weight
@@ -399,97 +396,3 @@ def _together(
                 reach=step.reach,
             )
     return sorted(now, key=lambda step: step.place)
-
-
-# ---- Where the mean of a series changes, and stays changed for a while.
-
-MIN_CHANGE_SIGMA = 5.0  # sigma: 6·10⁻⁷ for one place, and errors of stamps cancel, so in truth less
-MAX_BORDERS = 4  # of the largest differences of blocks, which may be borders
-
-
-def changes(series: Array, length: int, shortest: int, least: float, finest: float) -> list[int]:
-    """The borders of the parts of a series, (n,), that have each a mean of its own: 0, …, n.
-
-    Binary segmentation by the likelihood ratio of a step in white noise, over means of blocks,
-    for the errors of stamps cancel within a block; then to the value. Scott & Knott, Biometrics
-    30 (1974), 507.
-
-    Parameters
-    ----------
-    length : values of a block
-    shortest : blocks that a part has at least
-    least : means that differ by less are the same
-    finest : sigma of the mean of a block is at least this
-    """
-    blocks = _blocks(series, length)
-    if len(blocks) < 2 * shortest:
-        return [0, len(series)]
-    sigma = max(_scatter(blocks), finest)
-    borders = [0, len(series)]
-    waiting = [(0, len(series))]
-    while waiting:
-        start, end = waiting.pop()
-        step = _step(_blocks(series[start:end], length), shortest, sigma)
-        if step:
-            border = start + _to_the_value(series[start:end], step * length, length)
-            borders.append(border)
-            waiting += [(start, border), (border, end)]
-    return _told_apart(series, sorted(borders), least, sigma * np.sqrt(length))
-
-
-def _scatter(blocks: Array) -> float:
-    """The sigma of a block, from differences of neighbours without the largest."""
-    squares = np.sort(np.diff(blocks) ** 2)
-    kept = max(len(squares) - MAX_BORDERS, 1)
-    # What is left of the variance of Gaussian values without those beyond the bound.
-    share = kept / len(squares)
-    bound = float(ndtri((1 + share) / 2))
-    left = (
-        1 - 2 * bound * np.exp(-(bound**2) / 2) / np.sqrt(2 * np.pi) / share if share < 1 else 1.0
-    )
-    return float(np.sqrt(squares[:kept].mean() / 2 / left))
-
-
-def _blocks(series: Array, length: int) -> Array:
-    """Means of consecutive blocks; what is left at the end is left out."""
-    number = len(series) // length
-    return np.asarray(series[: number * length].reshape(number, length).mean(axis=1))
-
-
-def _step(blocks: Array, shortest: int, sigma: float) -> int:
-    """Before which block the mean most likely changes; 0 if nowhere."""
-    n = len(blocks)
-    if n < 2 * shortest:
-        return 0
-    k = np.arange(shortest, n - shortest + 1)
-    away = np.cumsum(blocks - blocks.mean())[k - 1]
-    likely = np.abs(away) / np.sqrt(k * (n - k) / n)
-    best = int(np.argmax(likely))
-    return int(k[best]) if likely[best] > MIN_CHANGE_SIGMA * sigma else 0
-
-
-def _to_the_value(series: Array, border: int, length: int) -> int:
-    """The border of two means, within two blocks of `border`, with the least squares left over."""
-    before, after = series[: border - length].mean(), series[border + length :].mean()
-    start, end = max(border - 2 * length, 0), min(border + 2 * length, len(series))
-    near = series[start:end]
-    squares = np.cumsum((near - before) ** 2 - (near - after) ** 2)
-    return start + 1 + int(np.argmin(squares[:-1]))
-
-
-def _told_apart(series: Array, borders: list[int], least: float, sigma: float) -> list[int]:
-    """The borders without those on both sides of which the mean is the same.
-
-    That is within `least`, or within what values that scatter by `sigma` are sure of.
-    """
-    while len(borders) > 2:
-        means = [float(series[a:b].mean()) for a, b in pairwise(borders)]
-        unsure = (
-            MIN_CHANGE_SIGMA * sigma * np.sqrt(1 / np.diff(borders)[1:] + 1 / np.diff(borders)[:-1])
-        )
-        apart = np.abs(np.diff(means)) / np.maximum(unsure, least)
-        nearest = int(np.argmin(apart))
-        if apart[nearest] >= 1:
-            break
-        borders = borders[: nearest + 1] + borders[nearest + 2 :]
-    return borders

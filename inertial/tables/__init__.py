@@ -33,27 +33,20 @@ from inertial.tables.diagnosed import (
 from inertial.tables.estimated import (
     ALLAN,
     AVERAGING,
-    BANDWIDTHS,
     COVARIANCE,
     DIFFERENCES,
-    ENCODER,
-    EPOCHS,
     FIT,
     FIT_MANOEUVRES,
     LEVELS,
-    MOTIONS,
     NOISE,
     NOISE_TERMS,
-    NOT_STUDIED,
     PARAMETERS,
     POSITIONS,
     SPECTRA,
-    SPREADS,
     SWITCH_ONS,
-    TIME_ANGLE,
     WANTED,
-    WINDOWS,
 )
+from inertial.tables.extended import GAIN, GAIN_EFFECTS, HELD_OUT, MOVED, WORTH
 from inertial.tables.historical import FORECAST, JUMPS, REPEATABILITY
 from inertial.tables.navigated import (
     ALIGNMENTS,
@@ -103,6 +96,16 @@ from inertial.tables.shared import (
     STATIC_PHASES,
     UNITS,
 )
+from inertial.tables.studied import (
+    BANDWIDTHS,
+    ENCODER,
+    EPOCHS,
+    MOTIONS,
+    NOT_STUDIED,
+    SPREADS,
+    TIME_ANGLE,
+    WINDOWS,
+)
 from inertial.tables.unmodelled import (
     CAUSE_POSITIONS,
     DETECTION_LIMITS,
@@ -110,13 +113,9 @@ from inertial.tables.unmodelled import (
     EFFECT_FINDINGS,
     EFFECTS,
     FIDELITY,
-    GAIN,
-    GAIN_EFFECTS,
-    HELD_OUT,
     INFORMATION_MATRIX,
     LINES,
     MEMBERS,
-    MOVED,
     RANDOM_WALKS,
     SCORE_VECTOR,
     SCORES,
@@ -124,5 +123,4 @@ from inertial.tables.unmodelled import (
     STRUCTURE_MANOEUVRES,
     STRUCTURE_POINTS,
     STRUCTURES,
-    WORTH,
 )
