@@ -198,7 +198,7 @@ def _instrument(kinds: Sequence[Kind], name: str) -> Iterator[str]:
         yield f"  gyro: {flow(axes=axes)}" + _guess(_("gravity turns as if so"))
     if len(kinds) == 1:
         yield "  format:"
-        yield from _format(kinds[0], ("accelerometer", "gyro"), "    ")
+        yield from _format(kinds[0], ("accelerometer", "gyro"))
 
 
 def _axes(kinds: Sequence[Kind]) -> list[str] | None:
@@ -240,36 +240,36 @@ def _formats(kinds: Sequence[Kind]) -> dict[str, list[str]]:
     both, found = ("accelerometer", "gyro"), {}
     for number, kind in enumerate(kinds, 1):
         if len(kinds) > 1:
-            found[f"format-{number}"] = list(_format(kind, both, "    "))
+            found[f"format-{number}"] = list(_format(kind, both))
         if len(kind.columns.time) > 1:
-            found[f"gyros-{number}"] = list(_format(kind, ("gyro",), "    "))
+            found[f"gyros-{number}"] = list(_format(kind, ("gyro",)))
     return {name: [f"  {name}:", *lines] for name, lines in found.items()}
 
 
-def _format(kind: Kind, sensors: Sequence[str], indent: str) -> Iterator[str]:
+def _format(kind: Kind, sensors: Sequence[str]) -> Iterator[str]:
     """The format of a log that holds these sensors, as far as they are in one file."""
     columns, timing = kind.columns, kind.timing
     triads = {"accelerometer": columns.accel, "gyro": columns.gyro}
     file = next((triad.file for key in sensors if (triad := triads[key]) is not None), 0)
     log = kind.parts[0].logs[file]
     for key, value in log.layout.items():
-        yield f"{indent}{key}: {scalar(value)}"
+        yield f"    {key}: {scalar(value)}"
     if log.kind == "rawimus":
         return
     guess = _guess(timing.evidence) if timing.guessed else ""
     if kind.means:
         number = "null" if columns.mean_of is None else scalar(columns.mean_of)
-        yield f"{indent}mean_of: {number}{_guess(timing.evidence)}"
+        yield f"    mean_of: {number}{_guess(timing.evidence)}"
     else:
-        yield f"{indent}time: {flow(**_time(kind, file))}{guess}"
+        yield f"    time: {flow(**_time(kind, file))}{guess}"
     if columns.temperature is not None and file == 0:
         name, unit = columns.temperature
-        yield f"{indent}temperature: {flow(column=name, unit=unit)}{_guess(_('by its name'))}"
+        yield f"    temperature: {flow(column=name, unit=unit)}{_guess(_('by its name'))}"
     for key, scale in (("accelerometer", kind.accel), ("gyro", kind.gyro)):
         triad = triads[key]
         if log.kind == "columns" and triad and scale and triad.file == file:
             guess = _guess(scale.evidence) if scale.guessed or columns.guessed else ""
-            yield f"{indent}{key}: {flow(**_triad(kind, triad, scale))}{guess}"
+            yield f"    {key}: {flow(**_triad(kind, triad, scale))}{guess}"
 
 
 def _time(kind: Kind, file: int) -> dict[str, Any]:

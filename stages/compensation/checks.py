@@ -9,10 +9,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
-from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
 from inertial.campaign.rate_segments import Recorded, position_of
@@ -187,15 +185,6 @@ def _row(quantity: str, place: str, mount: str, sentence: str) -> Row:
         "unit": "",
         "sentence": sentence,
     }
-
-
-def table_of(rows: list[Row]) -> pd.DataFrame:
-    """The table of checks, which may be empty."""
-    if not rows:
-        return tables.CHECKS.empty()
-    frame = pd.DataFrame(rows)
-    numbers = [column.name for column in tables.CHECKS.columns if column.unit in ("as unit", "1")]
-    return frame.astype(dict.fromkeys(numbers, np.float64))
 
 
 # --- Static positions ---

@@ -25,7 +25,7 @@ from inertial.tables.stage import Pieces, Stage
 from inertial.text.messages import _
 from inertial.text.parameters import FREE
 from stages.compensation.characteristics import ByCounts, characteristics, least_changes
-from stages.compensation.checks import checks, not_compensated, table_of
+from stages.compensation.checks import checks, not_compensated
 from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
 from stages.compensation.residuals import residuals
@@ -84,7 +84,7 @@ def compensation(
         shares += budget_rows(data, measurement, fits)
         for sensor in (measurement.accelerometer, measurement.gyro):
             rows += not_compensated(sensor, data.mount)
-    yield "checks", table_of(rows)
+    yield "checks", rows
     yield "characteristics", tables.CHARACTERISTICS.frame(figures)
     yield "uncertainty_budget", tables.UNCERTAINTY_BUDGET.frame(shares)
     for left in residuals(attitudes, measurements, simulated):

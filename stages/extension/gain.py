@@ -16,7 +16,7 @@ from inertial.estimation.random_walk import MeasuredDrift
 from inertial.tables import AXES
 from stages.extension.channels import Channels, Mean, system_of
 from stages.extension.cross_validation import CrossValidation, Fold, drop_of, fold_of, snr_squared
-from stages.extension.models import SENSORS, Models
+from stages.extension.models import SENSORS, Models, with_columns
 
 Array = NDArray[np.float64]
 Row = Mapping[str, Any]
@@ -112,16 +112,7 @@ def _of_channel(
 def _fitted(system: System) -> tuple[float, int, EffectInformation]:
     """Chi-squared and degrees without the effects, and the information about them."""
     reduced = system.effect_information()
-    kept = [i for i, (kind, _) in enumerate(system.names) if kind != "effect"]
-    joint = System(
-        system.design[:, kept],
-        system.observed,
-        system.sigma,
-        system.prior[kept],
-        system.prior_sigma[kept],
-        system.parameters,
-        tuple(system.names[i] for i in kept),
-    ).solve()
+    joint = with_columns(system, frozenset()).solve()
     return joint.chi_squared, joint.degrees, reduced
 
 

@@ -98,13 +98,7 @@ def extension(
         for table, row in extended.rows(simulated):
             rows[table].append(row)
     covariances = rows.pop("covariance")
-    written = {
-        name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
-        if rows.get(name)
-        else table.empty()
-        for name, table in DECLARED.writes.items()
-    }
-    return written | ({"covariance": pd.concat(covariances)} if covariances else {})
+    return rows | {"covariance": pd.concat(covariances) if covariances else []}
 
 
 def causes_of(

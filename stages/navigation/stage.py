@@ -98,10 +98,7 @@ def navigation(
         rows["navigation_errors"] += navigator.error_rows
         rows["navigation_courses"] += navigator.course_rows
         rows["navigation_shares"] += navigator.share_rows
-    return {
-        name: pd.DataFrame(rows[name]) if rows[name] else table.empty()
-        for name, table in DECLARED.writes.items()
-    }
+    return rows
 
 
 def published_triads(rows: Sequence[Row]) -> dict[str, Triad]:

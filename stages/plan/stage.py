@@ -91,7 +91,7 @@ def plan(
             {"file": path.name, "size": path.stat().st_size, "sha256": hash_of_file(path)}
             for path in [campaign[0], *used]
         ),
-        "published": pd.DataFrame(others) if others else tables.PUBLISHED.empty(),
+        "published": others,
         "certificate": stated.items,
         "standards": stated.standards(),
         "tolerances": [*stated.tolerances()],

@@ -1,11 +1,11 @@
 """What a recording shows without the plan: faults of its time, its readings, its scale."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from inertial import tables
 from inertial.campaign.detection import Examination, ExaminationOfLogs
 from inertial.campaign.findings import Detection, close_ups, detections_of, masks_of, table_of
 from inertial.campaign.log_properties import ChannelStatistics, Stated, stated_by, windows_of
@@ -87,9 +87,9 @@ class _FoldedClocks:
         return {log: found.get(clock, ()) for log, clock in self._clock.items()}
 
 
-def _gaps(detections: list[Detection]) -> pd.DataFrame:
+def _gaps(detections: list[Detection]) -> list[dict[str, Any]]:
     """Every single gap, though many may be one finding."""
-    rows = [
+    return [
         {
             "log": log,
             "record": event.first,
@@ -101,7 +101,6 @@ def _gaps(detections: list[Detection]) -> pd.DataFrame:
         if isinstance(each.detector, Gap)
         for log, event in each.events
     ]
-    return pd.DataFrame(rows) if rows else tables.GAPS.empty()
 
 
 STAGE = Stage(quality, DECLARED, gathers={"stated": stated_by})

@@ -1,6 +1,6 @@
 """What the IMU should have read, by the forward model with the solved parameters."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -42,14 +42,14 @@ def simulation(
         if rests:
             yield "simulated", _frame([part for part, _ in rests])
             rows = [row for part, s in rests for row in _fidelity(part, data, "at rest", s)]
-            yield "fidelity", _table(rows)
+            yield "fidelity", rows
         if data.result.gyro is None:
             continue
         whole = [m for m in data.plan if _whole(m, data.performed[m.name])]
         for m, parts in _samples_of(samples, repairs, segments, whole):
             part, how = _turn(data, m, parts, segments)
             yield "simulated", _frame([part])
-            yield "fidelity", _table(_fidelity(part, data, how, data.clocks[m.log].step))
+            yield "fidelity", list(_fidelity(part, data, how, data.clocks[m.log].step))
 
 
 def _whole(m: Manoeuvre, done: Performed) -> bool:
@@ -194,11 +194,6 @@ def _fidelity(part: Simulated, data: CampaignData, how: str, seconds: float) -> 
                 "noise_rms": float(level) / np.sqrt(seconds),
                 "samples": len(there),
             }
-
-
-def _table(rows: Iterable[Row]) -> pd.DataFrame:
-    found = list(rows)
-    return pd.DataFrame(found) if found else tables.FIDELITY.empty()
 
 
 STAGE = Stage(simulation, DECLARED, gathers=MOUNTS)

@@ -88,10 +88,7 @@ def studies(
             else:
                 _add(rows, {"not_studied": [_not_studied(data, name, found)]})
         _add(rows, _of_turns(data, motions, gyros))
-    return {
-        name: pd.DataFrame(rows[name]) if rows[name] else table.empty()
-        for name, table in DECLARED.writes.items()
-    }
+    return rows
 
 
 def _add(rows: dict[str, list[Row]], found: Mapping[str, list[Row]]) -> None:
