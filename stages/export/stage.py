@@ -28,8 +28,7 @@ from stages.export.dcc import dcc, stated_by
 from stages.export.declared import DECLARED
 from stages.export.document import as_json, as_yaml, document
 from stages.export.examples import examples_of
-from stages.export.kalibr import imu_yaml
-from stages.export.ros import ros_yaml
+from stages.export.noise_yaml import imu_yaml, ros_yaml
 
 FITTED = ("accelerometer", "gyroscope", "extension")  # stages that keep fits
 

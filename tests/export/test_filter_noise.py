@@ -15,8 +15,7 @@ from stages.export.autopilots import ARDUPILOT, PX4, Autopilot, parameter_file
 from stages.export.calibration import PARAMETERS, Calibration, Use
 from stages.export.document import as_json, document
 from stages.export.filter_noise import FilterNoise, filter_noise
-from stages.export.kalibr import imu_yaml
-from stages.export.ros import ros_yaml
+from stages.export.noise_yaml import imu_yaml, ros_yaml
 from tests.export.made_up import INSTABILITY, USE, WALK, calibration, mount, with_terms
 
 SCHEMA = json.loads(

@@ -11,7 +11,7 @@ import yaml
 
 from stages.export.autopilots import ARDUPILOT, PX4, parameter_file
 from stages.export.calibration import Calibration, Triad
-from stages.export.kalibr import imu_yaml
+from stages.export.noise_yaml import imu_yaml
 from tests.export.made_up import EVIL, REASON, USE, calibration, mount, named
 from tests.export.readers import Array, corrected, mavproxy, probes, qgroundcontrol, remaining
 
