@@ -190,10 +190,6 @@ class ColumnLog:
         """What its samples' time 0 is by its own clock, which is the encoder's too, s."""
         return self._first / self._ticks
 
-    def epoch(self, origin: int) -> dict[str, Any]:
-        """Nothing: its clock is its own."""
-        return {"epoch_gps": None, "recorded_on": None}
-
 
 # ---- Unsigned counts that were not said to be unsigned: refused, with their zero or their bits
 

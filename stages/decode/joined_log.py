@@ -170,10 +170,6 @@ class JoinedLog:
         """What its samples' time 0 is by its own clock, which is the encoder's too, s."""
         return self._log.began(origin, absolute=absolute) + self._offset
 
-    def epoch(self, origin: int) -> dict[str, Any]:
-        """Nothing: its clock is its own."""
-        return self._log.epoch(origin)
-
 
 def _joined(time: Reals, others: _Readings) -> Reals:
     """The other sensor's readings at the samples of one, (n, 3); NaN where there are none."""

@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from inertial.formats.novatel import novatel_reader
 
 
+NO_EPOCH = {"epoch_gps": None, "recorded_on": None}  # of a log whose clock is its own
+
+
 class ReceiverLog:
     """A log of a NovAtel receiver: GPS time, and increments in counts.
 
@@ -81,7 +84,7 @@ class ReceiverLog:
     def epoch(self, origin: int) -> dict[str, Any]:
         """Where time 0 lies in GPS time, and the day of the first sample."""
         if self.first is None:
-            return {"epoch_gps": None, "recorded_on": None}
+            return NO_EPOCH
         return {
             "epoch_gps": origin / NANOSECONDS,
             "recorded_on": utc(self.first).date().isoformat(),

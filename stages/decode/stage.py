@@ -30,7 +30,7 @@ from stages.decode.decoded import (
 )
 from stages.decode.joined_log import JoinedLog, of_both_sensors
 from stages.decode.no_samples import no_samples
-from stages.decode.receiver_log import ReceiverLog
+from stages.decode.receiver_log import NO_EPOCH, ReceiverLog
 from stages.decode.table_angle import TableAngle
 
 AnyLog = ReceiverLog | ColumnLog | JoinedLog
@@ -104,7 +104,7 @@ def _pieces_of(
     clock = {
         "log": log.name,
         "clock": log.clock,
-        **log.epoch(origin),
+        **(log.epoch(origin) if isinstance(log, ReceiverLog) else NO_EPOCH),
         "from_s": ends[0] if ends else None,
         "to_s": ends[-1] if ends else None,
         "records": records,
