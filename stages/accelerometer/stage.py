@@ -1,26 +1,31 @@
 """The accelerometers from rests and steady turns: bias, M, mounting, with covariance."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from math import degrees
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
-from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
+from inertial.campaign.estimates import NAMES, Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
-from inertial.campaign.records import omissions
+from inertial.campaign.records import omissions, with_mount
 from inertial.campaign.rotating_positions import LEVER_ARM, turning_rests
 from inertial.campaign.static_positions import averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
 from inertial.estimation.accelerometers import Reference, StaticForce, equations, triad_of, weighted
-from inertial.estimation.position_outlier import off_position
+from inertial.estimation.position_outlier import OffPosition, off_position
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
 from inertial.physics.forward import Triad
+from inertial.tables import AXES
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
+from inertial.text.numbers import fixed, significant
+from inertial.text.parameters import PARTS
+from inertial.text.units import quantity
 from stages.accelerometer.declared import DECLARED
-from stages.accelerometer.position_findings import findings
 from stages.accelerometer.source_formulas import add_pooled_positions, add_six_positions
 
 CURES = {
@@ -31,6 +36,12 @@ CURES = {
     "matrix": _(
         "no rests differ enough along {axis}: add one with +{axis} up, one with -{axis} up"
     ),
+}
+MIN_NOTABLE_SIGMA = 1.0  # sigmas of the estimate by which a term must move to be named
+WORDS = {
+    "bias": _("bias of the {row} accelerometer"),
+    "scale": _("scale factor of the {row} accelerometer"),
+    "cross": _("response of the {row} accelerometer to force along {column}"),
 }
 
 
@@ -96,11 +107,75 @@ def _position_findings(
     drift: MeasuredDrift,
     mount: str,
 ) -> Iterator[Finding]:
-    """The position in error, where a single one explains the misfit of the model."""
+    """The position in error, where a single one explains the misfit of the model.
+
+    Only where the rests do not determine all parameters: else criticism weighs the position against
+    every effect of the accelerometers, and what it finds likelier is said once.
+    """
     off = off_position(rests, reference, result, effect_sigma, drift)
     if off is not None:
         joint = weighted(rests, reference, effect_sigma=effect_sigma, measured=drift)
-        yield from findings(off, joint.sigma[: triad.UNKNOWNS], mount)
+        yield _finding(off, joint.sigma[: triad.UNKNOWNS], mount)
+
+
+def _finding(off: OffPosition, sigma: NDArray[np.float64], mount: str) -> Finding:
+    """With the affected parameters; `sigma`: (12,), of the parameters without the scatter."""
+    cause, several = "table_position_error", len(off.positions) > 1
+    names = _(" or ").join(off.positions)
+    axis = int(np.argmax(np.abs(off.about)))
+    affected = [
+        _change(name, float(off.moved[i]))
+        for i, name in enumerate(NAMES)
+        if abs(off.moved[i]) > MIN_NOTABLE_SIGMA * sigma[i]
+    ]
+    size = fixed(degrees(off.tilt), 4)
+    return Finding(
+        id="/".join(("accelerometer", with_mount(cause, mount), off.positions[0])),
+        cause=cause,
+        mount=mount,
+        sensor="accel",
+        manoeuvre=off.positions[0],
+        size=off.tilt,
+        unit="rad",
+        p_value=off.p_value,
+        severity=2,
+        sentence=_(
+            "The position {names} deviates by {size} ± {fixed}°, mostly about {axes}, "
+            "from all others.",
+            names=names,
+            size=size,
+            fixed=fixed(degrees(off.sigma), 4),
+            axes=AXES[axis],
+        )
+        + (_(" The readings do not distinguish which of these it is.") if several else "")
+        + _(
+            " Or the accelerometers have an error outside the twelve parameters: these rests do "
+            "not tell the two apart."
+        ),
+        consequence=(
+            _(
+                "With its attitude estimated, {affected}. The joint estimate models it as "
+                "scatter between positions.",
+                affected="; ".join(affected),
+            )
+            if affected
+            else _("No parameter moves by more than its sigma.")
+        ),
+        action=_("Set this position again and record it; or state position_sigma_arcsec as it is."),
+    )
+
+
+def _change(name: str, by: float) -> str:
+    parts = PARTS[name]
+    kind = parts.kind
+    words = WORDS[kind].format(row=parts.sensor_axis, column=parts.input_axis)
+    unit = quantity(name, "m/s²" if kind == "bias" else "1").laboratory
+    return _(
+        "the {words} moves by {significant} {name}",
+        words=words,
+        significant=significant(unit.of(by), 3),
+        name=unit.name,
+    )
 
 
 STAGE = Stage(accelerometer, DECLARED, gathers=MOUNTS)
