@@ -182,3 +182,29 @@ def test_the_angle_of_a_log_is_continuous_over_its_pieces():
     continuous = Continuous()
     pieces = np.split(np.mod(angle, 2 * np.pi), [300, 301, 700])
     np.testing.assert_allclose(np.concatenate([continuous(piece) for piece in pieces]), angle)
+
+
+def test_between_rests_of_the_plan_the_angle_of_a_turn_is_the_encoders_too():
+    """As a turn-and-stop plan has it: no turn has a rest of its own. The table turns 2° less."""
+    document = deepcopy(laboratory.read(SOURCE).document)
+    turns = document["campaign"]["plan"][6:]
+    at = {turn["id"]: {"up": turn["up"], "log": "session.csv"} for turn in turns}
+    document["campaign"]["plan"] = [
+        part
+        for turn in turns
+        for part in (
+            {"id": f"{turn['id']}-before", "do": "rest", "seconds": 30} | at[turn["id"]],
+            turn | at[turn["id"]],
+            {"id": f"{turn['id']}-after", "do": "rest", "seconds": 30} | at[turn["id"]],
+        )
+    ]
+    document["handling"] = {"still_s": 0.5, "change_s": 5}
+    made = chain.in_memory_of(document, "gyroscope")
+    turn = made["segment/manoeuvres"].set_index("manoeuvre").loc["x-forward"]
+    assert turn["angle"] == pytest.approx(np.radians(358) * (1 + ENCODER), abs=5 * ARC_SECOND)
+    assert not set(made["segment/blocks"].query("manoeuvre == 'x-forward'")["phase"]) & {
+        "rest-before",
+        "rest-after",
+    }
+    row = made.parameters("gyroscope").loc["scale_x"]
+    assert row["value"] == pytest.approx(SCALES["x"] - ENCODER, abs=3.5 * row["sigma"])

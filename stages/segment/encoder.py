@@ -18,12 +18,20 @@ from inertial.text.numbers import fixed, significant
 class ByEncoder:
     """A turn as its encoder has it, and what the report says of that, empty without an encoder.
 
-    `used`: whether its readings count.
+    `used`: whether its readings count; `on_record`: rad, by what it turned in the recorded motion
+    where its own blocks hold no rest before or after it; that is the whole turn if all of the
+    motion is recorded, with a rest of the plan before and after it.
     """
 
     manoeuvre: Manoeuvre
     remark: str = ""
     used: bool = True
+    on_record: float | None = None
+
+    @property
+    def from_rest_to_rest(self) -> "ByEncoder":
+        """The same of a turn that is recorded from a rest to a rest."""
+        return self if self.on_record is None else _whole(self.manoeuvre, self.on_record)
 
 
 def by_encoder(
@@ -61,18 +69,22 @@ def by_encoder(
             ),
             used=False,
         )
-    angle = fixed(degrees(value), 4)
     if in_part:
-        return ByEncoder(m, _("By the encoder it turned by {angle}° on record.", angle=angle))
+        angle = fixed(degrees(value), 4)
+        remark = _("By the encoder it turned by {angle}° on record.", angle=angle)
+        return ByEncoder(m, remark, on_record=value)
     if steady:
         sigma = np.sqrt(2) * angle_sigma / float(np.sum(seconds))
         return ByEncoder(
             replace(m, rate=value, rate_sigma=sigma),
             _("The rate is the encoder's, {rate} °/s.", rate=fixed(degrees(value), 5)),
         )
-    return ByEncoder(
-        replace(m, angle=value), _("The angle is the encoder's, {angle}°.", angle=angle)
-    )
+    return _whole(m, value)
+
+
+def _whole(m: Manoeuvre, angle: float) -> ByEncoder:
+    remark = _("The angle is the encoder's, {angle}°.", angle=fixed(degrees(angle), 4))
+    return ByEncoder(replace(m, angle=angle), remark)
 
 
 def _angle(blocks: pd.DataFrame) -> float:

@@ -125,10 +125,10 @@ def segment(
     read_once(samples, [block_sums, segment_times, traces, rests, index], read_as)
     blocks, segments = block_sums.table(), segment_times.table()
     by_encoder = plan_by_encoder(made.plan, blocks, stated.angle_sigma, angle_tolerance)
-    plan = [by_encoder[m.name].manoeuvre if m.name in by_encoder else m for m in made.plan]
     turned, by_encoder = _turned(
         places.turns, by_encoder, blocks, block_sums, examined.gaps, made.level, angle_tolerance
     )
+    plan = [by_encoder[m.name].manoeuvre if m.name in by_encoder else m for m in made.plan]
     performed = _performed(plan, places.performed | turned, block_sums, made)
     recorded = recorded_of(
         plan,
@@ -212,22 +212,17 @@ def _turned(
     performed, told_of = {}, dict(by_encoder)
     for located, place, stated in turns:
         told = told_of.get(stated.name, ByEncoder(stated))
-        m = told.manoeuvre
-        clipped = sums.clipped(m.name).get("", np.zeros(6, bool))[3:]
-        done = completeness.turn(
-            located,
-            place,
-            m,
-            in_motion.get(m.name, blocks.iloc[:0]),
-            gaps,
-            level,
-            tolerance,
-            clipped,
-        )
+        clipped = sums.clipped(stated.name).get("", np.zeros(6, bool))[3:]
+        own = in_motion.get(stated.name, blocks.iloc[:0])
+        given = (own, gaps, level, tolerance, clipped)
+        done = completeness.turn(located, place, told.manoeuvre, *given)
+        if done.complete and told.on_record is not None:
+            told = told.from_rest_to_rest
+            done = completeness.turn(located, place, told.manoeuvre, *given)
         if located.axes.gyro != AS_NAMED:
             done, told = completeness.by_other_axes(done), replace(told, used=False)
-        told_of[m.name] = told
-        performed[m.name] = replace(done, sentence=f"{done.sentence} {told.remark}".rstrip())
+        told_of[stated.name] = told
+        performed[stated.name] = replace(done, sentence=f"{done.sentence} {told.remark}".rstrip())
     return performed, told_of
 
 
