@@ -148,12 +148,37 @@ def test_a_motion_with_masked_records_is_left_out_by_name(imu, recorded):
     assert "by-hand-04 to by-hand-05" in fit.loc[0, "used"]
 
 
+def with_holes(recorded, samples):
+    """The blocks without every hundredth record of the motions and those after it."""
+    moving = (recorded["phase"] == "between").to_numpy()
+    number = np.cumsum(moving)
+    hidden = moving & ((number + 50) % 100 < samples)
+    seconds = float(recorded.loc[moving, "seconds"].median())
+    behind = np.roll(hidden, 1) & ~hidden
+    return recorded.assign(missing_s=np.where(behind, samples * seconds, 0.0))[~hidden]
+
+
+def test_samples_that_a_link_loses_here_and_there_cost_no_motion(imu, recorded):
+    """One of a hundred: all gyros had "hardly turned", for no motion was used."""
+    table, fit, _ = rows(add_free_gyros, "gyroscope", with_holes(recorded, 1), imu)
+    assert not fit.loc[0, "left_out"]
+    values = table.loc[["scale_x", "cross_xy", "cross_zx", "scale_z"]]
+    truth = [imu.gyro[0, 0] - 1, imu.gyro[0, 1], imu.gyro[2, 0], imu.gyro[2, 2] - 1]
+    assert np.abs((values["value"] - truth) / values["sigma"]).max() < 3.5
+
+
+def test_of_longer_holes_the_motions_are_left_out_and_that_is_the_reason(imu, recorded):
+    table, fit, _ = rows(add_free_gyros, "gyroscope", with_holes(recorded, 8), imu)
+    assert "are lost or masked while it moves" in fit.loc[0, "left_out"]
+    assert "carry no attitude; of settle to by-hand-01: 0.16 s" in table.loc["scale_x", "reason"]
+
+
 def test_without_blocks_of_the_motions_the_gyros_say_so(imu, recorded):
     table, fit, _ = rows(add_free_gyros, "gyroscope", recorded[recorded["phase"] == "rest"], imu)
     assert "the motion between them is not recorded" in fit.loc[0, "left_out"]
     assert table.loc[["bias_x", "bias_y", "bias_z"], "value"].notna().all()
     assert np.isnan(table.loc["scale_x", "value"])
-    assert "hardly turned about x" in table.loc["scale_x", "reason"]
+    assert "the motion between them is not recorded" in table.loc["scale_x", "reason"]
 
 
 def test_what_six_faces_do_not_tell_is_said_with_the_rest_that_would(imu):

@@ -1,8 +1,8 @@
 """The motions from each static position of unknown attitude to the next.
 
 A motion is the blocks of phase `between`, one for each record, from the end of a rest to the
-beginning of the next one in the same log; where one of them is missing, no attitude can be carried
-through.
+beginning of the next one in the same log. A few samples that are lost or masked here and there are
+interpolated between those beside them; where more are missing, no attitude can be carried through.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,6 +23,8 @@ from inertial.text.messages import _
 Array = NDArray[np.float64]
 
 BETWEEN = "between"  # phase of the blocks from one rest to the next
+MAX_LOST_RUN = 3  # samples in a row that are interpolated: a hand changes its rate in 50 ms
+MAX_LOST_SHARE = 0.1  # of a motion
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,7 @@ def passages_of(
         if refusal := refusal_of(part, before, behind, density):
             left_out.append(Part(name, BETWEEN, refusal))
             continue
+        part = _interpolated(part)
         seconds, time, temperature = (
             part[column].to_numpy(np.float64) for column in ("seconds", "time", "temperature")
         )
@@ -75,17 +78,35 @@ def refusal_of(
         return _("the motion between them is not recorded")
     ends = np.append(before.after, part["to_record"].to_numpy(np.int64))
     starts = np.append(part["from_record"].to_numpy(np.int64), behind.first)
-    masked = int((starts - ends).sum())
+    timed = np.append(part["missing_s"].to_numpy(np.float64), 0.0) != 0
+    masked = int((starts - ends)[~timed].sum())
     if masked:
         return _(
             "{masked} records are masked while it moves, so no attitude is carried through",
             masked=masked,
         )
-    lost = float(part["missing_s"].sum())
-    if lost:
+    lost = part["missing_s"].to_numpy(np.float64)
+    step = float(part["seconds"].sum() / part["count"].sum())
+    long = lost.max() > (MAX_LOST_RUN + 0.5) * step or lost.min() < -step / 2
+    if long or lost.sum() > MAX_LOST_SHARE * float(part["seconds"].sum()):
         return _(
-            "{lost:.2f} s are lost while it moves, so no attitude is carried through", lost=lost
+            "{lost:.2f} s of readings are lost or masked while it moves, up to {longest:.2f} s in one "
+            "piece, so no attitude is carried through",
+            lost=float(np.abs(lost).sum()),
+            longest=float(np.abs(lost).max()),
         )
     if not np.isfinite(density).all() or part[[*GYRO, "seconds"]].isna().any(axis=None):
         return _("all three gyros and the time are needed to carry an attitude through")
     return ""
+
+
+def _interpolated(part: pd.DataFrame) -> pd.DataFrame:
+    """The blocks with one in each hole, between those beside it."""
+    holes = np.flatnonzero(part["missing_s"].to_numpy(np.float64) > 0)
+    if not len(holes):
+        return part
+    columns = [*GYRO, "seconds", "time", "temperature"]
+    values = part[columns].to_numpy(np.float64)
+    between = (values[holes - 1] + values[holes]) / 2
+    between[:, columns.index("seconds")] = part["missing_s"].to_numpy(np.float64)[holes]
+    return pd.DataFrame(np.insert(values, holes, between, axis=0), columns=columns)

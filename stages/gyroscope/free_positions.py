@@ -3,7 +3,7 @@
 The method is `free_positions`, as that of the accelerometers, in whose axes its result is.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,8 +11,8 @@ import numpy as np
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.findings import Finding
-from inertial.campaign.passages import passages_of
-from inertial.campaign.records import omissions, with_mount
+from inertial.campaign.passages import RecordedPassage, passages_of
+from inertial.campaign.records import Part, omissions, with_mount
 from inertial.campaign.unknown_attitude import fitted_to, free_static_positions
 from inertial.estimation.between_positions import Prior, fit
 from inertial.estimation.least_squares import Estimate
@@ -54,7 +54,7 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
     passages = [recorded.passage for recorded in moving]
     fitted, off = fit(stops, passages, prior, data.noise.degrees)
-    why = reasons(fitted.estimate.determined, recorded, "gyro", CURES)
+    why = reasons(fitted.estimate.determined, recorded, "gyro", _cures(moving, broken))
     estimates.add_triad(FREE, fitted.estimate, why)
     parts = [*(position.force.part for position in positions), *(each.part for each in moving)]
     reason = [NOT_AT_REST] * len(stops) + [SLIPPED] * len(moving)
@@ -65,6 +65,20 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     if turning > MAX_BY_HAND:
         return [_unit(float(turning), data.mount)]
     return list(_count_size(fitted.estimate, data.mount))
+
+
+def _cures(moving: Sequence[RecordedPassage], broken: Sequence[Part]) -> dict[str, str]:
+    """What determines the parameters that are not; most motions may be recorded in part only."""
+    if len(broken) <= len(moving):
+        return CURES
+    of_motions = _(
+        "of {all} motions between rests {broken} carry no attitude; of {first}: {reason}",
+        all=len(broken) + len(moving),
+        broken=len(broken),
+        first=broken[0].manoeuvre,
+        reason=broken[0].reason,
+    )
+    return CURES | {"matrix": of_motions}
 
 
 def _unit(turning: float, mount: str) -> Finding:
