@@ -10,12 +10,16 @@ of stamp − T k over a second on one side of a sample, less that on the other s
 number of samples missing there. The line through these least values is the clock. What they scatter
 about it by is what its slope is uncertain by: two of one busy spell of the host are not two, and
 stamps in steps of q do not show a slope that changes them by less than q.
+
+Where a link loses a sample in every second or so, no second tells its neighbour from itself. Stamps
+that scatter by less than a third of an interval count the samples by themselves, then: by the phase
+of an interval at which they lie, which moves slowly.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import minimum_filter1d
+from scipy.ndimage import median_filter, minimum_filter1d
 
 from inertial.signal.detector import Array, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA
@@ -33,6 +37,13 @@ MIN_SHIFT_SIGMA = 6.0
 MAX_APART = 4  # windows: one gap in eight lies within half of the distances
 REFINEMENTS = 3  # of the interval by the samples that arrive without delay
 MIN_WINDOWS = 4  # through whose least values a line is laid
+PHASE_SAMPLES = 200  # whose stamps show the phase: by then the interval is off by a tenth at most
+PHASE_NEIGHBOURS = 7  # stamps, of which most are nearest to their own number
+PHASE_PIECES = 50  # of so many samples, by which the interval is found
+PHASE_TRIALS = np.linspace(-0.03, 0.03, 121)  # relative, from the mean of the usual steps
+MAX_LOST_SHARE = 0.2  # of the samples: packets of samples in quick succession are no loss
+MAX_PHASE_SCATTER = 0.3  # intervals, of stamps that count the samples by themselves
+MIN_IMPROVEMENT = 3.0  # of the scatter, by such a count
 TINY = float(np.finfo(float).tiny)
 
 
@@ -90,9 +101,24 @@ def regular_clock(time: Array) -> RegularClock | None:
     # Where stamps stand still a sample that comes before the next one or after it is none lost.
     shortest = _shortest_gap(delay, interval, window) + interval * bool((even != time).any())
     number = _numbers(missing + _gaps(delay, interval, window, shortest))
+    found = _through(time, even, number, interval, window, shortest)
+    by_phase = _numbers_by_phase(time)
+    if by_phase is not None:
+        numbers, interval = by_phase
+        other = _through(time, even, numbers, interval, window, MIN_SHIFT * interval)
+        little = other.scatter < MAX_PHASE_SCATTER * other.interval
+        if little and MIN_IMPROVEMENT * other.scatter < found.scatter:
+            return other
+    return found
+
+
+def _through(
+    time: Array, even: Array, number: Integers, interval: float, window: int, shortest: float
+) -> RegularClock:
+    """The clock of samples of these numbers, (n,), at about this interval."""
     least = _least(even - interval * number, window)
     if len(least) < MIN_WINDOWS:
-        least = np.arange(count)
+        least = np.arange(len(time))
     slope, start = np.polyfit(number[least], even[least], 1).tolist()
     left = np.clip(time - start - slope * number, -MAX_DELAY_S, MAX_DELAY_S)
     coarse = _longest_step(slope * np.arange(window), unit_of(np.diff(time)))
@@ -111,6 +137,35 @@ def _evened(time: Array) -> Array:
     slope = np.append(np.where(slope > 0, np.minimum(slope, usual), usual), usual)
     run = np.cumsum(moves) - 1
     return np.asarray(time + slope[run] * (np.arange(len(time)) - changes[run]))
+
+
+def _numbers_by_phase(time: Array) -> tuple[Integers, float] | None:
+    """The number of each sample by the phase of the interval, (n,), and this, s.
+
+    A single stamp may be nearer to the number beside its own; those about it are not. None where
+    the stamps advance by no usual interval.
+    """
+    step, pieces = np.diff(time), len(time) // PHASE_SAMPLES
+    usual = float(np.median(step))
+    if usual <= 0 or pieces < MIN_WINDOWS:
+        return None
+    near = float(step[np.abs(step / usual - 1) < 1 / 2].mean())
+    in_pieces = time[: pieces * PHASE_SAMPLES].reshape(pieces, -1)
+
+    def mean_phases(interval: float, first: int) -> Array:
+        return np.asarray(np.exp(2j * np.pi * in_pieces[:first] / interval).mean(axis=1))
+
+    tried = near * (1 + PHASE_TRIALS)
+    sharp = [float(np.abs(mean_phases(one, PHASE_PIECES)).sum()) for one in tried.tolist()]
+    interval = float(tried[int(np.argmax(sharp))])
+    turned = mean_phases(interval, pieces)
+    phase = np.unwrap(np.angle(turned)) / (2 * np.pi)
+    middle = np.arange(pieces) * PHASE_SAMPLES + PHASE_SAMPLES / 2
+    place = np.arange(len(time))
+    missing = np.rint(time / interval - np.interp(place, middle, phase)) - place
+    missing = np.maximum.accumulate(median_filter(missing, PHASE_NEIGHBOURS, mode="nearest"))
+    number = (place + missing - missing[0]).astype(np.int64)
+    return (number, interval) if number[-1] * (1 - MAX_LOST_SHARE) < len(time) else None
 
 
 def _numbers(missing: Integers) -> Integers:

@@ -215,3 +215,20 @@ def test_one_absurd_stamp_does_not_matter():
 def test_stamps_that_do_not_advance_are_no_clock():
     assert regular_clock(np.ones(100)) is None
     assert regular_clock(-np.arange(100.0)) is None
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(("jitter", "lost"), [(0.0015, 0.003), (0.0015, 0.01), (0.002, 0.02)])
+def test_samples_that_are_lost_one_by_one_are_counted_in_stamps_that_scatter(seed, jitter, lost):
+    """Of 10 ms: with one lost in every second the clock was 0.2 to 2 % slow, by 40 ms of scatter."""
+    random = np.random.default_rng(seed)
+    number = np.flatnonzero(random.random(20_000) > lost)
+    interval = 0.01 * (1 + 30e-6)
+    stamps = np.sort(number * interval + jitter * random.standard_normal(len(number)))
+    found = regular_clock(stamps - stamps[0])
+    assert found is not None
+    assert found.interval == pytest.approx(interval, abs=4 * found.interval_sigma)
+    assert found.interval_sigma < 3e-6 * interval
+    assert found.scatter == pytest.approx(jitter, rel=0.05)
+    off = found.number - found.number[0] - (number - number[0])
+    assert np.mean(off == np.median(off)) > 0.998
