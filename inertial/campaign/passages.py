@@ -90,8 +90,8 @@ def refusal_of(
     long = lost.max() > (MAX_LOST_RUN + 0.5) * step or lost.min() < -step / 2
     if long or lost.sum() > MAX_LOST_SHARE * float(part["seconds"].sum()):
         return _(
-            "{lost:.2f} s of readings are lost or masked while it moves, up to {longest:.2f} s in one "
-            "piece, so no attitude is carried through",
+            "{lost:.2f} s of readings are lost or masked while it moves, up to {longest:.2f} s in "
+            "one piece, so no attitude is carried through",
             lost=float(np.abs(lost).sum()),
             longest=float(np.abs(lost).max()),
         )

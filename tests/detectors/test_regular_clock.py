@@ -220,7 +220,7 @@ def test_stamps_that_do_not_advance_are_no_clock():
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize(("jitter", "lost"), [(0.0015, 0.003), (0.0015, 0.01), (0.002, 0.02)])
 def test_samples_that_are_lost_one_by_one_are_counted_in_stamps_that_scatter(seed, jitter, lost):
-    """Of 10 ms: with one lost in every second the clock was 0.2 to 2 % slow, by 40 ms of scatter."""
+    """Of 10 ms: with one lost in every second the clock was 0.2 to 2 % slow, 40 ms of scatter."""
     random = np.random.default_rng(seed)
     number = np.flatnonzero(random.random(20_000) > lost)
     interval = 0.01 * (1 + 30e-6)
