@@ -102,7 +102,22 @@ MISTAKES = {
     "number as serial": ('"A-017"', "0017", ["line 3, serial", "put it in quotes"]),
     "unknown instrument": ("span-cpt", "span-cqt", ["line 2, instrument", "imar-fsas, span-cpt"]),
     "another version": ("campaign: 1", "campaign: 2", ["line 1, campaign", "2", "version 1"]),
-    "unknown axis": ("up: +x, seconds", "up: +w, seconds", ["line 9, plan[0].up", "'+w'"]),
+    "unknown axis": (
+        "up: +x, seconds",
+        "up: +w, seconds",
+        ["line 9, plan[0].up", "'+w'", "a body axis such as +x or -z, a vector"],
+    ),
+    "a decimal comma": (
+        "latitude_deg: 30.5278",
+        "latitude_deg: 30,5278",
+        ["line 5, site[5278]", "write decimals with a point"],
+    ),
+    "a unit that is none": (
+        "plan:",
+        MEANS.replace("gyro: {columns: [1, 2, 3], unit: deg/s", "gyro: {columns: [1, 2, 3], unit: mg")
+        + "plan:\n  - {id: r, do: rest, up: +x, format: m}",
+        ["'mg'", "unit: g and counts_per_unit: 1000"],
+    ),
     "key of another manoeuvre": ("seconds: 300", "degrees: 3", ["plan[0].degrees", "for do: rest"]),
     "same id twice": ("id: x-forward", "id: x-up", ["line 10, plan[1].id", "rename one"]),
     "a path as log": ("session.asc", "../session.asc", ["log", "plain file name"]),

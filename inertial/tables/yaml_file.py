@@ -94,6 +94,8 @@ class YamlFile:
             unknown = next(k for k in given if k not in allowed)
             near = difflib.get_close_matches(str(unknown), allowed, n=1)
             cure = f"write {near[0]}" if near else "remove it"
+            if isinstance(unknown, int):  # 48,35 within braces is 48 and a key 35
+                cure = _("write decimals with a point: 48.35, not 48,35")
             found = _("the key {unknown}", unknown=shown(unknown))
             return self.refuse_text(
                 [*key, unknown], found, _("one of {allowed}", allowed=", ".join(allowed)), cure
@@ -117,7 +119,11 @@ class YamlFile:
             return self.refuse_text(
                 key, found, meaning, _('put it in quotes: {key}: "…"', key=key[-1])
             )
-        expected = f"{meaning} ({error.message})" if meaning else error.message
+        above = error.parent
+        while not meaning and above is not None and isinstance(above.schema, dict):
+            meaning, above = above.schema.get("description", ""), above.parent
+        told = f"{meaning} ({error.message})" if meaning else error.message
+        expected = meaning if meaning and error.validator == "pattern" else told
         return self.refuse(key, error.instance, expected, "correct the value")
 
     def refuse_text(self, key: Key, found: str, expected: str, cure: str) -> Refusal:
