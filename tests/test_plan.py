@@ -114,7 +114,7 @@ MISTAKES = {
     ),
     "a unit that is none": (
         "plan:",
-        MEANS.replace("gyro: {columns: [1, 2, 3], unit: deg/s", "gyro: {columns: [1, 2, 3], unit: mg")
+        MEANS.replace("unit: deg/s", "unit: mg")
         + "plan:\n  - {id: r, do: rest, up: +x, format: m}",
         ["'mg'", "unit: g and counts_per_unit: 1000"],
     ),
