@@ -93,7 +93,7 @@ def moments(seconds: Array | float, constants: Array | float) -> tuple[Array, Ar
 
 
 def waves_within(seconds: float, instability: Array, white: Array) -> Array:
-    """The sigma of each wave about the mean of a stretch, (waves, channels), none that matters not.
+    """The sigma of each wave about the mean of a stretch, (waves, channels), above the white noise.
 
     `instability`: B of each channel; `white`: its white noise, B · √s.
     """

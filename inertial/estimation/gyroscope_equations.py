@@ -58,7 +58,6 @@ from inertial.physics.motion import all_level_axes, cross, level_axes, turned_al
 Array = NDArray[np.float64]
 
 SQRT2 = float(np.sqrt(2))
-COURSE = "course"  # of the bias of an axis about its mean, a wave of it
 UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
 MIN_UPRIGHT_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
 # What is known of an encoder before: it is read within 50 ms, and off its axis by no more than
@@ -255,7 +254,10 @@ def segment_equations(
             own[("gap angle", name)] = segment.gap_sigma
     if segment.clock_sigma:
         own[(CLOCK, segment.clock)] = segment.clock_sigma
-    own |= _course(segment, name, instability * recorded)
+    waves = waves_within(float(segment.seconds.sum()), instability * recorded, segment.density)
+    course = [(number + 1, axis) for number, axis in np.argwhere(waves > 0).tolist()]
+    names = [(f"wave {number} of bias {axis}", name) for number, axis in course]
+    own |= dict(zip(names, waves[waves > 0].tolist(), strict=True))
     sigma |= own
     sums = np.where(recorded, segment.sums, 0.0)
     angle = _block_angles(segment, sums, weight, point, earth)
@@ -265,7 +267,7 @@ def segment_equations(
     across = np.zeros((int(recorded.sum()) - 1, 3))
     across[:, recorded] = np.linalg.svd(along[None, recorded] / np.linalg.norm(along))[2][1:]
     across *= weight
-    blocks = _Blocks(segment, point, earth, prior, effects, list(own), sums, angle, middle)
+    blocks = _Blocks(segment, point, earth, prior, effects, list(own), course, sums, angle, middle)
     whole = np.zeros((3, len(prior) + len(own) + 1))
     unweighted, rows, count = whole.copy(), [whole[:0]], 1
     of_windows = [whole.copy() for _ in segment.windows]
@@ -297,17 +299,6 @@ def segment_equations(
     return EquationBlock(compressed(stacked), tuple(own), count, 0.0)
 
 
-def _course(segment: RateSegment, name: str, instability: Array) -> dict[Name, float]:
-    """The waves of each bias about its mean within a segment, and their sigmas, rad/s."""
-    sigma = waves_within(float(segment.seconds.sum()), instability, segment.density)
-    return {
-        (f"{COURSE} {wave_number} {axis}", name): size
-        for wave_number, sizes in enumerate(sigma.tolist(), 1)
-        for axis, size in enumerate(sizes)
-        if size
-    }
-
-
 def _block_angles(
     segment: RateSegment, sums: Array, weight: Array, point: Linearisation, earth: Earth
 ) -> Array:
@@ -328,7 +319,10 @@ def _block_angles(
 
 @dataclass(frozen=True)
 class _Blocks:
-    """The equations of the blocks of a rate segment, before elimination of their angles."""
+    """The equations of the blocks of a rate segment, before elimination of their angles.
+
+    `course`: number and axis of each wave of the biases about their mean, the last of `own`.
+    """
 
     segment: RateSegment
     point: Linearisation
@@ -336,6 +330,7 @@ class _Blocks:
     prior: Array
     effects: Sequence[str]
     own: Sequence[Name]
+    course: Sequence[tuple[int, int]]
     sums: Array  # (k, 3), rad
     angle: Array  # (k,), rad
     middle: Array  # (k,), rad, turned since the start at the middle
@@ -367,10 +362,8 @@ class _Blocks:
             rows[:, :, column] = np.outer(angle, matrix @ cross(axis, about))
             column += 1
         fraction = segment.elapsed / segment.elapsed[-1]
-        for number, (kind, _name) in enumerate(self.own):
-            if kind.startswith(COURSE):
-                order, axis = map(int, kind.split()[1:])
-                rows[:, axis, s + number] = seconds * wave(order, fraction[some])
+        for place, (number, axis) in enumerate(self.course, s + len(self.own) - len(self.course)):
+            rows[:, axis, place] = seconds * wave(number, fraction[some])
         observed = self.sums[some] + rows[:, :, UNKNOWNS] * earth.up
         rows[:, :, -1] = observed - rows[:, :, :s] @ self.prior
         return rows

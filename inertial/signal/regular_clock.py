@@ -149,13 +149,15 @@ def _numbers_by_phase(time: Array) -> tuple[Integers, float] | None:
     usual = float(np.median(step))
     if usual <= 0 or pieces < MIN_WINDOWS:
         return None
-    near = float(step[np.abs(step / usual - 1) < 1 / 2].mean())
+    near = step[np.abs(step / usual - 1) < 1 / 2]
+    if not len(near):  # half are much shorter, half much longer: packets
+        return None
     in_pieces = time[: pieces * PHASE_SAMPLES].reshape(pieces, -1)
 
     def mean_phases(interval: float, first: int) -> Array:
         return np.asarray(np.exp(2j * np.pi * in_pieces[:first] / interval).mean(axis=1))
 
-    tried = near * (1 + PHASE_TRIALS)
+    tried = float(near.mean()) * (1 + PHASE_TRIALS)
     sharp = [float(np.abs(mean_phases(one, PHASE_PIECES)).sum()) for one in tried.tolist()]
     interval = float(tried[int(np.argmax(sharp))])
     turned = mean_phases(interval, pieces)

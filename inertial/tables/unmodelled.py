@@ -310,7 +310,7 @@ DRIFTS_AT_REST = Table(
             "kept",
             TRUTH,
             "",
-            "whether it is in the equations; if not, effects or a random walk are likelier",
+            "whether it is in the equations; if not, effects are likelier or few manoeuvres have it",
         ),
     ),
 )

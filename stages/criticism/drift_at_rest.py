@@ -37,12 +37,12 @@ def select_beside_drift(
         if not measured.drifts[sensor]:
             continue
         without = kept.without_drift_at_rest([sensor])
-        law, law_tested = select(without)
-        odds = _log_evidence(law, level) - _log_evidence(selection, level)
-        if odds > MAX_LOG_ODDS or carrying(law_tested, sensor):
-            selection, tested, kept = law, law_tested, without
+        other, other_tested = select(without)
+        odds = _log_evidence(other, level) - _log_evidence(selection, level)
+        if odds > MAX_LOG_ODDS or carrying(other_tested, sensor):
+            selection, tested, kept = other, other_tested, without
         elif odds > -MAX_LOG_ODDS:
-            selection = _with_alternatives(selection, law)
+            selection = _with_alternatives(selection, other)
     return selection, tested, kept
 
 
@@ -51,8 +51,8 @@ def _log_evidence(selection: Selection, level: float) -> float:
     return log_evidence(selection) + laws * float(np.log(level))
 
 
-def _with_alternatives(selection: Selection, law: Selection) -> Selection:
+def _with_alternatives(selection: Selection, other: Selection) -> Selection:
     """The same; what is named without the drift may be instead of it."""
-    others = dict.fromkeys([*selection.alternatives, *members_of(law)])
+    others = dict.fromkeys([*selection.alternatives, *members_of(other)])
     named = members_of(selection)
-    return replace(selection, alternatives=tuple(o for o in others if o not in named))
+    return replace(selection, alternatives=tuple(one for one in others if one not in named))

@@ -78,7 +78,8 @@ def _cures(moving: Sequence[RecordedPassage], broken: Sequence[Part]) -> dict[st
         first=broken[0].manoeuvre,
         reason=broken[0].reason,
     )
-    return CURES | {"matrix": of_motions}
+    # Names are free text, and a remedy is a format of the axis.
+    return CURES | {"matrix": of_motions.replace("{", "{{").replace("}", "}}")}
 
 
 def _unit(turning: float, mount: str) -> Finding:
