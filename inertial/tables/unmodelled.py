@@ -310,7 +310,7 @@ DRIFTS_AT_REST = Table(
             "kept",
             TRUTH,
             "",
-            "whether it is in the equations; if not, effects are likelier or few manoeuvres have it",
+            "whether it is in the equations; else effects are likelier or few manoeuvres show it",
         ),
     ),
 )
