@@ -26,6 +26,7 @@ from inertial.estimation.gyroscope_observations import SteadyRate
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
+from inertial.estimation.position_tilt import names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_by_hand import Scatter
 from inertial.estimation.sensitivities import Sensitivities
@@ -271,10 +272,10 @@ class Campaign:
             upright[turn.position.name] = upright.get(turn.position.name, True) and own
         stood = {rest.position for _, rest, _ in self.static_forces}
         return tuple(
-            (f"tilt {i}", position)
+            name
             for position, there in upright.items()
             if there and position in stood
-            for i in (0, 1)
+            for name in names_of(position, turning=True)
         )
 
     def system(

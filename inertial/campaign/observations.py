@@ -15,7 +15,7 @@ from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
-from inertial.physics.motion import Motion, mean_turned
+from inertial.physics.motion import Motion, is_vertical, level_axes, mean_turned
 from inertial.tables import ACCEL
 
 Array = NDArray[np.float64]
@@ -129,16 +129,22 @@ def _turning(
     """
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
-    ups = mean_turned(m.up, m.axis, motion.angle, motion.rate * seconds)
+    turned = (m.axis, motion.angle, motion.rate * seconds)
+    ups = mean_turned(m.up, *turned)
     pieces = [range(first, after, MERGED_BLOCKS) for first, after in pairwise(edges)]
     starts = [start for piece in pieces for start in piece]
     merged = Merged(seconds, starts)
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
     density = np.where(steady, levels[0], np.fmax(*levels))
     sigmas = density / np.sqrt(merged.seconds)[:, None]
+    level: Sequence[Array | None] = [None] * len(starts)
+    if is_vertical(m.up, m.axis):
+        axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes(m.up)]
+        level = list(np.stack(axes, axis=1))
+    means = zip(merged.mean(ups), merged.mean(read), sigmas, level, strict=True)
     rests = [
-        StaticForce(m.position, up, mean, sigma, turning=True)
-        for up, mean, sigma in zip(merged.mean(ups), merged.mean(read), sigmas, strict=True)
+        StaticForce(m.position, up, mean, sigma, turning=True, level=own)
+        for up, mean, sigma, own in means
     ]
     return [
         (m.name, rest, at) for rest, at in zip(rests, mean_motions(motion, merged), strict=True)

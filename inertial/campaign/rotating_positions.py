@@ -17,7 +17,7 @@ from inertial.campaign.records import Manoeuvre, Part
 from inertial.campaign.static_positions import Blocks, by_manoeuvre, stretch_of
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.sensitivities import Sensitivities
-from inertial.physics.motion import mean_turned
+from inertial.physics.motion import is_vertical, level_axes, mean_turned
 from inertial.tables import ACCEL, AXES, STATIC_PHASES
 
 Array = NDArray[np.float64]
@@ -60,6 +60,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
     for gap in gaps_of(part):
         middle[gap.before :] += gap.shares @ angle
     ups = mean_turned(m.up, m.axis, middle, angle)
+    axes = np.stack([mean_turned(own, m.axis, middle, angle) for own in level_axes(m.up)], axis=1)
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     rate = angle / seconds
     turns = abs(float(angle[steady].sum())) * float(level)
@@ -78,6 +79,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
                 sensitivities=Sensitivities(tuple(LEVER_ARM), pull),
                 felt=True,
                 turning=True,
+                level=np.tensordot(share, axes[indices], 1) if is_vertical(m.up, m.axis) else None,
             )
         )
     return rests

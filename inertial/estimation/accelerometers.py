@@ -2,8 +2,8 @@
 
     mean reading = M · (g u + δ × g u) + bias + noise
 
-u is the upward direction in body axes; δ the tilt of the position, two unknowns with the sigma of
-the table; g one unknown with the sigma of gravity. Of a large tilt δ is the sine, and what its
+u is the upward direction in body axes; δ the tilt of the position, with the sigma of the table; g
+one unknown with the sigma of gravity. Of a large tilt δ is the sine, and what its
 cosine takes from g u follows from the reading itself (`_versed`).
 """
 
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.position_tilt import KINDS, names_of, of_both
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
 from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 from inertial.estimation.triad import UNKNOWNS
@@ -45,7 +46,8 @@ class StaticForce:
     """Mean readings at rest, m/s², NaN where not recorded, and their sigma.
 
     `sensitivities`: of the means to the parameters of effects, or with `felt` of the specific force
-    that the sensors feel; `stretch`: of time; `turning`: not at rest, the table turns steadily.
+    that the sensors feel; `stretch`: of time; `turning`: not at rest, the table turns steadily;
+    `level`: where it turns about the vertical, the level axes at its start, mean in body axes.
     """
 
     position: str
@@ -56,6 +58,7 @@ class StaticForce:
     stretch: Stretch | None = None
     felt: bool = False
     turning: bool = False
+    level: Array | None = None  # (2, 3)
 
 
 class Reference(NamedTuple):
@@ -199,9 +202,12 @@ def _drifting(
     sigma: dict[Name, float] = {}
     for number, some in enumerate(same.values()):
         position, stretch = statics[some[0]].position, statics[some[0]].stretch
-        tilts = tuple((f"tilt {axis}", position) for axis in (0, 1))
+        turning = any(statics[i].level is not None for i in some)
+        tilts = names_of(position, turning=turning)
         sigma |= dict.fromkeys(tilts, reference.position_sigma)
-        block = whitened(rows[some].reshape(-1, rows.shape[-1]), noise[some].ravel(), tilts)
+        columns = np.r_[: len(prior) + len(tilts), -1]
+        own = rows[some][:, :, columns].reshape(-1, len(columns))
+        block = whitened(own, noise[some].ravel(), tilts)
         block = replace(block, rows=compressed(block.rows))
         blocks.append((block, stretch or Stretch(f"rest {number}")))
         positions.append(position)
@@ -224,11 +230,11 @@ def linear_rows(
     prior: Array,
     effects: Sequence[str],
 ) -> Array:
-    """Coefficients of the s shared unknowns and of two tilts, and the observed, (n, 3, s + 3)."""
+    """Coefficients of the s shared unknowns and of four tilts, and the observed, (n, 3, s + 5)."""
     s = len(prior)
     ups = np.array([static.up for static in statics])
     along = ups @ about.matrix.T
-    rows = np.zeros((len(statics), 3, s + 3))
+    rows = np.zeros((len(statics), 3, s + len(KINDS) + 1))
     for row in range(3):
         rows[:, row, 3 * row : 3 * row + 3] = gravity * ups
         rows[:, row, 9 + row] = 1.0
@@ -236,13 +242,23 @@ def linear_rows(
     rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
     felt = [static.felt for static in statics]
     rows[felt, :, UNKNOWNS + 1 : s] = about.matrix @ rows[felt, :, UNKNOWNS + 1 : s]
-    horizontal = all_level_axes(ups)
-    for axis in (0, 1):
-        rows[:, :, s + axis] = cross(horizontal[:, axis], gravity * ups) @ about.matrix.T
+    tilts = tilt_axes(statics)
+    for axis in range(len(KINDS)):
+        rows[:, :, s + axis] = cross(tilts[:, axis], gravity * ups) @ about.matrix.T
     means = np.array([static.mean for static in statics])
     rows[:, :, -1] = means + gravity * (1 + _versed(statics, ups, about))[:, None] * along
     rows[:, :, -1] -= rows[:, :, :s] @ prior
     return rows
+
+
+def tilt_axes(statics: Sequence[StaticForce]) -> Array:
+    """The directions of the four tilts, (n, 4, 3): of the last two none but in upright turns."""
+    case = all_level_axes(np.array([static.up for static in statics]))
+    level = case.copy()
+    for own, static in zip(level, statics, strict=True):
+        if static.level is not None:
+            own[:] = static.level
+    return of_both(case, level)
 
 
 def _versed(statics: Sequence[StaticForce], ups: Array, about: Triad) -> Array:

@@ -45,7 +45,7 @@ def drifting(
     normal = ups @ np.linalg.inv(about.matrix)
     every = accelerometers.linear_rows(statics, gravity, about, prior, effects)
     along = np.einsum("ni,nij->nj", normal, every)
-    rows = np.delete(along, [len(prior), len(prior) + 1], axis=1)  # no tilt changes them
+    rows = along[:, np.r_[: len(prior), -1]]  # no tilt changes them
     noise = np.hypot([static.sigma for static in statics], scatter)
     rows[:, -1] -= multi_position.lengthened(about.matrix, ups, noise, gravity)
     sigma = np.linalg.norm(normal * noise, axis=1)

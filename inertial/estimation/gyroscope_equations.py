@@ -51,15 +51,15 @@ from inertial.estimation.gyroscope_observations import (
     StaticRate,
     SteadyRate,
 )
+from inertial.estimation.position_tilt import names_of, of_case
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.triad import UNKNOWNS, design_of
-from inertial.physics.motion import all_level_axes, cross, level_axes, turned_all
+from inertial.physics.motion import all_level_axes, cross, is_vertical, level_axes, turned_all
 
 Array = NDArray[np.float64]
 
 SQRT2 = float(np.sqrt(2))
 UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
-MIN_UPRIGHT_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
 # What is known of an encoder before: it is read within 50 ms, and off its axis by no more than
 # those of a laboratory are; what the windows say of both counts.
 DELAY_SIGMA = 0.05  # s
@@ -101,16 +101,19 @@ def horizontal_sigma(position: Position, earth: Earth) -> float:
 
 def is_upright(position: Position, about: Array) -> bool:
     """Whether the table turns about the vertical of this position."""
-    return bool(position.is_known and abs(position.up @ about) > MIN_UPRIGHT_COSINE)
+    return position.is_known and is_vertical(position.up, about)
 
 
-def tilt_axes(position: Position, about: Array) -> tuple[Array, Array]:
-    """The two directions about which the axis of a turn may be tilted, in body axes.
+def tilt_axes(position: Position, about: Array) -> dict[Name, Array]:
+    """The directions about which the axis of a turn may be tilted, in body axes, by unknown.
 
     Of a turn about the vertical they are those of the position, so that its tilt is that which the
     accelerometers have there, in whichever sense the table turns.
     """
-    return level_axes(position.up if is_upright(position, about) else about)
+    upright = is_upright(position, about)
+    axes: Sequence[Array] = level_axes(position.up if upright else about)
+    names = names_of(position.name, turning=upright)
+    return dict(zip(names, of_case(axes) if upright else axes, strict=True))
 
 
 @dataclass(frozen=True)
@@ -204,8 +207,7 @@ def steady_equations(
         axes = horizontal_axes(steady.position)
         means = [shares @ turned_all(axis, steady.about, angles) for axis in axes]
         columns.append(matrix @ np.column_stack(means))
-    for i, axis in enumerate(tilt_axes(steady.position, steady.about)):
-        tilt = (f"tilt {i}", steady.position.name)
+    for tilt, axis in tilt_axes(steady.position, steady.about).items():
         sigma[tilt], names = position_sigma, (*names, tilt)
         columns.append((steady.rate * (matrix @ cross(axis, steady.about)))[:, None])
     rate = ("rate", name)
@@ -243,7 +245,7 @@ def segment_equations(
         return None
     vague = horizontal_sigma(segment.position, earth)
     own = dict.fromkeys(horizontal_names(segment.position), vague)
-    own |= {(f"tilt {i}", segment.position.name): position_sigma for i in (0, 1)}
+    own |= dict.fromkeys(tilt_axes(segment.position, segment.about), position_sigma)
     if segment.windows:
         own |= {DELAY: DELAY_SIGMA, **dict.fromkeys(WAVES, ECCENTRICITY_SIGMA)}
         edges = {edge for w in segment.windows for edge in (w.start, w.end)}
@@ -358,7 +360,7 @@ class _Blocks:
                 level = turned_all(axis, about, middle) @ matrix.T
                 rows[:, :, column] = level * seconds[:, None]
                 column += 1
-        for axis in tilt_axes(position, about):
+        for axis in tilt_axes(position, about).values():
             rows[:, :, column] = np.outer(angle, matrix @ cross(axis, about))
             column += 1
         fraction = segment.elapsed / segment.elapsed[-1]

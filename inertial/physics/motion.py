@@ -14,6 +14,7 @@ from inertial.text.messages import _
 
 Array = NDArray[np.float64]
 
+MIN_VERTICAL_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
@@ -40,6 +41,11 @@ def level_axes(up: Array) -> tuple[Array, Array]:
     first = cross(least, up)
     first /= np.linalg.norm(first)
     return first, cross(up, first)
+
+
+def is_vertical(up: Array, about: Array) -> bool:
+    """Whether a table turns about the vertical: about a body axis that points up, or down."""
+    return bool(abs(up @ about) > MIN_VERTICAL_COSINE)
 
 
 def all_level_axes(ups: Array) -> Array:

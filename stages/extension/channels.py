@@ -10,13 +10,20 @@ from scipy.linalg import solve_triangular
 
 from inertial.campaign.equations import Campaign
 from inertial.campaign.rate_segments import Recorded
-from inertial.estimation.gyroscope_equations import CLOCK, horizontal_axes, horizontal_names
+from inertial.estimation import accelerometers
+from inertial.estimation.gyroscope_equations import (
+    CLOCK,
+    horizontal_axes,
+    horizontal_names,
+    tilt_axes,
+)
 from inertial.estimation.gyroscope_observations import Position, RateSegment
 from inertial.estimation.least_squares import System
+from inertial.estimation.position_tilt import names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, measured_covariance
 from inertial.physics.effect import Effect, Truth
 from inertial.physics.forward import Triad, signatures, truth_of
-from inertial.physics.motion import Motion, cross, level_axes, turned_all
+from inertial.physics.motion import Motion, cross, turned_all
 
 # ---- The means of each channel over static positions and over turns.
 #
@@ -142,9 +149,9 @@ class Channels:
             float(np.hypot(turn.angle_sigma, turn.gap_sigma)),
         )
         errors[CLOCK, turn.clock] = (along * turn.angle, turn.clock_sigma)
-        for i, axis in enumerate(level_axes(turn.about)):
+        for name, axis in tilt_axes(turn.position, turn.about).items():
             tilted = self._gyro.matrix @ cross(axis, turn.about) * (turn.angle / total)
-            errors[f"tilt {i}", turn.position.name] = (tilted, self.campaign.position_sigma)
+            errors[name] = (tilted, self.campaign.position_sigma)
         of_effects = np.einsum("n,nck->ck", share, traces)
         time = float(share @ motion.time)
         parts = (known, of_effects, errors, time, turn.stretch or UNTIMED)
@@ -165,14 +172,15 @@ class Channels:
         assert triad is not None  # else it has no means
         gravity, means = campaign.gravity, []
         responses = self._traces[len(self._traces) - len(campaign.static_forces) :]
-        for (name, rest, _), (motion, _, _, traces) in zip(
-            campaign.static_forces, responses, strict=True
+        axes = accelerometers.tilt_axes([rest for _, rest, _ in campaign.static_forces])
+        for (name, rest, _), tilts, (motion, _, _, traces) in zip(
+            campaign.static_forces, axes, responses, strict=True
         ):
             force = gravity.number * rest.up
             errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
-            for i, axis in enumerate(level_axes(rest.up / np.linalg.norm(rest.up))):
-                tilted = triad.matrix @ cross(axis, force)
-                errors[f"tilt {i}", rest.position] = (tilted, campaign.position_sigma)
+            own = names_of(rest.position, turning=rest.level is not None)
+            for tilt, axis in zip(own, tilts, strict=False):
+                errors[tilt] = (triad.matrix @ cross(axis, force), campaign.position_sigma)
             residual = rest.mean - triad.matrix @ force - triad.bias
             parts = (force, traces[0], errors, float(motion.time[0]), rest.stretch or UNTIMED)
             means.append(Mean(name, residual, rest.sigma, *parts))
