@@ -40,6 +40,7 @@ def perform(specification: Specification) -> Recording:
             effect.table_tilt(manoeuvre, set_attitude) for effect in effects.values()
         ),
         mountings=specification.mountings,
+        of_axis=specification.tilted_axis,
         missed=lambda manoeuvre, set_attitude: product(
             effect.position_error(manoeuvre, set_attitude, specification.chance)
             for effect in effects.values()

@@ -18,6 +18,7 @@ class Placement:
     set_attitude: Array  # as the plan says, at the true azimuth, on a level table
     tilt: Array  # (3, 3), level frame: the error of the position
     base: Array  # (3, 3), level frame: tilt of the whole table, its axis included
+    of_axis: bool  # the error of the position tilts the axis of the table too
     mounting: Array  # (3, 3): from the axes of the case to those that the plan names
 
     @property
@@ -29,10 +30,11 @@ class Placement:
         """The table's axis in body axes, (3,), where the plan names `about`.
 
         The table turns about its own axis, base · set attitude · about, against which the case is
-        tilted by the error of the position, so that the axis of the case describes a cone.
+        tilted by the error of the position, so that the axis of the case describes a cone; or the
+        axis is tilted with the case.
         """
-        in_level = self.base @ self.set_attitude @ about
-        return self.attitude.T @ in_level
+        axis = self.base @ self.tilt if self.of_axis else self.base
+        return self.attitude.T @ axis @ self.set_attitude @ about
 
 
 def place(
@@ -42,6 +44,7 @@ def place(
     position_sigma: float,
     leaning: Callable[[Manoeuvre, Array], Array],
     mountings: Mapping[str, Array],
+    of_axis: bool,
     missed: Callable[[Manoeuvre, Array], Array],
     chance: Chance,
 ) -> dict[str, Placement]:
@@ -52,7 +55,7 @@ def place(
     rests of a tumble share one. position_sigma: rad, of the rotation about east and about north
     of the position error. leaning: tilt of the table at a set attitude; missed: further position
     error there; both rotations in the level frame. mountings: by mount, where it differs from the
-    plan.
+    plan. of_axis: the error of a position tilts the axis of the table with the case.
     """
     if heading is None:
         heading = azimuth(chance, "the table's zero mark")
@@ -68,7 +71,7 @@ def place(
         tilt = rotation_of(np.array([east, north, 0.0])) @ missed(manoeuvre, set_attitude)
         base = leaning(manoeuvre, set_attitude)
         mounting = mountings.get(manoeuvre.mount, np.eye(3))
-        placements[name] = Placement(set_attitude, tilt, base, mounting)
+        placements[name] = Placement(set_attitude, tilt, base, of_axis, mounting)
     return placements
 
 

@@ -137,6 +137,11 @@ class Specification:
         return float(self._document["campaign"]["table"]["position_sigma_arcsec"]) * ARCSECOND
 
     @property
+    def tilted_axis(self) -> bool:
+        """Whether the error of a position tilts the axis of the table with the case."""
+        return bool(self._document["truth"].get("tilted") == "axis")
+
+    @property
     def chance(self) -> Chance:
         return Chance(self._document["seed"])
 

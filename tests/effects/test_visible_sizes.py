@@ -108,6 +108,8 @@ def test_turns_show_a_tilt_of_the_table_that_rests_hide_in_those_of_the_position
         # It goes round in body axes: two level accelerometers for the time of the turns.
         turns = plans.ACCEL_NOISE / plans.GRAVITY / np.sqrt(turning)
         rests = 2 * plans.ARC_SECOND / np.sqrt(6)
+        # So does the tilt of the table's axis, of which that of a position may be a part.
+        turns = np.hypot(turns, rests)
         both = (turns**-2 + rests**-2) ** -0.5
         ours = np.median(visible[letter, "table_tilt"])
         # A sixth: the ramps, in which a turn dwells, and what M takes of it.
