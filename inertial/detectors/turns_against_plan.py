@@ -5,8 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.signal.detector import Description
-from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled
+from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled, Reversed
 from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, turn_ratios
+from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
 
@@ -117,9 +118,18 @@ class WrongDirection(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        if recorded.other_sense:
-            turns = sum(do == "turn" for do in recorded.do)
-            yield Deviation(None, "", -1.0, self.sensor, count=turns, repair=recorded.other_sense)
+        for each in recorded.reversed:
+            axis = each.about if each.about in AXES else None
+            yield Deviation(
+                None,
+                "",
+                -1.0,
+                self.sensor,
+                axis,
+                count=len(each.names),
+                facts=each,
+                repair=each.repair,
+            )
         for i, name in enumerate(recorded.name):
             ratio = ratio_of(recorded, i)
             if recorded.found[i] and ratio < 0 and name not in recorded.explained:
@@ -128,7 +138,7 @@ class WrongDirection(PlanDetector):
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         if i is None:
-            return _all_the_other_way(deviation, recorded)
+            return _the_other_way(deviation.facts, recorded)
         assert deviation.size is not None
         name, turned, planned = recorded.name[i], recorded.moved[i], recorded.angle[i]
         unit = "°"
@@ -161,22 +171,36 @@ def ratio_of(recorded: Recorded, i: int) -> float:
     return float(recorded.moved[i] / recorded.angle[i])
 
 
-def _all_the_other_way(deviation: Deviation, recorded: Recorded) -> Description:
-    """All turns against the plan, while the gyros see the earth turn as they should."""
-    earth = any(sign > 0 for sign in recorded.gyro_signs)
-    seen = _(", while the gyros see the earth turn as it does") if earth else ""
-    return Description(
+def _the_other_way(turns: Reversed, recorded: Recorded) -> Description:
+    """Turns against the plan, while earth and gravity show that the gyros' signs are right."""
+    seen = ""
+    if turns.by_gravity:
+        seen = _(", while the gyros turn gravity as the accelerometers see it turn")
+    elif any(sign > 0 for sign in recorded.gyro_signs):
+        seen = _(", while the gyros see the earth turn as it does")
+    sentence = (
         _(
+            "{turns} of {count} are against the planned direction{seen}: {why}.",
+            turns=counted(len(turns.names), "turn"),
+            count=sum(do == "turn" for do in recorded.do),
+            seen=seen,
+            why=turns.why,
+        )
+        if turns.about
+        else _(
             "All {count} turns are against the planned direction{seen}: the table counts its angle "
             "the other way.",
-            count=deviation.count,
+            count=len(turns.names),
             seen=seen,
-        ),
-        _("Taken as planned, the scale errors of the gyros would be −200 %."),
+        )
+    )
+    return Description(
+        sentence,
+        _("Taken as planned, the scale errors of their gyros would be −200 %."),
         _(
-            "All turns are taken the other way, on this condition. Correct the signs of degrees "
-            "or rate in the plan; or confirm it by accept: [{repair}].",
-            repair=deviation.repair,
+            "They are taken the other way, on this condition. Correct the signs of degrees or rate "
+            "in the plan; or confirm it by accept: [{repair}].",
+            repair=turns.repair,
         ),
     )
 

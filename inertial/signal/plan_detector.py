@@ -79,6 +79,21 @@ class Rescaled:
 
 
 @dataclass(frozen=True)
+class Reversed:
+    """Turns that the plan counts the other way, which is undone; why: in words.
+
+    about: a body axis, or negative; empty: all turns; by_gravity: whether gravity shows that the
+    signs of the gyros are right.
+    """
+
+    repair: str
+    names: Sequence[str]
+    about: str
+    why: str
+    by_gravity: bool
+
+
+@dataclass(frozen=True)
 class Recorded:
     """The m manoeuvres of a plan, and what was recorded of each, SI and radians, body axes.
 
@@ -101,8 +116,8 @@ class Recorded:
     temperature_sigma: those of the plan, NaN where not stated.
     gyro_signs: (3,), +1 right and −1 wrong, by the earth rate, 0 where it does not show.
     misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of
-    the gyros that were undone, restated: rates of the plan. other_sense: id of the repair by
-    which all turns are taken the other way, empty where they are not.
+    the gyros that were undone, restated: rates of the plan. reversed: turns that are taken the
+    other way.
     tolerance: accepted difference of an angle or a rate from the plan's, 1.
     """
 
@@ -142,7 +157,7 @@ class Recorded:
     swapped: Sequence[Swapped]
     rescaled: Sequence[Rescaled] = ()
     restated: Sequence[Rescaled] = ()
-    other_sense: str = ""
+    reversed: Sequence[Reversed] = ()
 
     @property
     def explained(self) -> set[str]:

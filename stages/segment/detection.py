@@ -19,6 +19,7 @@ from inertial.signal.plan_detector import (
     PlanDetector,
     Recorded,
     Rescaled,
+    Reversed,
     Swapped,
 )
 from inertial.tables import STATIC_PHASES
@@ -47,7 +48,7 @@ class Undone:
     swapped: Sequence[Swapped] = ()
     rescaled: Sequence[Rescaled] = ()
     restated: Sequence[Rescaled] = ()
-    other_sense: str = ""
+    reversed: Sequence[Reversed] = ()
     rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
 
 
@@ -126,7 +127,7 @@ def recorded_of(
         swapped=[*undone.swapped, *(_beside(each, undone) for each in swapped_in(plan, explained))],
         rescaled=undone.rescaled,
         restated=undone.restated,
-        other_sense=undone.other_sense,
+        reversed=undone.reversed,
     )
 
 
@@ -265,6 +266,8 @@ def _told(
     place = [manoeuvre] if manoeuvre else [deviation.log] if deviation.log else []
     # A sensor as a whole may be concerned as well as the other one.
     place = [*place, deviation.sensor] if detector.sensor is None and deviation.sensor else place
+    # So may the turns about each axis.
+    place += [deviation.axis] if isinstance(deviation.facts, Reversed) and deviation.axis else []
     place += [BY_GRAVITY] if deviation.repair.endswith(BY_GRAVITY) else []
     finding = Finding(
         id="/".join([stage, detector.name, *(str(part) for part in place)]),

@@ -15,6 +15,7 @@ from inertial.signal.axis_permutations import (
     simplicity,
 )
 from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA, rest_level
+from inertial.tables import AXES
 from stages.segment.matching import (
     AS_NAMED,
     AS_PLANNED,
@@ -37,6 +38,9 @@ MAX_EXCHANGED = 4  # manoeuvres of a log for which an exchange with every other 
 MAX_RIVAL_AXES = 2  # axes of a permutation that is a rival of exchanged names
 BY_GRAVITY = "by-gravity"  # the end of a repair's id that gravity shows, whatever the plan says
 MIN_GAIN_OF_BOTH = 3  # the same, for both sensors of one log: it may have had another attitude
+OWN_AXIS_SHARE = 0.9  # share of a body axis in the axis of a turn that is counted as about it
+ALL_REVERSED = Permutation((0, 1, 2), (-1, -1, -1))
+NEGATIVE = "negative"  # turns about the negative body axes, counted about the positive ones
 
 
 @dataclass(frozen=True)
@@ -54,10 +58,18 @@ class Exchanged:
 
 
 @dataclass(frozen=True)
+class OtherSense:
+    """Turns that the plan counts the other way: all, about one axis, or about NEGATIVE axes."""
+
+    names: tuple[str, ...]
+    about: str = ""
+
+
+@dataclass(frozen=True)
 class Step:
     """What a supposition would set right: the id of its repair, its kind, and what it concerns.
 
-    `axes`: of the sensor; `exchanged`: manoeuvres.
+    `axes`: of the sensor; `exchanged`: manoeuvres; `turns`: those that are counted the other way.
     """
 
     id: str
@@ -65,15 +77,19 @@ class Step:
     sensor: str | None = None
     axes: Permutation | None = None
     exchanged: Exchanged | None = None
-
-
-SENSE = Step("sense_of_table", "sense_of_table")
+    turns: OtherSense | None = None
 
 
 def axes_step(sensor: str, axes: Permutation, log: str = "") -> Step:
     """That the axes of a sensor are others, in a log or in all."""
     kind = "signs" if axes.in_place else "axes"
     return Step("/".join([kind, sensor, *([log] if log else [])]), kind, sensor, axes)
+
+
+def sense_step(turns: OtherSense) -> Step:
+    """That the plan counts turns the other way."""
+    kind = "sense_of_table"
+    return Step("/".join([kind, *([turns.about] if turns.about else [])]), kind, turns=turns)
 
 
 def exchange_step(exchanged: Exchanged) -> Step:
@@ -87,7 +103,7 @@ class Explained:
 
     `everywhere`: axes that are exchanged or reversed in all logs; `misread`: logs whose
     axes differ from those of the others; `exchanged`: exchanged manoeuvres; `gyro_signs`: by the
-    earth rate; `other_sense`: whether the table counts its turns the other way. `rivals`: for the
+    earth rate; `other_sense`: turns that the plan counts the other way. `rivals`: for the
     name of a repair those of others that explain as much. `fitting`: how many observations agree
     with the plan as it is, with all of these, and how many there are.
     """
@@ -97,7 +113,7 @@ class Explained:
     everywhere: Axes
     misread: Mapping[str, Axes]
     exchanged: Sequence[Exchanged]
-    other_sense: bool
+    other_sense: Sequence[OtherSense]
     rivals: Mapping[str, Sequence[Step]]
     fitting: tuple[int, int, int]
 
@@ -118,7 +134,7 @@ class _Case:
     earth_rate: float
     everywhere: Axes = AS_PLANNED
     exchanged: tuple[Exchanged, ...] = ()
-    other_sense: bool = False
+    other_sense: tuple[OtherSense, ...] = ()
     step: Step | None = None
     axes: Permutation | None = None
 
@@ -147,6 +163,7 @@ def explain(
     accepted: Collection[str],
     *,
     with_sense: bool,
+    gyros_confirmed: bool,
 ) -> Explained:
     """Find every manoeuvre; where the plan is not found, by what explains clearly more of it.
 
@@ -159,12 +176,14 @@ def explain(
     earth_rate : rad/s, its part upwards; 0 where it is not known
     accepted : repairs that the laboratory confirms: taken where others explain as much
     with_sense : whether turns may be counted the other way
+    gyros_confirmed : whether gravity shows that the gyros' axes are those of the accelerometers: a
+        turn against the plan is then none of a gyro with another sign, and may be so by its axis
     """
     plans = tuple(window.binned.window.manoeuvres for window in windows)
     plain = _Case(tuple(locate(window) for window in windows), plans, earth_rate)
     case, rivals = plain, dict[str, list[Step]]()
     while case.lacking:
-        supposed = list(_suppositions(windows, case, with_sense))
+        supposed = list(_suppositions(windows, case, with_sense, gyros_confirmed))
         best = max(supposed, key=lambda one: one.balance, default=case)
         gain = best.balance - case.balance
         # Two that changed places within a log cost one of them at most: the other one fits.
@@ -174,7 +193,7 @@ def explain(
         alike = [best, *(one for one in supposed if _rivals(case, best, one))]
         # The sense of the table says nothing of where a turn is: its rivals show what is found.
         confirmed = [one for one in alike if one.step and one.step.id in accepted]
-        case = (confirmed or [one for one in alike if one.step != SENSE] or alike)[0]
+        case = (confirmed or [one for one in alike if not _of_sense(one)] or alike)[0]
         assert case.step is not None
         if len(alike) > 1 and not confirmed:
             rivals[case.step.id] = [one.step for one in alike if one.step and one is not case]
@@ -201,6 +220,7 @@ def explained_of(
     accepted: Collection[str] = (),
     *,
     with_sense: bool = False,
+    gyros_confirmed: bool = False,
 ) -> tuple[Array, Explained]:
     """What the gyros read at rest, (3,), rad/s, and where the manoeuvres are; as `explain`."""
     level, scatter = _rest_level(binned)
@@ -208,7 +228,10 @@ def explained_of(
     noise = MIN_MOTION_SIGMA * scatter
     threshold = max(MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE, noise)
     ways = [divide(window, level, threshold, noise) for window in binned]
-    return level, explain(ways, earth_rate, accepted, with_sense=with_sense)
+    explained = explain(
+        ways, earth_rate, accepted, with_sense=with_sense, gyros_confirmed=gyros_confirmed
+    )
+    return level, explained
 
 
 def _rivals(case: _Case, best: _Case, other: _Case) -> bool:
@@ -217,12 +240,17 @@ def _rivals(case: _Case, best: _Case, other: _Case) -> bool:
         return False
     if not (best.fitting - case.fitting) & (other.fitting - case.fitting):
         return False  # they explain different things, and both may be
-    if SENSE in (best.step, other.step) and _turns_each_other(best, other):
+    if (_of_sense(best) or _of_sense(other)) and _turns_each_other(best, other):
         return False
     if other.axes is None or best.axes is None:
         few = other.axes is None or other.axes.moved <= MAX_RIVAL_AXES
-        return few or best.step == SENSE
+        return few or _of_sense(best)
     return simplicity(other.axes) <= simplicity(best.axes)
+
+
+def _of_sense(case: _Case) -> bool:
+    """Whether it adds to another case that turns are counted the other way."""
+    return case.step is not None and case.step.turns is not None
 
 
 def _turns_each_other(best: _Case, other: _Case) -> bool:
@@ -245,15 +273,21 @@ def _turns_each_other(best: _Case, other: _Case) -> bool:
     return bool(exchanged)
 
 
-def _suppositions(windows: Sequence[Division], case: _Case, with_sense: bool) -> Iterator[_Case]:
+def _suppositions(
+    windows: Sequence[Division], case: _Case, with_sense: bool, gyros_confirmed: bool
+) -> Iterator[_Case]:
     """All that may have happened to the campaign, the likelier first."""
     taken = {name for exchanged in case.exchanged for name in exchanged.names}
     lacking = [k for k in case.lacking if not taken & {m.name for m in case.plans[k]}]
-    if with_sense and not case.other_sense:
-        yield _with_other_sense(windows, case)
+    if with_sense:
+        for turns in _senses(case, by_axis=gyros_confirmed):
+            yield _with_other_sense(windows, case, turns)
     yield from _exchanges(windows, case, lacking)
     for permutation in PERMUTATIONS:
         for change in ({"accel": permutation}, {"gyro": permutation}):
+            # Accelerometers that all read their negative turn as they are named.
+            if gyros_confirmed and change != {"accel": ALL_REVERSED}:
+                continue
             if getattr(case.everywhere, next(iter(change))) == AS_NAMED:
                 yield _by_axes(windows, case, replace(case.everywhere, **change), permutation)
         if case.everywhere.as_named:
@@ -273,12 +307,46 @@ def _exchanges(windows: Sequence[Division], case: _Case, lacking: Sequence[int])
                     yield _with_places_exchanged(windows, case, k, (m.name, other.name))
 
 
-def _with_other_sense(windows: Sequence[Division], case: _Case) -> _Case:
-    plans = tuple([turned_back(m) for m in plan] for plan in case.plans)
+def _senses(case: _Case, *, by_axis: bool) -> Iterator[OtherSense]:
+    """The turns that the plan may count the other way: groups of those not counted so yet."""
+    turns = [m for plan in case.plans for m in plan if m.do == "turn" and m.about is not None]
+    if not by_axis:
+        if turns and not case.other_sense:
+            yield OtherSense(tuple(m.name for m in turns))
+        return
+    taken = {name for each in case.other_sense for name in each.names}
+    groups: dict[str, list[str]] = {axis: [] for axis in (*AXES, NEGATIVE)}
+    for m in turns:
+        assert m.about is not None  # as selected above
+        i = int(np.argmax(np.abs(m.about)))
+        if abs(m.about[i]) > OWN_AXIS_SHARE:
+            groups[AXES[i]].append(m.name)
+            if m.about[i] < 0:
+                groups[NEGATIVE].append(m.name)
+    every = [m.name for m in turns]
+    told: set[tuple[str, ...]] = {()}
+    for about, names in (*groups.items(), ("", every)):
+        own = tuple(names)
+        if own not in told and not taken & {*own} and (not about or own != tuple(every)):
+            told.add(own)
+            yield OtherSense(own, about)
+
+
+def _with_other_sense(windows: Sequence[Division], case: _Case, turns: OtherSense) -> _Case:
+    plans = tuple(
+        [turned_back(m) if m.name in turns.names else m for m in plan] for plan in case.plans
+    )
     located = tuple(
         locate(window, case.everywhere, plan) for window, plan in zip(windows, plans, strict=True)
     )
-    return replace(case, located=located, plans=plans, other_sense=True, step=SENSE, axes=None)
+    return replace(
+        case,
+        located=located,
+        plans=plans,
+        other_sense=(*case.other_sense, turns),
+        step=sense_step(turns),
+        axes=None,
+    )
 
 
 def turned_back(m: Manoeuvre) -> Manoeuvre:
@@ -331,8 +399,8 @@ def _by_axes(
 ) -> _Case:
     # What two names had explained, they explain by these axes as well, or not at all.
     plans = tuple(window.binned.window.manoeuvres for window in windows)
-    if case.other_sense:
-        plans = tuple([turned_back(m) for m in plan] for plan in plans)
+    back = {name for turns in case.other_sense for name in turns.names}
+    plans = tuple([turned_back(m) if m.name in back else m for m in plan] for plan in plans)
     located = tuple(locate(window, axes, plan) for window, plan in zip(windows, plans, strict=True))
     sensor = "accel" if axes.accel != case.everywhere.accel else "gyro"
     return replace(

@@ -16,23 +16,32 @@ from inertial.campaign.records import Manoeuvre, Row
 from inertial.signal.axis_permutations import Permutation, composed
 from inertial.signal.detector import Given
 from inertial.signal.misread_axes import SENSOR_NAMES, determinant, reads_in_words
-from inertial.signal.plan_detector import Misread, Rescaled, Swapped
+from inertial.signal.plan_detector import Misread, Rescaled, Reversed, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from stages.segment.detection import Undone, in_order, misread_in, swapped_in
 from stages.segment.explanations import (
-    SENSE,
+    ALL_REVERSED,
+    NEGATIVE,
     Exchanged,
     Explained,
     Step,
     axes_step,
     exchange_step,
     explained_of,
+    sense_step,
     turned_back,
     unlike,
 )
 from stages.segment.matching import AS_NAMED, AS_PLANNED
-from stages.segment.repair_readings import Scale, misread_by_gravity, rates_of, scales_of, step_of
+from stages.segment.repair_readings import (
+    Scale,
+    axes_by_gravity,
+    misread_by_gravity,
+    rates_of,
+    scales_of,
+    step_of,
+)
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]
@@ -103,7 +112,8 @@ class _Campaign:
         self._swapped: list[Swapped] = []
         self._rescaled: list[Rescaled] = []
         self._restated: list[Rescaled] = []
-        self._other_sense = ""
+        self._reversed: list[Reversed] = []
+        self._by_gravity = False  # whether gravity shows the gyros to be as they are named
         self._rivals: dict[str, list[tuple[str, str]]] = {}
         self._explain()
 
@@ -118,7 +128,7 @@ class _Campaign:
             self._swapped,
             self._rescaled,
             self._restated,
-            self._other_sense,
+            self._reversed,
             self._rivals,
         )
         return SetRight(
@@ -197,12 +207,15 @@ class _Campaign:
         right, _after, total = self._explained.fitting
         if right == total:
             return
+        seen = axes_by_gravity(self._binned, self._level)
+        self._by_gravity = seen is not None and seen.axes == AS_NAMED
         explained = explained_of(
             self._binned,
             self._plan,
             self._basis.earth_rate,
             self._basis.accepted,
             with_sense=True,
+            gyros_confirmed=self._by_gravity,
         )[1]
         first = len(self._rows)
         fitting = explained.fitting
@@ -230,6 +243,11 @@ class _Campaign:
             return _axes_in_words(Misread(step.sensor, step.axes, "", ()))
         if step.exchanged is not None:
             return _exchange_in_words(in_order(step.exchanged, self._plan))
+        assert step.turns is not None  # the last kind of step
+        if step.turns.about == NEGATIVE:
+            return _("the plan counts the turns about negative axes about the positive ones")
+        if step.turns.about:
+            return _("the plan counts the turns about {axis} the other way", axis=step.turns.about)
         return _("the table counts all its turns the other way")
 
     def _axes_everywhere(
@@ -292,12 +310,16 @@ class _Campaign:
             if state in APPLIED:
                 self._swapped.append(replace(swapped, undone=True))
                 plan = _exchanged_back(plan, exchanged)
-        if explained.other_sense:
-            state = self._basis.state(SENSE)
-            self._rows.append(_row(SENSE, state, self._in_words(SENSE), fitting))
+        for turns in explained.other_sense:
+            step = sense_step(turns)
+            state = self._basis.state(step, rival=step.id in explained.rivals)
+            self._rows.append(_row(step, state, self._in_words(step), fitting))
             if state in APPLIED:
-                self._other_sense = SENSE.id
-                plan = [turned_back(m) for m in plan]
+                why = self._in_words(step)
+                self._reversed.append(
+                    Reversed(step.id, turns.names, turns.about, why, self._by_gravity)
+                )
+                plan = [turned_back(m) if m.name in turns.names else m for m in plan]
         return plan
 
     def set_axes_by_gravity(self) -> None:
@@ -411,9 +433,6 @@ def _axes_in_words(misread: Misread) -> str:
     if misread.sensor == "accel" and misread.axes == ALL_REVERSED:
         words += _(", or the log tells gravity in place of specific force, which is the same")
     return words
-
-
-ALL_REVERSED = Permutation((0, 1, 2), (-1, -1, -1))
 
 
 def _by_mounting(explained: Explained) -> bool:

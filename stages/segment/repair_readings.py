@@ -14,7 +14,7 @@ from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.detector import Given, Log
-from inertial.signal.gravity_turned import turned
+from inertial.signal.gravity_turned import Turned, turned
 from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import Misread
 from inertial.signal.rests_and_motions import steady_part
@@ -35,6 +35,11 @@ Array = NDArray[np.float64]
 # ---- Axes and signs by which the gyros turn gravity as the accelerometers see it, without a plan.
 
 
+def axes_by_gravity(binned: Sequence[Binned], level: Array) -> Turned | None:
+    """How the gyros turn gravity; `level` as in `misread_by_gravity`."""
+    return turned([(one.forces, one.rates - level, one.bin_seconds) for one in binned if one.bins])
+
+
 def misread_by_gravity(binned: Sequence[Binned], level: Array) -> list[Misread]:
     """What explains that the gyros turn gravity otherwise than it turns; each does it alone.
 
@@ -46,8 +51,7 @@ def misread_by_gravity(binned: Sequence[Binned], level: Array) -> list[Misread]:
     ----------
     level : (3,), rad/s, the gyros at rest
     """
-    stretches = [(one.forces, one.rates - level, one.bin_seconds) for one in binned if one.bins]
-    seen = turned(stretches)
+    seen = axes_by_gravity(binned, level)
     if seen is None or seen.axes in (None, AS_NAMED):
         return []
     assert seen.axes is not None
