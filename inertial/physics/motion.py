@@ -15,6 +15,7 @@ from inertial.text.messages import _
 Array = NDArray[np.float64]
 
 MIN_VERTICAL_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
+NEARLY = 0.1  # of a direction cosine: differences that do not count
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
@@ -37,10 +38,8 @@ def turned(direction: Array, about: Array, angle: float) -> Array:
 
 def level_axes(up: Array) -> tuple[Array, Array]:
     """Two horizontal directions in body axes that form, with `up`, a right-handed triad."""
-    least = np.eye(3)[np.argmin(np.abs(up))]
-    first = cross(least, up)
-    first /= np.linalg.norm(first)
-    return first, cross(up, first)
+    first, second = all_level_axes(up[None])[0]
+    return first, second
 
 
 def is_vertical(up: Array, about: Array) -> bool:
@@ -49,8 +48,13 @@ def is_vertical(up: Array, about: Array) -> bool:
 
 
 def all_level_axes(ups: Array) -> Array:
-    """`level_axes` of many upward directions (n, 3), (n, 2, 3)."""
-    least = np.eye(3)[np.argmin(np.abs(ups), axis=1)]
+    """`level_axes` of many upward directions (n, 3), (n, 2, 3).
+
+    The first is across a body axis that is nearly level: the first of those that are, so that no
+    small tilt makes it another one.
+    """
+    size = np.abs(ups)
+    least = np.eye(3)[np.argmax(size < size.min(axis=1, keepdims=True) + NEARLY, axis=1)]
     first = cross(least, ups)
     first /= np.linalg.norm(first, axis=1)[:, None]
     return np.stack([first, cross(ups, first)], axis=1)
