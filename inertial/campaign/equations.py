@@ -234,15 +234,24 @@ class Campaign:
         own = self.by_hand.degrees.get(sensor, np.inf) if self.by_hand else np.inf
         return float(min(of_noise, own))
 
-    def deviance(self, effects: Sequence[Effect], sizes: Sequence[float]) -> float:
-        """−2 log of the likelihood; `sizes`: prior sigma of each effect, in its typical sizes."""
-        sigmas = {
-            f"{effect.label}.{parameter.name}": size * parameter.typical
-            for effect, size in zip(effects, sizes, strict=True)
-            for parameter in effect.parameters
-        }
-        systems = (self._system(s, effects, sigmas, None) for s in SENSORS)
-        return sum(system.solve_shared().deviance for system in systems if system is not None)
+    @cached_property
+    def deviances(self) -> Mapping[str, float]:
+        """−2 log of the likelihood of each sensor without effects."""
+        systems = {sensor: self._system(sensor, [], {}, None) for sensor in SENSORS}
+        return {s: one.solve_shared().deviance for s, one in systems.items() if one is not None}
+
+    @cached_property
+    def deviance(self) -> float:
+        """−2 log of the likelihood without effects; what both sensors show of tilts counts once."""
+        alone = sum(self.deviances.values())
+        if not (tilts := self.shared_tilts):
+            return alone
+        prior = np.full(len(tilts), self.position_sigma**-2)
+        systems = self.systems([], 1.0, sharing=tilts)
+        of_tilts = [system.effect_information() for system in systems if system is not None]
+        gyro, accel = of_tilts
+        both = (gyro + accel).deviance_as_errors(prior)
+        return alone + both - sum(one.deviance_as_errors(prior) for one in of_tilts)
 
     def systems(
         self,
@@ -275,7 +284,7 @@ class Campaign:
             name
             for position, there in upright.items()
             if there and position in stood
-            for name in names_of(position, turning=True)
+            for name in names_of(position)
         )
 
     def system(
@@ -375,7 +384,8 @@ class Campaign:
     def _linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
         """The equations of all static positions and rate segments, with no prior of the effects."""
         effect_keys = tuple(effect.key for effect in effects)
-        key = (*effect_keys, tuple(self.drifts["gyro"].instability.tolist()))
+        own = (self.position_sigma, *self.drifts["gyro"].instability.tolist())
+        key = (*effect_keys, own)
         if key in self._linear:
             return self._linear[key]
         made = self._newly_linearised(effects)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.least_squares import Estimate, System
-from inertial.estimation.position_tilt import KINDS, names_of, of_both
+from inertial.estimation.position_tilt import OF_AXIS, TILTS, in_force, names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
 from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 from inertial.estimation.triad import UNKNOWNS
@@ -203,7 +203,7 @@ def _drifting(
     for number, some in enumerate(same.values()):
         position, stretch = statics[some[0]].position, statics[some[0]].stretch
         turning = any(statics[i].level is not None for i in some)
-        tilts = names_of(position, turning=turning)
+        tilts = names_of(position, (*TILTS, *OF_AXIS) if turning else TILTS)
         sigma |= dict.fromkeys(tilts, reference.position_sigma)
         columns = np.r_[: len(prior) + len(tilts), -1]
         own = rows[some][:, :, columns].reshape(-1, len(columns))
@@ -234,7 +234,7 @@ def linear_rows(
     s = len(prior)
     ups = np.array([static.up for static in statics])
     along = ups @ about.matrix.T
-    rows = np.zeros((len(statics), 3, s + len(KINDS) + 1))
+    rows = np.zeros((len(statics), 3, s + len(TILTS) + len(OF_AXIS) + 1))
     for row in range(3):
         rows[:, row, 3 * row : 3 * row + 3] = gravity * ups
         rows[:, row, 9 + row] = 1.0
@@ -243,8 +243,8 @@ def linear_rows(
     felt = [static.felt for static in statics]
     rows[felt, :, UNKNOWNS + 1 : s] = about.matrix @ rows[felt, :, UNKNOWNS + 1 : s]
     tilts = tilt_axes(statics)
-    for axis in range(len(KINDS)):
-        rows[:, :, s + axis] = cross(tilts[:, axis], gravity * ups) @ about.matrix.T
+    for i in range(tilts.shape[1]):
+        rows[:, :, s + i] = cross(tilts[:, i], gravity * ups) @ about.matrix.T
     means = np.array([static.mean for static in statics])
     rows[:, :, -1] = means + gravity * (1 + _versed(statics, ups, about))[:, None] * along
     rows[:, :, -1] -= rows[:, :, :s] @ prior
@@ -258,7 +258,7 @@ def tilt_axes(statics: Sequence[StaticForce]) -> Array:
     for own, static in zip(level, statics, strict=True):
         if static.level is not None:
             own[:] = static.level
-    return of_both(case, level)
+    return in_force(case, level)
 
 
 def _versed(statics: Sequence[StaticForce], ups: Array, about: Triad) -> Array:

@@ -296,6 +296,12 @@ class EffectInformation:
             chi_squared=self.chi_squared - float(self.right[k:] @ across[:, -1]),
         )
 
+    def deviance_as_errors(self, prior: Array) -> float:
+        """−2 log of the likelihood with these as errors, less that without; `prior`: see above."""
+        with_prior = self.information + np.diag(prior)
+        log_det = np.linalg.slogdet(with_prior)[1] - np.sum(np.log(prior))
+        return float(log_det - self.right @ np.linalg.solve(with_prior, self.right))
+
     def following(self, other: "EffectInformation", prior: Array) -> "EffectInformation":
         """What these equations add to those of another sensor that has the same errors.
 

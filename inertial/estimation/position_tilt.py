@@ -1,14 +1,15 @@
-"""The tilt of a set position: two unknowns at rest, four while the table turns about the vertical.
+"""The tilt of a set position: two unknowns at rest, more while the table turns about the vertical.
 
 An error of the IMU on the table is fixed to its case, so a turn does not change it in body axes. An
 error of the table's axis, as of the outer axis of a two-axis table, is fixed to the laboratory, so
-in body axes it turns the other way. Which of the two a tilt t is, is not known: of each of its
-components
+in body axes it turns the other way. Which of the two a tilt t is, is not known. So the part l that
+is fixed to the laboratory has unknowns of its own, and in a turn by θ the accelerometers show
 
-    t/2 − e √3/2   is fixed to the case,   t/2 + e √3/2   to the laboratory,
+    t + (R(θ) − 1) l.
 
-with a second unknown e. t and e have the sigma of the table, independently; so has each part, and
-their sum at rest, t. Gyros show the first part alone, for it moves the axis of a turn in the case.
+Gyros show the part that is fixed to the case, for it moves the axis of the turn there: as much of t
+as not, t/2 + d √3/2. All of t, l and d have the sigma of the table, independently, so that each
+part has it, and their sum at rest, if the tilt is wholly of the case, or wholly of the axis.
 """
 
 from collections.abc import Sequence
@@ -20,22 +21,25 @@ from inertial.estimation.elimination import Name
 
 Array = NDArray[np.float64]
 
-KINDS = ("tilt 0", "tilt 1", "tilt of axis 0", "tilt of axis 1")
-OF_CASE = np.array([0.5, -np.sqrt(0.75)])  # shares of t and of e
-OF_AXIS = np.array([0.5, np.sqrt(0.75)])
+TILTS = ("tilt 0", "tilt 1")
+OF_AXIS = ("tilt of axis 0", "tilt of axis 1")  # l, of accelerometers
+OF_CASE = ("tilt of case 0", "tilt of case 1")  # d, of gyros
+SHARES = (0.5, float(np.sqrt(0.75)))  # of t and of d in what is fixed to the case
 
 
-def names_of(position: str, *, turning: bool) -> tuple[Name, ...]:
-    """The unknowns of a position at rest or in turns about its vertical."""
-    return tuple((kind, position) for kind in (KINDS if turning else KINDS[:2]))
+def names_of(position: str, kinds: Sequence[str] = TILTS) -> tuple[Name, ...]:
+    """The names of unknowns of a position."""
+    return tuple((kind, position) for kind in kinds)
 
 
-def of_case(axes: Sequence[Array]) -> list[Array]:
-    """The directions (3,) of the four unknowns in what is fixed to the case, from those of two."""
-    return [share * axis for share in OF_CASE for axis in axes]
+def in_case(axes: Sequence[Array]) -> list[Array]:
+    """The directions of t and d, (3,) each, in what gyros show, from the two level axes."""
+    return [share * axis for share in SHARES for axis in axes]
 
 
-def of_both(case: Array, laboratory: Array) -> Array:
-    """The same in the whole tilt, (…, 4, 3), from two fixed to each, (…, 2, 3), in body axes."""
-    parts = zip(OF_CASE, OF_AXIS, strict=True)
-    return np.concatenate([own * case + other * laboratory for own, other in parts], axis=-2)
+def in_force(case: Array, laboratory: Array) -> Array:
+    """Those of t and l in what accelerometers show, (…, 4, 3), from level axes, (…, 2, 3).
+
+    `case`: fixed to the case; `laboratory`: fixed to the laboratory, in body axes.
+    """
+    return np.concatenate([case, laboratory - case], axis=-2)

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.position_tilt import KINDS
+from inertial.estimation.position_tilt import OF_AXIS, OF_CASE, TILTS
 from inertial.estimation.triad import UNKNOWNS
 
 Array = NDArray[np.float64]
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 STEP = 1e-4  # relative, of a variance: its square is lost, and nothing by rounding
 # The kinds of the errors and of the known quantities in the equations.
 ERRORS = {
-    "position": KINDS,
+    "position": (*TILTS, *OF_AXIS, *OF_CASE),
     "angle": ("angle", "encoder delay", "encoder sine", "encoder cosine"),
     "interpolation": ("gap angle",),
     "clock": ("clock",),

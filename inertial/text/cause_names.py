@@ -40,6 +40,7 @@ NAMES = {
     "wrong_direction": _("wrong direction"),
     "wrong_rate": _("wrong rate"),
     "unexplained": _("unexplained"),
+    "position_scatter": _("positions that scatter by more than is stated of the table"),
     "wrong_scale_of_turns": _("wrong scale of turns"),
     "mounting_shift": _("shift of the IMU in its fixture"),
     "accel_bias_per_log": _("bias of the accelerometers after each switch-on"),

@@ -31,6 +31,7 @@ from stages.criticism.law_selection import with_laws
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
 from stages.criticism.pooled_evidence import pooled_evidence_rows
+from stages.criticism.position_scatter import select_beside_scatter
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
 from stages.criticism.selection import SENSORS, Selection
 from stages.criticism.temperature_findings import temperature_rows
@@ -86,7 +87,9 @@ def _of_mount(
         tested = structure_tests(effects.campaign, effects.fitted, degrees, levels[1])
         return with_laws(effects, tested, campaign, in_blocks, *levels, degrees)
 
-    selection, tested, campaign = select_beside_drift(measured, selected, levels[0])
+    (selection, tested, campaign), scatter = select_beside_scatter(
+        measured, lambda one: select_beside_drift(one, selected, levels[0]), levels[0]
+    )
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
     for sensor, drift in measured.drifts.items():
@@ -99,6 +102,8 @@ def _of_mount(
                     "kept": bool(campaign.drifts[sensor]),
                 },
             )
+    if scatter is not None:
+        yield from scatter.rows(mount)
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
     plans = {} if data.by_hand else extended_plans(data.plan, data.performed, quiet)
     extended = {name: partial(_with, plan, data) for name, plan in plans.items()}

@@ -170,6 +170,6 @@ def log_evidence(selection: Selection) -> float:
     walks = sum(1 for size in selection.random_walks if size)
     return (
         selection.explained(effects, start)
-        - selection.campaign.deviance([], []) / 2
+        - selection.campaign.deviance / 2
         - walks * float(np.log(walk_odds.LOG_RANGE))
     )

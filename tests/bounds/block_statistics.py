@@ -1,8 +1,9 @@
 """What an IMU on the table would read, block by block, by its own exact physics and no noise.
 
 The unknowns are one vector: M of the accelerometers by rows and their bias, the same of the gyros,
-then two tilts for each position, the error of the angle of each turn, and the lever arm from the
-table's axis to each accelerometer along its own axis. It shares no code with the stages.
+then two tilts for each position, and two of the table's axis there, by which the force goes round
+in turns; the error of the angle of each turn, and the lever arm from the table's axis to each
+accelerometer along its own axis. It shares no code with the stages.
 """
 
 from collections.abc import Mapping, Sequence
@@ -137,8 +138,8 @@ class Layout:
 
     @property
     def known(self) -> Array:
-        """Sigmas of the unknowns, (24 + 2 positions + turns + 3,)."""
-        errors = np.full(2 * len(self.positions) + self.turns, plans.ARCSECONDS * ARC_SECOND)
+        """Sigmas of the unknowns, (24 + 4 positions + turns + 3,)."""
+        errors = np.full(4 * len(self.positions) + self.turns, plans.ARCSECONDS * ARC_SECOND)
         sought = np.full(24, np.nan)
         sought[12:21] = SANE
         return np.concatenate([sought, errors, np.full(3, LEVER_ARM)])
@@ -153,8 +154,9 @@ class Layout:
         (force, force_bias), (rate, rate_bias) = (
             (part[:9].reshape(3, 3), part[9:]) for part in (unknowns[:12], unknowns[12:24])
         )
-        tilts = unknowns[24 : 24 + 2 * len(self.positions)].reshape(-1, 2)
-        angles, arm = unknowns[24 + 2 * len(self.positions) : -3], unknowns[-3:]
+        count = 24 + 4 * len(self.positions)
+        tilts, tilts_of_axis = unknowns[24:count].reshape(2, -1, 2)
+        angles, arm = unknowns[count:-3], unknowns[-3:]
         rows = []
         for p in self.parts:
             first = p.mark
@@ -178,6 +180,11 @@ class Layout:
             norths = turned(np.broadcast_to(north, (*turned_by.shape, 3)), about, turned_by).mean(1)
             spin = p.rates[:, None] * stretch * about
             felt = spin + EARTH_UP * ups + EARTH_LEVEL * norths
+            if p.turn is not None:
+                axis_tilt = tilts_of_axis[self.positions.index(p.position)]
+                lies = axis_tilt[0] * first + axis_tilt[1] * second
+                round_ = turned(np.broadcast_to(lies, (*turned_by.shape, 3)), p.up, turned_by)
+                ups = ups + np.cross(round_.mean(1) - lies, p.up)
             pull = np.square(p.rates * stretch)[:, None] * (about * (about @ arm) - arm)
             felt_force = GRAVITY * ups + pull
             rows.append(np.hstack([felt_force @ force.T + force_bias, felt @ rate.T + rate_bias]))

@@ -218,6 +218,7 @@ def test_position_errors_scatter_as_the_table_says(ideal: Callable[..., dict[str
         position_sigma=1e-5,
         leaning=lambda manoeuvre, attitude: np.eye(3),
         mountings={},
+        of_axis=False,
         missed=lambda manoeuvre, attitude: np.eye(3),
         chance=specification.chance,
     )

@@ -1,0 +1,146 @@
+"""Whether the set positions scatter by more than is stated of the table.
+
+The tilts of the positions are errors of the equations, with the sigma that the campaign states.
+Where that is too small, what is left goes with the attitude, and would be named as effects of the
+sensors or of single positions. So the effects that are named with the stated sigma are weighed
+against those with the sigma of largest likelihood, by evidence. A single position that is off costs
+less as an effect of its own: in a larger sigma of all it would be the only one. What few
+manoeuvres carry is no scatter: that is in all positions.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from inertial.campaign.equations import Campaign
+from inertial.text.messages import _
+from inertial.text.numbers import significant
+from inertial.text.units import ARC_SECOND
+from stages.criticism.drift_at_rest import paid_evidence
+from stages.criticism.finding_rows import SENSORS, TableRow, finding_id, member_rows
+from stages.criticism.residual_structure import Tested, carrying
+from stages.criticism.rivals import MAX_LOG_ODDS, members_of
+from stages.criticism.selection import Selection
+
+CAUSE = "position_scatter"
+TRIED = 1.5  # of the stated sigma: where this is not likelier, none is sought
+MIN_DROP = 4.0  # of −2 log likelihood, by the sigma that is tried
+MAX_FACTOR = 1000.0  # of the stated sigma
+LOG_TOLERANCE = 0.01  # of the sigma
+LOG_STEP = 0.1  # of the sigma, over which the curvature of the likelihood is taken
+SCATTER = _(
+    "The set positions scatter by {found} ± {sigma} arcsec, {ratio} times the {stated} arcsec that "
+    "are stated of the table: the {sensors} show it in what goes with the attitude."
+)
+CONSEQUENCE = _(
+    "The sigmas of the joint result rest on the stated one and are too small; what depends on the "
+    "positions may be off by several of them. With the larger one no effect need be named for it."
+)
+ACTION = _(
+    "State position_sigma_arcsec: {found} in the campaign file and run it again; see how the "
+    "positions were set, and whether the table keeps what is stated of it."
+)
+
+Selected = tuple[Selection, Tested, Campaign]
+
+
+@dataclass(frozen=True)
+class PositionScatter:
+    """The sigma of the tilts that is likelier than the stated one, rad, and its own.
+
+    `drops`: of −2 log likelihood, by sensor; `rivals`: effects that explain it as well.
+    """
+
+    value: float
+    sigma: float
+    stated: float
+    drops: Mapping[str, float]
+    rivals: tuple[str, ...] = ()
+
+    def rows(self, mount: str) -> Iterator[TableRow]:
+        """A finding for each sensor that shows it."""
+        found = significant(self.value / ARC_SECOND, 2)
+        for sensor, drop in self.drops.items():
+            if drop < MIN_DROP:
+                continue
+            identifier = finding_id(f"{CAUSE}/{sensor}", mount)
+            yield (
+                "findings",
+                {
+                    "id": identifier,
+                    "mount": mount,
+                    "cause": CAUSE,
+                    "sensor": sensor,
+                    "count": 1,
+                    "size": self.value,
+                    "unit": "rad",
+                    "severity": 3,
+                    "sentence": SCATTER.format(
+                        found=found,
+                        sigma=significant(self.sigma / ARC_SECOND, 2),
+                        ratio=significant(self.value / self.stated, 2),
+                        stated=significant(self.stated / ARC_SECOND, 2),
+                        sensors=SENSORS[sensor],
+                    ),
+                    "consequence": CONSEQUENCE,
+                    "action": ACTION.format(found=found),
+                    "verdict": "one_of_class" if self.rivals else "found",
+                },
+            )
+            yield from member_rows(identifier, mount, [CAUSE, *self.rivals])
+
+
+def select_beside_scatter(
+    measured: Campaign, select: Callable[[Campaign], Selected], level: float
+) -> tuple[Selected, PositionScatter | None]:
+    """The likeliest selection, with the scatter of the positions if that is likelier.
+
+    Parameters
+    ----------
+    select : of a campaign the effects, the tests of its residuals, and the campaign they are of
+    level : accepted probability of a scatter that is not there, which its evidence pays for
+    """
+    stated = select(measured)
+    scatter = likely_scatter(stated[2])
+    if scatter is None or any(carrying(stated[1], sensor) for sensor in SENSORS):
+        return stated, None
+    wider = select(replace(measured, position_sigma=scatter.value))
+    odds = paid_evidence(wider[0], level) + np.log(level) - paid_evidence(stated[0], level)
+    if odds < 0:
+        return stated, None
+    named = members_of(wider[0])
+    rivals = tuple(one for one in members_of(stated[0]) if one not in named)
+    return wider, replace(scatter, rivals=rivals if odds < MAX_LOG_ODDS else ())
+
+
+def likely_scatter(campaign: Campaign) -> PositionScatter | None:
+    """The sigma of the positions of largest likelihood without effects; None where none is larger.
+
+    By hand nothing is set, and nothing is stated of it.
+    """
+    stated = campaign.position_sigma
+    if campaign.by_hand or not stated:
+        return None
+
+    def deviance(factor: float) -> float:
+        return replace(campaign, position_sigma=stated * float(np.exp(factor))).deviance
+
+    if deviance(0.0) - deviance(float(np.log(TRIED))) < MIN_DROP:
+        return None
+    best = minimize_scalar(
+        deviance,
+        bounds=(0.0, float(np.log(MAX_FACTOR))),
+        method="bounded",
+        options={"xatol": LOG_TOLERANCE},
+    )
+    factor = float(best.x)
+    beside = deviance(factor - LOG_STEP) + deviance(factor + LOG_STEP) - 2 * float(best.fun)
+    relative = float(np.sqrt(2 * LOG_STEP**2 / max(beside, LOG_STEP**2)))
+    value = stated * float(np.exp(factor))
+    wider = replace(campaign, position_sigma=value)
+    drops = {
+        sensor: before - wider.deviances[sensor] for sensor, before in campaign.deviances.items()
+    }
+    return PositionScatter(value, relative * value, stated, drops)
