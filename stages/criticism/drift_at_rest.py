@@ -38,7 +38,7 @@ def select_beside_drift(
             continue
         without = kept.without_drift_at_rest([sensor])
         other, other_tested = select(without)
-        odds = paid_evidence(other, level) - paid_evidence(selection, level)
+        odds = _log_evidence(other, level) - _log_evidence(selection, level)
         if odds > MAX_LOG_ODDS or carrying(other_tested, sensor):
             selection, tested, kept = other, other_tested, without
         elif odds > -MAX_LOG_ODDS:
@@ -46,8 +46,7 @@ def select_beside_drift(
     return selection, tested, kept
 
 
-def paid_evidence(selection: Selection, level: float) -> float:
-    """Log evidence of what is named; `level`: of a law that is not there, which each costs."""
+def _log_evidence(selection: Selection, level: float) -> float:
     laws = sum(isinstance(effect, Law) for effect in selection.effects)
     return log_evidence(selection) + laws * float(np.log(level))
 

@@ -15,25 +15,29 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from inertial.campaign.equations import Campaign
+from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import ARC_SECOND
-from stages.criticism.drift_at_rest import paid_evidence
 from stages.criticism.finding_rows import SENSORS, TableRow, finding_id, member_rows
 from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.rivals import MAX_LOG_ODDS, members_of
 from stages.criticism.selection import Selection
+from stages.criticism.temperature_selection import log_evidence
 
 CAUSE = "position_scatter"
 TRIED = 1.5  # of the stated sigma: where this is not likelier, none is sought
 MIN_DROP = 4.0  # of −2 log likelihood, by the sigma that is tried
 MAX_FACTOR = 1000.0  # of the stated sigma
 LOG_TOLERANCE = 0.01  # of the sigma
+SQRT2 = float(np.sqrt(2))
 LOG_STEP = 0.1  # of the sigma, over which the curvature of the likelihood is taken
 SCATTER = _(
     "The set positions scatter by {found} ± {sigma} arcsec, {ratio} times the {stated} arcsec that "
     "are stated of the table: the {sensors} show it in what goes with the attitude."
 )
+INSTEAD = _(" As likely is instead: {rivals}.")
 CONSEQUENCE = _(
     "The sigmas of the joint result rest on the stated one and are too small; what depends on the "
     "positions may be off by several of them. With the larger one no effect need be named for it."
@@ -60,55 +64,58 @@ class PositionScatter:
     rivals: tuple[str, ...] = ()
 
     def rows(self, mount: str) -> Iterator[TableRow]:
-        """A finding for each sensor that shows it."""
+        """The finding, of the sensor that shows it, or of both."""
         found = significant(self.value / ARC_SECOND, 2)
-        for sensor, drop in self.drops.items():
-            if drop < MIN_DROP:
-                continue
-            identifier = finding_id(f"{CAUSE}/{sensor}", mount)
-            yield (
-                "findings",
-                {
-                    "id": identifier,
-                    "mount": mount,
-                    "cause": CAUSE,
-                    "sensor": sensor,
-                    "count": 1,
-                    "size": self.value,
-                    "unit": "rad",
-                    "severity": 3,
-                    "sentence": SCATTER.format(
-                        found=found,
-                        sigma=significant(self.sigma / ARC_SECOND, 2),
-                        ratio=significant(self.value / self.stated, 2),
-                        stated=significant(self.stated / ARC_SECOND, 2),
-                        sensors=SENSORS[sensor],
-                    ),
-                    "consequence": CONSEQUENCE,
-                    "action": ACTION.format(found=found),
-                    "verdict": "one_of_class" if self.rivals else "found",
-                },
-            )
-            yield from member_rows(identifier, mount, [CAUSE, *self.rivals])
+        sensors = [sensor for sensor, drop in self.drops.items() if drop > MIN_DROP]
+        identifier = finding_id(CAUSE, mount)
+        sentence = SCATTER.format(
+            found=found,
+            sigma=significant(self.sigma / ARC_SECOND, 2),
+            ratio=significant(self.value / self.stated, 2),
+            stated=significant(self.stated / ARC_SECOND, 2),
+            sensors=listed([SENSORS[sensor] for sensor in sensors]),
+        )
+        if self.rivals:
+            names = listed([in_words(rival) for rival in self.rivals], "or")
+            sentence += INSTEAD.format(rivals=names)
+        yield (
+            "findings",
+            {
+                "id": identifier,
+                "mount": mount,
+                "cause": CAUSE,
+                "sensor": sensors[0] if len(sensors) == 1 else None,
+                "count": 1,
+                "size": self.value,
+                "unit": "rad",
+                "severity": 3,
+                "sentence": sentence,
+                "consequence": CONSEQUENCE,
+                "action": ACTION.format(found=found),
+                "verdict": "one_of_class" if self.rivals else "found",
+            },
+        )
+        yield from member_rows(identifier, mount, [CAUSE, *self.rivals])
 
 
 def select_beside_scatter(
     measured: Campaign, select: Callable[[Campaign], Selected], level: float
 ) -> tuple[Selected, PositionScatter | None]:
-    """The likeliest selection, with the scatter of the positions if that is likelier.
+    """The likeliest selection, with the scatter of the positions if that is not less likely.
 
     Parameters
     ----------
     select : of a campaign the effects, the tests of its residuals, and the campaign they are of
-    level : accepted probability of a scatter that is not there, which its evidence pays for
+    level : accepted probability of a cause that is not there, which the evidence of each pays for
     """
     stated = select(measured)
     scatter = likely_scatter(stated[2])
     if scatter is None or any(carrying(stated[1], sensor) for sensor in SENSORS):
         return stated, None
     wider = select(replace(measured, position_sigma=scatter.value))
-    odds = paid_evidence(wider[0], level) + np.log(level) - paid_evidence(stated[0], level)
-    if odds < 0:
+    causes = len(wider[0].named.causes) + 1 - len(stated[0].named.causes)
+    odds = log_evidence(wider[0]) - log_evidence(stated[0]) + causes * float(np.log(level))
+    if odds < -MAX_LOG_ODDS:
         return stated, None
     named = members_of(wider[0])
     rivals = tuple(one for one in members_of(stated[0]) if one not in named)
@@ -137,7 +144,8 @@ def likely_scatter(campaign: Campaign) -> PositionScatter | None:
     )
     factor = float(best.x)
     beside = deviance(factor - LOG_STEP) + deviance(factor + LOG_STEP) - 2 * float(best.fun)
-    relative = float(np.sqrt(2 * LOG_STEP**2 / max(beside, LOG_STEP**2)))
+    # What gyros and accelerometers show of a tilt may be the same: then there are half as many.
+    relative = SQRT2 * float(np.sqrt(2 * LOG_STEP**2 / max(beside, LOG_STEP**2)))
     value = stated * float(np.exp(factor))
     wider = replace(campaign, position_sigma=value)
     drops = {

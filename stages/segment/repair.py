@@ -245,7 +245,9 @@ class _Campaign:
             return _exchange_in_words(in_order(step.exchanged, self._plan))
         assert step.turns is not None  # the last kind of step
         if step.turns.about == NEGATIVE:
-            return _("the plan counts the turns about negative axes about the positive ones")
+            return _(
+                "the plan counts the turns about the negative axes as if about the positive ones"
+            )
         if step.turns.about:
             return _("the plan counts the turns about {axis} the other way", axis=step.turns.about)
         return _("the table counts all its turns the other way")

@@ -10,12 +10,13 @@ NOTHING, UNKNOWN = "nothing", "unknown"
 TRUE_ANYWAY = {"temperature_drift"}  # what quality rightly says of a plan in which it changes
 AT_STAKE = 0.5  # of SNR², for a gain on what is held out
 LEAST_AT_STAKE = 9.0
+OF_ALL = {"table_position_error": "position_scatter"}  # hidden in all positions of a campaign
 Tally = tuple[int, int]  # how many of how many
 
 
 def false_names(outcome: Outcome) -> list[str]:
     """Causes that were not put in, and that have no member in their class that was."""
-    hidden = set(outcome["hidden"])
+    hidden = {*outcome["hidden"], *(OF_ALL[one] for one in outcome["hidden"] if one in OF_ALL)}
     return [
         one["cause"]
         for one in outcome["named"]
@@ -30,7 +31,7 @@ def detected(outcome: Outcome, effect: str) -> bool:
     show at once (an oscillation, the end of the range) quality says.
     """
     for one in outcome["named"]:
-        told = effect in {one["cause"], *one["members"]}
+        told = {effect, OF_ALL.get(effect)} & {one["cause"], *one["members"]}
         if told and (one["verdict"] in CLEAR or effect.endswith("_random_walk")):
             return True
     return any(effect == cause or effect.endswith(f"_{cause}") for cause in outcome["quality"])
