@@ -66,7 +66,8 @@ class PositionScatter:
     def rows(self, mount: str) -> Iterator[TableRow]:
         """The finding, of the sensor that shows it, or of both."""
         found = significant(self.value / ARC_SECOND, 2)
-        sensors = [sensor for sensor, drop in self.drops.items() if drop > MIN_DROP]
+        largest = max(self.drops.values())
+        sensors = [s for s, drop in self.drops.items() if drop == largest or drop > MIN_DROP]
         identifier = finding_id(CAUSE, mount)
         sentence = SCATTER.format(
             found=found,
@@ -101,7 +102,7 @@ class PositionScatter:
 def select_beside_scatter(
     measured: Campaign, select: Callable[[Campaign], Selected], level: float
 ) -> tuple[Selected, PositionScatter | None]:
-    """The likeliest selection, with the scatter of the positions if that is not less likely.
+    """The likeliest selection; that with a scatter of the positions where both are as likely.
 
     Parameters
     ----------
@@ -115,10 +116,10 @@ def select_beside_scatter(
     wider = select(replace(measured, position_sigma=scatter.value))
     causes = len(wider[0].named.causes) + 1 - len(stated[0].named.causes)
     odds = log_evidence(wider[0]) - log_evidence(stated[0]) + causes * float(np.log(level))
-    if odds < -MAX_LOG_ODDS:
-        return stated, None
     named = members_of(wider[0])
     rivals = tuple(one for one in members_of(stated[0]) if one not in named)
+    if odds < (-MAX_LOG_ODDS if rivals else 0.0):
+        return stated, None
     return wider, replace(scatter, rivals=rivals if odds < MAX_LOG_ODDS else ())
 
 
