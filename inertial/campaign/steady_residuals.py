@@ -14,12 +14,12 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.estimation.periodic_in_angle import Course
 from inertial.estimation.periodic_in_time import Line
 from inertial.estimation.spectrum import WHITE, NoiseShape, band_levels, noise_shape, white_level
-from inertial.tables import AXES, GYRO
+from inertial.tables import ACCEL, AXES, GYRO
 from inertial.tables.parquet import Stream
 
 Array = NDArray[np.float64]
 
-RESIDUALS = [f"residual_{name}" for name in GYRO]
+RESIDUALS, OF_FORCE = ([f"residual_{name}" for name in names] for names in (GYRO, ACCEL))
 RESTS = ("rest-before", "rest-after")
 MAX_LOST_SAMPLES = 3  # in a row: the phase of an oscillation is still known
 MIN_SAMPLES = 64  # of a steady part
@@ -36,6 +36,7 @@ class SteadyTurn:
     start : s, time of the first sample, NaN where it is not known
     matrix : (3, 3), M of the gyros
     truth : (n, 3), rad/s, residuals of the rates about the axes of the case
+    force : (n, 3), m/s², residuals of the accelerometers as they read; NaN where not recorded
     angle : (n,), rad, signed, that the table has turned since its start; NaN where the table has
         no stated rate, for then it follows from the gyros, and their residuals have no ripple
     averaged : whether a sample is the mean of the rate over its interval, an increment
@@ -48,6 +49,7 @@ class SteadyTurn:
     about: Array
     matrix: Array
     truth: Array
+    force: Array
     angle: Array
     step: float
     averaged: bool
@@ -127,7 +129,7 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
     planned = {m.name: m for m in data.plan if m.do == "turn"}
     inverse = np.linalg.inv(gyro.matrix)
     steady_parts = []
-    for name, rows in by_turn(simulated, ["time", *GYRO, *RESIDUALS]):
+    for name, rows in by_turn(simulated, ["time", *GYRO, *RESIDUALS, *OF_FORCE]):
         steady = (rows["phase"] == "steady").to_numpy()
         if name not in planned or not steady.any():
             continue
@@ -137,7 +139,7 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
         if m.rate is not None and m.acceleration is not None:
             angle = _angle(rows, (rows[GYRO].to_numpy() - gyro.bias) @ inverse.T @ m.axis, step)
         columns = [rows[["time", *RESIDUALS]].to_numpy(np.float64), angle[:, None]]
-        columns.append(rows[["time"]].to_numpy(np.float64))
+        columns.append(rows[["time", *OF_FORCE]].to_numpy(np.float64))
         residuals, further = unbroken(np.hstack(columns)[steady])
         truth = residuals @ inverse.T
         if len(truth) < MIN_SAMPLES or not np.isfinite(truth).all():
@@ -149,6 +151,7 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
                 m.axis,
                 gyro.matrix,
                 truth,
+                further[:, 2:],
                 further[:, 0],
                 step,
                 data.clocks[m.log].averaged,
@@ -184,6 +187,7 @@ def _with_shapes(turns: Sequence[SteadyTurn]) -> Iterator[SteadyTurn]:
             yield replace(
                 turn,
                 truth=turn.truth[first:],
+                force=turn.force[first:],
                 angle=turn.angle[first:],
                 start=turn.start + first * turn.step,
                 shapes=own,

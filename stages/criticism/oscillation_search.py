@@ -392,11 +392,14 @@ def without_lines(
     for turn in turns:
         own = (blocks["manoeuvre"] == turn.name) & (blocks["phase"] == "steady")
         if own.any() and np.isfinite(turn.start):
-            rates = _mean_rates(turn, lines, *_stretches(blocks[own], turn))
+            rates = _means(turn, turn.truth, lines, *_stretches(blocks[own], turn))
             further = (
                 _further(lines, turn.stated) / float(blocks.loc[own, "seconds"].sum()) * turn.about
             )
             quiet.loc[own, GYRO] -= (rates[:-1] - rates[-1] + further) @ turn.matrix.T
+            middle, count = _stretches(blocks[own], turn)
+            in_time = [line for line in lines if line.effects[0] == IN_TIME]
+            quiet.loc[own, ACCEL] -= _means(turn, turn.force, in_time, middle[:-1], count[:-1])
     for rest in plan:
         own = blocks["manoeuvre"] == rest.name
         if rest.tumbled is not None and rest.tumbled.any() and own.any():
@@ -428,15 +431,16 @@ def _stretches(blocks: pd.DataFrame, turn: SteadyTurn) -> tuple[Array, Array]:
     return np.append(middle, (start + end) / 2) - turn.start, count
 
 
-def _mean_rates(
-    turn: SteadyTurn, lines: Sequence[Oscillation], since: Array, count: Array
+def _means(
+    turn: SteadyTurn, samples: Array, lines: Sequence[Oscillation], since: Array, count: Array
 ) -> Array:
-    """The mean rates of all lines, (k, 3), rad/s, about the case's axes.
+    """The means of all lines in the samples of a turn, (n, 3), over k stretches of it, (k, 3).
 
-    Of k stretches of a turn with their middle, s since its first sample, and number of samples.
+    `since`, `count`: their middle, s since its first sample, and number of samples. A channel that
+    is not recorded has no line.
     """
-    rates = turn.truth.copy()
-    time = turn.step * np.arange(len(rates))
+    left = np.where(np.isfinite(samples).all(axis=0), samples, 0.0)
+    time = turn.step * np.arange(len(left))
     means = np.zeros((len(since), 3))
     for line in (part for cause in lines for part in cause.parts):
         frequency = line.likeliest.frequencies.get(turn.name)
@@ -445,8 +449,8 @@ def _mean_rates(
         half = np.pi * frequency * turn.step
         share = np.sin(count * half) / (count * np.sin(half))  # of a sum of `count` samples
         for axis in range(3):
-            amplitude = phasor(rates[:, axis], 1 / turn.step, frequency)
-            rates[:, axis] -= np.real(amplitude * np.exp(2j * np.pi * frequency * time))
+            amplitude = phasor(left[:, axis], 1 / turn.step, frequency)
+            left[:, axis] -= np.real(amplitude * np.exp(2j * np.pi * frequency * time))
             means[:, axis] += share * np.real(amplitude * np.exp(2j * np.pi * frequency * since))
     return means
 

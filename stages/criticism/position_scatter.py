@@ -66,8 +66,7 @@ class PositionScatter:
     def rows(self, mount: str) -> Iterator[TableRow]:
         """The finding, of the sensor that shows it, or of both."""
         found = significant(self.value / ARC_SECOND, 2)
-        largest = max(self.drops.values())
-        sensors = [s for s, drop in self.drops.items() if drop == largest or drop > MIN_DROP]
+        sensors = [sensor for sensor, drop in self.drops.items() if drop > MIN_DROP]
         identifier = finding_id(CAUSE, mount)
         sentence = SCATTER.format(
             found=found,
@@ -126,7 +125,8 @@ def select_beside_scatter(
 def likely_scatter(campaign: Campaign) -> PositionScatter | None:
     """The sigma of the positions of largest likelihood without effects; None where none is larger.
 
-    By hand nothing is set, and nothing is stated of it.
+    By hand nothing is set, and nothing is stated of it. The accelerometers show every tilt at rest:
+    what gyros show alone is none.
     """
     stated = campaign.position_sigma
     if campaign.by_hand or not stated:
@@ -152,4 +152,6 @@ def likely_scatter(campaign: Campaign) -> PositionScatter | None:
     drops = {
         sensor: before - wider.deviances[sensor] for sensor, before in campaign.deviances.items()
     }
+    if drops.get("accel", 0.0) < MIN_DROP:
+        return None
     return PositionScatter(value, relative * value, stated, drops)

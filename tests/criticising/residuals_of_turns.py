@@ -88,7 +88,8 @@ def still(axis: str, speed: float) -> SteadyTurn:
     angle = rate * (1.0 + STEP * (np.arange(n) + 0.5))
     about = np.eye(3)["xyz".index(axis)]
     name = f"{axis} {speed:g}"
-    return SteadyTurn(name, about, MATRIX, np.zeros((n, 3)), angle, STEP, True, tilted=False)
+    zero = np.zeros((n, 3))
+    return SteadyTurn(name, about, MATRIX, zero, zero, angle, STEP, True, tilted=False)
 
 
 def line(n: int, hertz: float, size: float, phase: float) -> np.ndarray:

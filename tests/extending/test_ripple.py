@@ -21,7 +21,15 @@ def turns(phases: list[float]) -> list[SteadyTurn]:
         truth[:, 2] += 36 * rate * AHEAD * np.cos(36 * angle + phase)
         found.append(
             SteadyTurn(
-                f"turn {number}", np.array([0, 0, 1.0]), np.eye(3), truth, angle, STEP, False, False
+                f"turn {number}",
+                np.array([0, 0, 1.0]),
+                np.eye(3),
+                truth,
+                np.zeros_like(truth),
+                angle,
+                STEP,
+                averaged=False,
+                tilted=False,
             )
         )
     return found
