@@ -26,7 +26,7 @@ from inertial.estimation.gyroscope_observations import SteadyRate
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
-from inertial.estimation.position_tilt import names_of
+from inertial.estimation.position_tilt import OF_AXIS, OF_CASE, TILTS, case_by_both, names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_by_hand import Scatter
 from inertial.estimation.sensitivities import Sensitivities
@@ -44,6 +44,7 @@ NO_GYROS = _(
 )
 SENSORS = ("gyro", "accel")
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
+NOTHING_SHARED: Mapping[str, Sequence[Name]] = {}
 MAX_KEPT = 4  # equations with different effects
 
 
@@ -66,7 +67,7 @@ class Campaign:
 
     `positions`, `planned`: positions and manoeuvres of the plan, in its order; `by_hand`: where the
     result is that of positions of unknown attitude; `drifts`: of the biases by the noise at rest,
-    of `gyro` and `accel`.
+    of `gyro` and `accel`; `axis_sigma`: as in Reference.
     """
 
     inputs: GyroInputs
@@ -83,6 +84,7 @@ class Campaign:
     drifts: Mapping[str, MeasuredDrift] = field(
         default_factory=lambda: dict.fromkeys(SENSORS, NO_DRIFT)
     )
+    axis_sigma: float | None = None
     _known: dict[EffectKey, Reading] = field(
         default_factory=dict, repr=False, compare=False
     )  # responses to effects, which random walks do not change
@@ -244,34 +246,49 @@ class Campaign:
     def deviance(self) -> float:
         """−2 log of the likelihood without effects; what both sensors show of tilts counts once."""
         alone = sum(self.deviances.values())
-        if not (tilts := self.shared_tilts):
+        if not (positions := len(self.with_shared_tilts)):
             return alone
-        prior = np.full(len(tilts), self.position_sigma**-2)
-        systems = self.systems([], 1.0, sharing=tilts)
-        of_tilts = [system.effect_information() for system in systems if system is not None]
-        gyro, accel = of_tilts
-        both = (gyro + accel).deviance_as_errors(prior)
-        return alone + both - sum(one.deviance_as_errors(prior) for one in of_tilts)
+        before = self.information_before
+        systems = self.systems([], 1.0, sharing=self.shared_tilts)
+        gyro, accel = (system.effect_information() for system in systems if system is not None)
+        both = gyro.by_others(case_by_both(positions), accel.names) + accel
+        each = zip((gyro, accel), (before["gyro"], before["accel"]), strict=True)
+        counted = sum(one.deviance_as_errors(known) for one, known in each)
+        return alone - counted + both.deviance_as_errors(before["accel"])
 
     def systems(
         self,
         effects: Sequence[Effect],
         prior_sigma: float,
         only: set[str] | None = None,
-        sharing: Sequence[Name] = (),
+        sharing: Mapping[str, Sequence[Name]] = NOTHING_SHARED,
     ) -> tuple[System | None, System | None]:
         """The equations of gyros and accelerometers with the effects as further unknowns.
 
         `prior_sigma`: of the effects' parameters, in their typical sizes; `only`: the
-        manoeuvres that are used; `sharing`: errors that are not eliminated, but the last effects.
+        manoeuvres that are used; `sharing`: by sensor, errors that are not eliminated, but the last
+        effects.
         """
         sigmas = _prior_sigmas(effects, prior_sigma)
-        gyro, accel = (self._system(s, effects, sigmas, only, sharing) for s in SENSORS)
+        gyro, accel = (self._system(s, effects, sigmas, only, sharing.get(s, ())) for s in SENSORS)
         return gyro, accel
 
     @property
-    def shared_tilts(self) -> tuple[Name, ...]:
-        """The tilts of positions that gyros and accelerometers both sense: of upright turns."""
+    def _reference(self) -> Reference:
+        gravity = self.gravity
+        return Reference(gravity.number, gravity.scatter, self.position_sigma, self.axis_sigma)
+
+    @property
+    def information_before(self) -> Mapping[str, Array]:
+        """What is known of the shared tilts beforehand, by sensor, rad⁻²."""
+        of_accel = self._reference.sigma_of(self.shared_tilts["accel"])
+        sigmas = {"gyro": [self.position_sigma] * len(self.shared_tilts["gyro"])}
+        sigmas["accel"] = list(of_accel.values())
+        return {sensor: np.array(of, np.float64) ** -2 for sensor, of in sigmas.items()}
+
+    @property
+    def with_shared_tilts(self) -> tuple[str, ...]:
+        """The positions of whose tilts gyros and accelerometers both sense: of upright turns."""
         both = self.solution.gyro is not None and self.solution.accelerometer is not None
         if self.by_hand or not both or not self.position_sigma:
             return ()
@@ -280,12 +297,14 @@ class Campaign:
             own = is_upright(turn.position, turn.about)
             upright[turn.position.name] = upright.get(turn.position.name, True) and own
         stood = {rest.position for _, rest, _ in self.static_forces}
-        return tuple(
-            name
-            for position, there in upright.items()
-            if there and position in stood
-            for name in names_of(position)
-        )
+        return tuple(name for name, there in upright.items() if there and name in stood)
+
+    @property
+    def shared_tilts(self) -> Mapping[str, tuple[Name, ...]]:
+        """These tilts, by sensor: each knows others."""
+        positions = self.with_shared_tilts
+        kinds = {"gyro": OF_CASE, "accel": (*TILTS, *OF_AXIS)}
+        return {sensor: names_of(positions, of) for sensor, of in kinds.items()}
 
     def system(
         self,
@@ -456,7 +475,7 @@ class Campaign:
             return replace(self.by_hand.accelerometer(rests, *known), measured=drift)
         return accelerometers.drifting(
             rests,
-            Reference(self.gravity.number, self.gravity.scatter, self.position_sigma),
+            self._reference,
             self.solution.accelerometer,
             prior_sigmas,
             walking=walking,

@@ -62,11 +62,20 @@ class StaticForce:
 
 
 class Reference(NamedTuple):
-    """What static positions are compared with: gravity, m/s², and the planned attitudes, rad."""
+    """What static positions are compared with: gravity, m/s², and the planned attitudes, rad.
+
+    `axis_sigma`: of what tilts with the axis of the table, where it is not that of the positions.
+    """
 
     gravity: float
     gravity_sigma: float
     position_sigma: float
+    axis_sigma: float | None = None
+
+    def sigma_of(self, tilts: Sequence[Name]) -> dict[Name, float]:
+        """The sigma of each of these unknowns."""
+        axis = self.position_sigma if self.axis_sigma is None else self.axis_sigma
+        return {name: axis if name[0] in OF_AXIS else self.position_sigma for name in tilts}
 
 
 def weighted(
@@ -203,8 +212,8 @@ def _drifting(
     for number, some in enumerate(same.values()):
         position, stretch = statics[some[0]].position, statics[some[0]].stretch
         turning = any(statics[i].level is not None for i in some)
-        tilts = names_of(position, (*TILTS, *OF_AXIS) if turning else TILTS)
-        sigma |= dict.fromkeys(tilts, reference.position_sigma)
+        tilts = names_of([position], (*TILTS, *OF_AXIS) if turning else TILTS)
+        sigma |= reference.sigma_of(tilts)
         columns = np.r_[: len(prior) + len(tilts), -1]
         own = rows[some][:, :, columns].reshape(-1, len(columns))
         block = whitened(own, noise[some].ravel(), tilts)

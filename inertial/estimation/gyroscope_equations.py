@@ -51,7 +51,7 @@ from inertial.estimation.gyroscope_observations import (
     StaticRate,
     SteadyRate,
 )
-from inertial.estimation.position_tilt import OF_CASE, TILTS, in_case, names_of
+from inertial.estimation.position_tilt import OF_CASE, TILTS, names_of
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.triad import UNKNOWNS, design_of
 from inertial.physics.motion import all_level_axes, cross, is_vertical, level_axes, turned_all
@@ -112,8 +112,7 @@ def tilt_axes(position: Position, about: Array) -> dict[Name, Array]:
     """
     upright = is_upright(position, about)
     axes: Sequence[Array] = level_axes(position.up if upright else about)
-    names = names_of(position.name, (*TILTS, *OF_CASE) if upright else TILTS)
-    return dict(zip(names, in_case(axes) if upright else axes, strict=True))
+    return dict(zip(names_of([position.name], OF_CASE if upright else TILTS), axes, strict=True))
 
 
 @dataclass(frozen=True)

@@ -296,6 +296,18 @@ class EffectInformation:
             chi_squared=self.chi_squared - float(self.right[k:] @ across[:, -1]),
         )
 
+    def by_others(self, matrix: Array, names: Sequence[str]) -> "EffectInformation":
+        """The same with the last columns, errors, as a function of others, (t, u), by name."""
+        k = len(self.names) - len(matrix)
+        change = np.zeros((len(self.names), k + len(names)))
+        change[:k, :k], change[k:, k:] = np.eye(k), matrix
+        return replace(
+            self,
+            names=(*self.names[:k], *names),
+            information=change.T @ self.information @ change,
+            right=change.T @ self.right,
+        )
+
     def deviance_as_errors(self, prior: Array) -> float:
         """−2 log of the likelihood with these as errors, less that without; `prior`: see above."""
         with_prior = self.information + np.diag(prior)

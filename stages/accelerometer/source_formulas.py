@@ -31,13 +31,15 @@ def add_six_positions(
     length of the rests follows.
     """
     rests = [rest for _, rest in planned]
-    solved = six_position_formula(rests, *reference, scatter) if rests else None
+    solved = six_position_formula(rests, *reference[:3], scatter) if rests else None
     if solved is None:
         _add_up_and_down(estimates, rests, reference, scatter)
         return
     unknowns, covariance = solved
     estimates.add("six_position", NAMES, errors_of(unknowns), covariance, {})
-    ideal = six_position_formula([replace(rest, sigma=np.zeros(3)) for rest in rests], *reference)
+    ideal = six_position_formula(
+        [replace(rest, sigma=np.zeros(3)) for rest in rests], *reference[:3]
+    )
     assert ideal is not None  # it depends on the same attitudes
     seconds = float(np.mean([position.seconds.sum() for position, _ in planned]))
     for i, axis in enumerate(AXES, UNKNOWNS - 3):
@@ -57,7 +59,7 @@ def _add_up_and_down(
             for rest in rests
             if abs(rest.up[i]) > 1 - 1e-9 and np.isfinite(rest.mean[i] * rest.sigma[i])
         ]
-        result = up_and_down(readings, *reference)
+        result = up_and_down(readings, *reference[:3])
         if result is not None:
             values = np.array([result.bias, result.scale])
             sigmas = np.array([result.bias_sigma, result.scale_sigma])
@@ -72,7 +74,7 @@ def add_pooled_positions(
     scatter: float,
 ) -> None:
     """S3's formula, for plans with rotations both ways and stops at common positions."""
-    pooled = pooled_positions(rests, *reference, scatter)
+    pooled = pooled_positions(rests, *reference[:3], scatter)
     if pooled is not None:
         values = errors_of(pooled.values)
         estimates.add("pooled_positions", NAMES, values, pooled.covariance, {})

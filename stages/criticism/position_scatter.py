@@ -31,7 +31,6 @@ TRIED = 1.5  # of the stated sigma: where this is not likelier, none is sought
 MIN_DROP = 4.0  # of −2 log likelihood, by the sigma that is tried
 MAX_FACTOR = 1000.0  # of the stated sigma
 LOG_TOLERANCE = 0.01  # of the sigma
-SQRT2 = float(np.sqrt(2))
 LOG_STEP = 0.1  # of the sigma, over which the curvature of the likelihood is taken
 SCATTER = _(
     "The set positions scatter by {found} ± {sigma} arcsec, {ratio} times the {stated} arcsec that "
@@ -54,9 +53,11 @@ Selected = tuple[Selection, Tested, Campaign]
 class PositionScatter:
     """The sigma of the tilts that is likelier than the stated one, rad, and its own.
 
-    `drops`: of −2 log likelihood, by sensor; `rivals`: effects that explain it as well.
+    `campaign`: with it; `drops`: of −2 log likelihood, by sensor; `rivals`: effects that explain it
+    as well.
     """
 
+    campaign: Campaign
     value: float
     sigma: float
     stated: float
@@ -109,10 +110,10 @@ def select_beside_scatter(
     level : accepted probability of a cause that is not there, which the evidence of each pays for
     """
     stated = select(measured)
-    scatter = likely_scatter(stated[2])
+    scatter = likely_scatter(stated[2], measured)
     if scatter is None or any(carrying(stated[1], sensor) for sensor in SENSORS):
         return stated, None
-    wider = select(replace(measured, position_sigma=scatter.value))
+    wider = select(scatter.campaign)
     causes = len(wider[0].named.causes) + 1 - len(stated[0].named.causes)
     odds = log_evidence(wider[0]) - log_evidence(stated[0]) + causes * float(np.log(level))
     named = members_of(wider[0])
@@ -122,36 +123,42 @@ def select_beside_scatter(
     return wider, replace(scatter, rivals=rivals if odds < MAX_LOG_ODDS else ())
 
 
-def likely_scatter(campaign: Campaign) -> PositionScatter | None:
+def likely_scatter(campaign: Campaign, measured: Campaign) -> PositionScatter | None:
     """The sigma of the positions of largest likelihood without effects; None where none is larger.
 
-    By hand nothing is set, and nothing is stated of it. The accelerometers show every tilt at rest:
-    what gyros show alone is none.
+    What tilts with the axis of the table may scatter as much, or as is stated. By hand nothing is
+    set, and nothing is stated of it. The accelerometers show every tilt at rest: what gyros show
+    alone is none. `measured`: the campaign in which it is to be set.
     """
     stated = campaign.position_sigma
     if campaign.by_hand or not stated:
         return None
 
-    def deviance(factor: float) -> float:
-        return replace(campaign, position_sigma=stated * float(np.exp(factor))).deviance
+    def scattering(one: Campaign, log_factor: float, *, with_axis: bool) -> Campaign:
+        sigma = stated * float(np.exp(log_factor))
+        return replace(one, position_sigma=sigma, axis_sigma=None if with_axis else stated)
 
-    if deviance(0.0) - deviance(float(np.log(TRIED))) < MIN_DROP:
-        return None
-    best = minimize_scalar(
-        deviance,
-        bounds=(0.0, float(np.log(MAX_FACTOR))),
-        method="bounded",
-        options={"xatol": LOG_TOLERANCE},
-    )
-    factor = float(best.x)
-    beside = deviance(factor - LOG_STEP) + deviance(factor + LOG_STEP) - 2 * float(best.fun)
-    # What gyros and accelerometers show of a tilt may be the same: then there are half as many.
-    relative = SQRT2 * float(np.sqrt(2 * LOG_STEP**2 / max(beside, LOG_STEP**2)))
-    value = stated * float(np.exp(factor))
-    wider = replace(campaign, position_sigma=value)
-    drops = {
-        sensor: before - wider.deviances[sensor] for sensor, before in campaign.deviances.items()
-    }
-    if drops.get("accel", 0.0) < MIN_DROP:
-        return None
-    return PositionScatter(value, relative * value, stated, drops)
+    before, tried = campaign.deviance, float(np.log(TRIED))
+    found: list[tuple[float, PositionScatter]] = []
+    for with_axis in (True, False):
+
+        def deviance(log_factor: float, with_axis: bool = with_axis) -> float:
+            return scattering(campaign, log_factor, with_axis=with_axis).deviance
+
+        if before - deviance(tried) < MIN_DROP:
+            continue
+        best = minimize_scalar(
+            deviance,
+            bounds=(0.0, float(np.log(MAX_FACTOR))),
+            method="bounded",
+            options={"xatol": LOG_TOLERANCE},
+        )
+        factor, least = float(best.x), float(best.fun)
+        beside = deviance(factor - LOG_STEP) + deviance(factor + LOG_STEP) - 2 * least
+        relative = float(np.sqrt(2 * LOG_STEP**2 / max(beside, LOG_STEP**2)))
+        wider = scattering(campaign, factor, with_axis=with_axis)
+        drops = {s: alone - wider.deviances[s] for s, alone in campaign.deviances.items()}
+        value, own = wider.position_sigma, scattering(measured, factor, with_axis=with_axis)
+        if drops.get("accel", 0.0) > MIN_DROP:
+            found.append((least, PositionScatter(own, value, relative * value, stated, drops)))
+    return min(found, key=lambda pair: pair[0])[1] if found else None

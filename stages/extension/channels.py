@@ -178,7 +178,7 @@ class Channels:
         ):
             force = gravity.number * rest.up
             errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
-            own = names_of(rest.position, TILTS if rest.level is None else (*TILTS, *OF_AXIS))
+            own = names_of([rest.position], TILTS if rest.level is None else (*TILTS, *OF_AXIS))
             for tilt, axis in zip(own, tilts, strict=False):
                 errors[tilt] = (triad.matrix @ cross(axis, force), campaign.position_sigma)
             residual = rest.mean - triad.matrix @ force - triad.bias
