@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.equations import SENSORS, Campaign
+from inertial.campaign.shared_tilts import shared_tilts
 from inertial.estimation.least_squares import EffectInformation, System
-from inertial.estimation.position_tilt import case_by_both
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect
 
@@ -55,17 +55,15 @@ def _informative(
     campaign: Campaign, effects: Sequence[Effect]
 ) -> tuple[list[tuple[str, System]], list[tuple[str, EffectInformation]]]:
     """The equations by sensor, and their information on the effects, made independent."""
-    positions = len(campaign.with_shared_tilts)
-    shared = campaign.shared_tilts if positions else {}
+    tilts = shared_tilts(campaign)
+    shared = tilts.names if tilts else {}
     pairs = zip(SENSORS, campaign.systems(effects, 1.0, sharing=shared), strict=True)
     systems = [(sensor, system) for sensor, system in pairs if system is not None]
     informative = [(sensor, system.effect_information()) for sensor, system in systems]
-    if positions:
-        gyro, accel = (information for _, information in informative)
-        tilts = accel.names[len(accel.names) - len(shared["accel"]) :]
-        gyro = gyro.by_others(case_by_both(positions), tilts)
-        prior = campaign.information_before["accel"]
-        independent = gyro.following(accel, prior), accel.eliminated(prior)
+    if tilts:
+        (_, gyro), (_, accel) = informative
+        gyro, before = tilts.by_those_of_accelerometers(gyro, accel), tilts.before["accel"]
+        independent = gyro.following(accel, before), accel.eliminated(before)
         informative = list(zip(SENSORS, independent, strict=True))
     return systems, informative
 

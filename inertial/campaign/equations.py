@@ -21,12 +21,11 @@ from inertial.estimation.accelerometers import Reference, StaticForce
 from inertial.estimation.between_positions import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import Name
-from inertial.estimation.gyroscope_equations import Linearisation, is_upright
+from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.gyroscope_observations import SteadyRate
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
-from inertial.estimation.position_tilt import OF_AXIS, OF_CASE, TILTS, case_by_both, names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_by_hand import Scatter
 from inertial.estimation.sensitivities import Sensitivities
@@ -236,26 +235,6 @@ class Campaign:
         own = self.by_hand.degrees.get(sensor, np.inf) if self.by_hand else np.inf
         return float(min(of_noise, own))
 
-    @cached_property
-    def deviances(self) -> Mapping[str, float]:
-        """−2 log of the likelihood of each sensor without effects."""
-        systems = {sensor: self._system(sensor, [], {}, None) for sensor in SENSORS}
-        return {s: one.solve_shared().deviance for s, one in systems.items() if one is not None}
-
-    @cached_property
-    def deviance(self) -> float:
-        """−2 log of the likelihood without effects; what both sensors show of tilts counts once."""
-        alone = sum(self.deviances.values())
-        if not (positions := len(self.with_shared_tilts)):
-            return alone
-        before = self.information_before
-        systems = self.systems([], 1.0, sharing=self.shared_tilts)
-        gyro, accel = (system.effect_information() for system in systems if system is not None)
-        both = gyro.by_others(case_by_both(positions), accel.names) + accel
-        each = zip((gyro, accel), (before["gyro"], before["accel"]), strict=True)
-        counted = sum(one.deviance_as_errors(known) for one, known in each)
-        return alone - counted + both.deviance_as_errors(before["accel"])
-
     def systems(
         self,
         effects: Sequence[Effect],
@@ -274,37 +253,10 @@ class Campaign:
         return gyro, accel
 
     @property
-    def _reference(self) -> Reference:
+    def reference(self) -> Reference:
+        """What static positions are compared with."""
         gravity = self.gravity
         return Reference(gravity.number, gravity.scatter, self.position_sigma, self.axis_sigma)
-
-    @property
-    def information_before(self) -> Mapping[str, Array]:
-        """What is known of the shared tilts beforehand, by sensor, rad⁻²."""
-        of_accel = self._reference.sigma_of(self.shared_tilts["accel"])
-        sigmas = {"gyro": [self.position_sigma] * len(self.shared_tilts["gyro"])}
-        sigmas["accel"] = list(of_accel.values())
-        return {sensor: np.array(of, np.float64) ** -2 for sensor, of in sigmas.items()}
-
-    @property
-    def with_shared_tilts(self) -> tuple[str, ...]:
-        """The positions of whose tilts gyros and accelerometers both sense: of upright turns."""
-        both = self.solution.gyro is not None and self.solution.accelerometer is not None
-        if self.by_hand or not both or not self.position_sigma:
-            return ()
-        upright: dict[str, bool] = {}
-        for turn in self.inputs.turns:
-            own = is_upright(turn.position, turn.about)
-            upright[turn.position.name] = upright.get(turn.position.name, True) and own
-        stood = {rest.position for _, rest, _ in self.static_forces}
-        return tuple(name for name, there in upright.items() if there and name in stood)
-
-    @property
-    def shared_tilts(self) -> Mapping[str, tuple[Name, ...]]:
-        """These tilts, by sensor: each knows others."""
-        positions = self.with_shared_tilts
-        kinds = {"gyro": OF_CASE, "accel": (*TILTS, *OF_AXIS)}
-        return {sensor: names_of(positions, of) for sensor, of in kinds.items()}
 
     def system(
         self,
@@ -475,7 +427,7 @@ class Campaign:
             return replace(self.by_hand.accelerometer(rests, *known), measured=drift)
         return accelerometers.drifting(
             rests,
-            self._reference,
+            self.reference,
             self.solution.accelerometer,
             prior_sigmas,
             walking=walking,

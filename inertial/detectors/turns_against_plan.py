@@ -7,7 +7,6 @@ import numpy as np
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled, Reversed
 from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, turn_ratios
-from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
 
@@ -119,7 +118,7 @@ class WrongDirection(PlanDetector):
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for each in recorded.reversed:
-            axis = each.about if each.about in AXES else None
+            axis = each.about if len(each.about) == 1 else None
             yield Deviation(
                 None,
                 "",

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from inertial.campaign.equations import Campaign
+from inertial.campaign.shared_tilts import deviance, deviances
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
@@ -138,26 +139,27 @@ def likely_scatter(campaign: Campaign, measured: Campaign) -> PositionScatter | 
         sigma = stated * float(np.exp(log_factor))
         return replace(one, position_sigma=sigma, axis_sigma=None if with_axis else stated)
 
-    before, tried = campaign.deviance, float(np.log(TRIED))
+    before, tried = deviance(campaign), float(np.log(TRIED))
     found: list[tuple[float, PositionScatter]] = []
     for with_axis in (True, False):
 
-        def deviance(log_factor: float, with_axis: bool = with_axis) -> float:
-            return scattering(campaign, log_factor, with_axis=with_axis).deviance
+        def with_sigma(log_factor: float, with_axis: bool = with_axis) -> float:
+            return deviance(scattering(campaign, log_factor, with_axis=with_axis))
 
-        if before - deviance(tried) < MIN_DROP:
+        if before - with_sigma(tried) < MIN_DROP:
             continue
         best = minimize_scalar(
-            deviance,
+            with_sigma,
             bounds=(0.0, float(np.log(MAX_FACTOR))),
             method="bounded",
             options={"xatol": LOG_TOLERANCE},
         )
         factor, least = float(best.x), float(best.fun)
-        beside = deviance(factor - LOG_STEP) + deviance(factor + LOG_STEP) - 2 * least
+        beside = with_sigma(factor - LOG_STEP) + with_sigma(factor + LOG_STEP) - 2 * least
         relative = float(np.sqrt(2 * LOG_STEP**2 / max(beside, LOG_STEP**2)))
         wider = scattering(campaign, factor, with_axis=with_axis)
-        drops = {s: alone - wider.deviances[s] for s, alone in campaign.deviances.items()}
+        of_wider = deviances(wider)
+        drops = {s: alone - of_wider[s] for s, alone in deviances(campaign).items()}
         value, own = wider.position_sigma, scattering(measured, factor, with_axis=with_axis)
         if drops.get("accel", 0.0) > MIN_DROP:
             found.append((least, PositionScatter(own, value, relative * value, stated, drops)))

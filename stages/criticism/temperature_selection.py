@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.campaign.equations import Campaign
+from inertial.campaign.shared_tilts import deviance
 from inertial.effects import OF_TEMPERATURE_CYCLES
 from inertial.effects.temperature_model import TemperatureModel
 from inertial.model_selection import walk_odds
@@ -170,6 +171,6 @@ def log_evidence(selection: Selection) -> float:
     walks = sum(1 for size in selection.random_walks if size)
     return (
         selection.explained(effects, start)
-        - selection.campaign.deviance / 2
+        - deviance(selection.campaign) / 2
         - walks * float(np.log(walk_odds.LOG_RANGE))
     )

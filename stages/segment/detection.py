@@ -23,15 +23,9 @@ from inertial.signal.plan_detector import (
     Swapped,
 )
 from inertial.tables import STATIC_PHASES
-from stages.segment.explanations import (
-    BY_GRAVITY,
-    Exchanged,
-    Explained,
-    axes_step,
-    exchange_step,
-    unlike,
-)
+from stages.segment.explanations import Explained, unlike
 from stages.segment.matching import AS_PLANNED, Located, Part, motion
+from stages.segment.steps import BY_GRAVITY, Exchanged, axes_step, exchange_step
 
 Array = NDArray[np.float64]
 UNKNOWN = np.full(3, np.nan)

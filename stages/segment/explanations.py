@@ -15,7 +15,6 @@ from inertial.signal.axis_permutations import (
     simplicity,
 )
 from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA, rest_level
-from inertial.tables import AXES
 from stages.segment.matching import (
     AS_NAMED,
     AS_PLANNED,
@@ -25,6 +24,16 @@ from stages.segment.matching import (
     Observation,
     divide,
     locate,
+)
+from stages.segment.steps import (
+    ALL_REVERSED,
+    Exchanged,
+    OtherSense,
+    Step,
+    axes_step,
+    exchange_step,
+    sense_step,
+    senses_by_axis,
 )
 from stages.segment.windows import Binned
 
@@ -36,65 +45,7 @@ MIN_UPRIGHT_SHARE = 0.9  # share of the vertical in an axis that points up
 MIN_EARTH_SIGMA = 4.0  # sigmas to which the earth's rate must be seen to half of itself
 MAX_EXCHANGED = 4  # manoeuvres of a log for which an exchange with every other one is tried
 MAX_RIVAL_AXES = 2  # axes of a permutation that is a rival of exchanged names
-BY_GRAVITY = "by-gravity"  # the end of a repair's id that gravity shows, whatever the plan says
 MIN_GAIN_OF_BOTH = 3  # the same, for both sensors of one log: it may have had another attitude
-OWN_AXIS_SHARE = 0.9  # share of a body axis in the axis of a turn that is counted as about it
-ALL_REVERSED = Permutation((0, 1, 2), (-1, -1, -1))
-NEGATIVE = "negative"  # turns about the negative body axes, counted about the positive ones
-
-
-@dataclass(frozen=True)
-class Exchanged:
-    """Manoeuvres that are found in each other's place, and their logs."""
-
-    names: tuple[str, ...]
-    logs: tuple[str, ...]
-
-    @property
-    def id(self) -> str:
-        """The name of the repair that exchanges them back."""
-        half = len(self.names) // 2
-        return "/".join(["exchanged_manoeuvres", *sorted([self.names[0], self.names[half]])])
-
-
-@dataclass(frozen=True)
-class OtherSense:
-    """Turns that the plan counts the other way: all, about one axis, or about NEGATIVE axes."""
-
-    names: tuple[str, ...]
-    about: str = ""
-
-
-@dataclass(frozen=True)
-class Step:
-    """What a supposition would set right: the id of its repair, its kind, and what it concerns.
-
-    `axes`: of the sensor; `exchanged`: manoeuvres; `turns`: those that are counted the other way.
-    """
-
-    id: str
-    repair: str
-    sensor: str | None = None
-    axes: Permutation | None = None
-    exchanged: Exchanged | None = None
-    turns: OtherSense | None = None
-
-
-def axes_step(sensor: str, axes: Permutation, log: str = "") -> Step:
-    """That the axes of a sensor are others, in a log or in all."""
-    kind = "signs" if axes.in_place else "axes"
-    return Step("/".join([kind, sensor, *([log] if log else [])]), kind, sensor, axes)
-
-
-def sense_step(turns: OtherSense) -> Step:
-    """That the plan counts turns the other way."""
-    kind = "sense_of_table"
-    return Step("/".join([kind, *([turns.about] if turns.about else [])]), kind, turns=turns)
-
-
-def exchange_step(exchanged: Exchanged) -> Step:
-    """That manoeuvres are in each other's place."""
-    return Step(exchanged.id, "exchanged_manoeuvres", exchanged=exchanged)
 
 
 @dataclass(frozen=True)
@@ -310,26 +261,9 @@ def _exchanges(windows: Sequence[Division], case: _Case, lacking: Sequence[int])
 def _senses(case: _Case, *, by_axis: bool) -> Iterator[OtherSense]:
     """The turns that the plan may count the other way: groups of those not counted so yet."""
     turns = [m for plan in case.plans for m in plan if m.do == "turn" and m.about is not None]
-    if not by_axis:
-        if turns and not case.other_sense:
-            yield OtherSense(tuple(m.name for m in turns))
-        return
     taken = {name for each in case.other_sense for name in each.names}
-    groups: dict[str, list[str]] = {axis: [] for axis in (*AXES, NEGATIVE)}
-    for m in turns:
-        assert m.about is not None  # as selected above
-        i = int(np.argmax(np.abs(m.about)))
-        if abs(m.about[i]) > OWN_AXIS_SHARE:
-            groups[AXES[i]].append(m.name)
-            if m.about[i] < 0:
-                groups[NEGATIVE].append(m.name)
-    every = [m.name for m in turns]
-    told: set[tuple[str, ...]] = {()}
-    for about, names in (*groups.items(), ("", every)):
-        own = tuple(names)
-        if own not in told and not taken & {*own} and (not about or own != tuple(every)):
-            told.add(own)
-            yield OtherSense(own, about)
+    groups = senses_by_axis(turns) if by_axis else [OtherSense(tuple(m.name for m in turns))]
+    yield from (group for group in groups if group.names and not taken & {*group.names})
 
 
 def _with_other_sense(windows: Sequence[Division], case: _Case, turns: OtherSense) -> _Case:

@@ -15,24 +15,12 @@ from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre, Row
 from inertial.signal.axis_permutations import Permutation, composed
 from inertial.signal.detector import Given
-from inertial.signal.misread_axes import SENSOR_NAMES, determinant, reads_in_words
+from inertial.signal.misread_axes import SENSOR_NAMES, determinant
 from inertial.signal.plan_detector import Misread, Rescaled, Reversed, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from stages.segment.detection import Undone, in_order, misread_in, swapped_in
-from stages.segment.explanations import (
-    ALL_REVERSED,
-    NEGATIVE,
-    Exchanged,
-    Explained,
-    Step,
-    axes_step,
-    exchange_step,
-    explained_of,
-    sense_step,
-    turned_back,
-    unlike,
-)
+from stages.segment.explanations import Explained, explained_of, turned_back, unlike
 from stages.segment.matching import AS_NAMED, AS_PLANNED
 from stages.segment.repair_readings import (
     Scale,
@@ -41,6 +29,17 @@ from stages.segment.repair_readings import (
     rates_of,
     scales_of,
     step_of,
+)
+from stages.segment.steps import (
+    Exchanged,
+    Step,
+    axes_in_words,
+    axes_step,
+    exchange_in_words,
+    exchange_step,
+    sense_in_words,
+    sense_step,
+    where,
 )
 from stages.segment.windows import Binned
 
@@ -181,7 +180,7 @@ class _Campaign:
                 "the {sensor} read {ratio} times what they should, {where}: {why}",
                 sensor=SENSOR_NAMES[scale.sensor],
                 ratio=significant(scale.factor, 6),
-                where=_where(scale.log),
+                where=where(scale.log),
                 why=scale.why,
             )
             row = _row(step, state, condition, (before, after, seen), scale.log)
@@ -240,17 +239,11 @@ class _Campaign:
     def _in_words(self, step: Step) -> str:
         """What would have to be true for a repair to be right."""
         if step.axes is not None and step.sensor is not None:
-            return _axes_in_words(Misread(step.sensor, step.axes, "", ()))
+            return axes_in_words(Misread(step.sensor, step.axes, "", ()))
         if step.exchanged is not None:
-            return _exchange_in_words(in_order(step.exchanged, self._plan))
+            return exchange_in_words(in_order(step.exchanged, self._plan))
         assert step.turns is not None  # the last kind of step
-        if step.turns.about == NEGATIVE:
-            return _(
-                "the plan counts the turns about the negative axes as if about the positive ones"
-            )
-        if step.turns.about:
-            return _("the plan counts the turns about {axis} the other way", axis=step.turns.about)
-        return _("the table counts all its turns the other way")
+        return sense_in_words(step.turns)
 
     def _axes_everywhere(
         self, explained: Explained, fitting: tuple[int, int, int]
@@ -267,7 +260,7 @@ class _Campaign:
             step = axes_step(each.sensor, each.axes)
             both = axes.accel == axes.gyro and bool(rivals)
             state = self._basis.state(step, rival=turned or both or each.sensor in rivals)
-            condition = _axes_in_words(each)
+            condition = axes_in_words(each)
             if turned:
                 condition += f"; {MOUNTING}"
             self._rows.append(_row(step, state, condition, fitting))
@@ -286,7 +279,7 @@ class _Campaign:
             common = getattr(explained.everywhere, each.sensor)
             unsure = common != AS_NAMED and axes_step(each.sensor, common).id not in self._applied
             state = self._basis.state(step, rival=turned or unsure)
-            condition = _axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
+            condition = axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
             self._rows.append(_row(step, state, condition, fitting, each.log))
             if state in APPLIED:
                 self._misread.append(replace(each, undone=True))
@@ -307,7 +300,7 @@ class _Campaign:
         for exchanged, swapped in pairs:
             step = exchange_step(exchanged)
             state = self._basis.state(step, rival=step.id in explained.rivals)
-            row = _row(step, state, _exchange_in_words(swapped), fitting)
+            row = _row(step, state, exchange_in_words(swapped), fitting)
             self._rows.append(row | {"manoeuvre": swapped.names[0]})
             if state in APPLIED:
                 self._swapped.append(replace(swapped, undone=True))
@@ -329,7 +322,7 @@ class _Campaign:
         if any(row["state"] not in APPLIED for row in self._rows if row["repair"] != "count_size"):
             return
         found = misread_by_gravity(self._binned, self._level)
-        words = {each.repair: _axes_in_words(each) for each in found}
+        words = {each.repair: axes_in_words(each) for each in found}
         chosen = [each for each in found if each.repair in self._basis.accepted] or found
         channels: list[Row] = []
         for each in chosen:
@@ -421,22 +414,6 @@ def _scale_step(scale: Scale) -> Step:
     return Step("/".join(["count_size", scale.sensor, *place]), "count_size", scale.sensor)
 
 
-def _where(log: str) -> str:
-    return _("in {log}", log=log) if log else _("in all logs")
-
-
-def _axes_in_words(misread: Misread) -> str:
-    words = _(
-        "of the {sensor}, {where}, {axes}",
-        sensor=SENSOR_NAMES[misread.sensor],
-        where=_where(misread.log),
-        axes=reads_in_words(misread.axes),
-    )
-    if misread.sensor == "accel" and misread.axes == ALL_REVERSED:
-        words += _(", or the log tells gravity in place of specific force, which is the same")
-    return words
-
-
 def _by_mounting(explained: Explained) -> bool:
     """Whether the axes of both sensors may be right, and the IMU is mounted otherwise.
 
@@ -458,25 +435,6 @@ def _by_mounting(explained: Explained) -> bool:
     if axes.gyro == AS_NAMED:
         return not turns and not any(explained.gyro_signs)
     return axes.accel == AS_NAMED and not ups
-
-
-def _exchange_in_words(swapped: Swapped) -> str:
-    half = len(swapped.names) // 2
-    first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
-    if len(swapped.logs) == 2:
-        return _(
-            "{one} contains {second}, and {other} contains {first}",
-            one=swapped.logs[0],
-            second=second,
-            other=swapped.logs[1],
-            first=first,
-        )
-    return _(
-        "in {log}, {first} and {second} are in each other's place",
-        log=swapped.logs[0],
-        first=first,
-        second=second,
-    )
 
 
 def _place(m: Manoeuvre) -> tuple[object, ...]:

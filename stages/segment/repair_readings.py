@@ -25,8 +25,9 @@ from inertial.signal.scale_factor import (
     factors_near,
 )
 from inertial.text.messages import _
-from stages.segment.explanations import BY_GRAVITY, Explained, Step, axes_step
+from stages.segment.explanations import Explained
 from stages.segment.matching import AS_NAMED, Located, motion
+from stages.segment.steps import BY_GRAVITY, Step, axes_step
 from stages.segment.windows import Binned
 
 Array = NDArray[np.float64]

@@ -9,6 +9,7 @@ import laboratory
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import SENSORS
 from inertial.campaign.observations import campaign_of
+from inertial.campaign.shared_tilts import shared_tilts
 from inertial.effects import CATALOGUE
 
 TILT = 120.0  # arcsec, sixty times what the gyros resolve
@@ -38,7 +39,7 @@ def test_the_gyros_agree_with_the_tilts_that_the_accelerometers_show(document, t
     """Whether the case leans on the table, or the axis of the table with the case."""
     truth = document["truth"] | {"tilted": tilted}
     campaign = _campaign(document | {"truth": truth})
-    assert len(campaign.with_shared_tilts) == 6
+    assert len(shared_tilts(campaign).positions) == 6
     told = evidence(campaign, list(CATALOGUE.values()))
     for sensor in told.sensors:
         assert told.residual(sensor, ())[2] > 1e-3

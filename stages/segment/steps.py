@@ -1,0 +1,137 @@
+"""What a supposition about a recording would set right, each kind, and how it is said."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from inertial.campaign.records import Manoeuvre
+from inertial.signal.axis_permutations import Permutation
+from inertial.signal.misread_axes import SENSOR_NAMES, reads_in_words
+from inertial.signal.plan_detector import Misread, Swapped
+from inertial.tables import AXES
+from inertial.text.messages import _
+
+BY_GRAVITY = "by-gravity"  # the end of a repair's id that gravity shows, whatever the plan says
+ALL_REVERSED = Permutation((0, 1, 2), (-1, -1, -1))
+OWN_AXIS_SHARE = 0.9  # share of a body axis in the axis of a turn that is counted as about it
+NEGATIVE = "negative"  # turns about the negative body axes, counted about the positive ones
+
+
+@dataclass(frozen=True)
+class Exchanged:
+    """Manoeuvres that are found in each other's place, and their logs."""
+
+    names: tuple[str, ...]
+    logs: tuple[str, ...]
+
+    @property
+    def id(self) -> str:
+        """The name of the repair that exchanges them back."""
+        half = len(self.names) // 2
+        return "/".join(["exchanged_manoeuvres", *sorted([self.names[0], self.names[half]])])
+
+
+@dataclass(frozen=True)
+class OtherSense:
+    """Turns that the plan counts the other way: all, about one axis, or about NEGATIVE axes."""
+
+    names: tuple[str, ...]
+    about: str = ""
+
+
+@dataclass(frozen=True)
+class Step:
+    """What a supposition would set right: the id of its repair, its kind, and what it concerns.
+
+    `axes`: of the sensor; `exchanged`: manoeuvres; `turns`: those that are counted the other way.
+    """
+
+    id: str
+    repair: str
+    sensor: str | None = None
+    axes: Permutation | None = None
+    exchanged: Exchanged | None = None
+    turns: OtherSense | None = None
+
+
+def axes_step(sensor: str, axes: Permutation, log: str = "") -> Step:
+    """That the axes of a sensor are others, in a log or in all."""
+    kind = "signs" if axes.in_place else "axes"
+    return Step("/".join([kind, sensor, *([log] if log else [])]), kind, sensor, axes)
+
+
+def sense_step(turns: OtherSense) -> Step:
+    """That the plan counts turns the other way."""
+    kind = "sense_of_table"
+    return Step("/".join([kind, *([turns.about] if turns.about else [])]), kind, turns=turns)
+
+
+def exchange_step(exchanged: Exchanged) -> Step:
+    """That manoeuvres are in each other's place."""
+    return Step(exchanged.id, "exchanged_manoeuvres", exchanged=exchanged)
+
+
+def senses_by_axis(turns: Sequence[Manoeuvre]) -> Iterator[OtherSense]:
+    """The turns about each body axis, about the negative ones, and all: each group once."""
+    groups: dict[str, list[str]] = {axis: [] for axis in (*AXES, NEGATIVE, "")}
+    for m in turns:
+        assert m.about is not None  # of a turn it is known
+        groups[""].append(m.name)
+        i = int(np.argmax(np.abs(m.about)))
+        if abs(m.about[i]) > OWN_AXIS_SHARE:
+            groups[AXES[i]].append(m.name)
+            if m.about[i] < 0:
+                groups[NEGATIVE].append(m.name)
+    last = {tuple(names): about for about, names in groups.items()}
+    yield from (OtherSense(names, about) for names, about in last.items())
+
+
+# ---- In words.
+
+
+def where(log: str) -> str:
+    """In a log, or in all."""
+    return _("in {log}", log=log) if log else _("in all logs")
+
+
+def axes_in_words(misread: Misread) -> str:
+    """That a sensor reads other axes than those it is named by."""
+    words = _(
+        "of the {sensor}, {where}, {axes}",
+        sensor=SENSOR_NAMES[misread.sensor],
+        where=where(misread.log),
+        axes=reads_in_words(misread.axes),
+    )
+    if misread.sensor == "accel" and misread.axes == ALL_REVERSED:
+        words += _(", or the log tells gravity in place of specific force, which is the same")
+    return words
+
+
+def exchange_in_words(swapped: Swapped) -> str:
+    """That manoeuvres are in each other's place."""
+    half = len(swapped.names) // 2
+    first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
+    if len(swapped.logs) == 2:
+        return _(
+            "{one} contains {second}, and {other} contains {first}",
+            one=swapped.logs[0],
+            second=second,
+            other=swapped.logs[1],
+            first=first,
+        )
+    return _(
+        "in {log}, {first} and {second} are in each other's place",
+        log=swapped.logs[0],
+        first=first,
+        second=second,
+    )
+
+
+def sense_in_words(turns: OtherSense) -> str:
+    """That the plan, or the table, counts turns the other way."""
+    if turns.about == NEGATIVE:
+        return _("the plan counts the turns about the negative axes as if about the positive ones")
+    if turns.about:
+        return _("the plan counts the turns about {axis} the other way", axis=turns.about)
+    return _("the table counts all its turns the other way")
