@@ -13,7 +13,7 @@ from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
-from inertial.physics.motion import turned
+from inertial.physics.motion import is_vertical, level_axes, turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
 
@@ -93,6 +93,7 @@ NO_NOISE = _(
     "its noise is not known, for it is too short, or has no time: state sigma with mean_of in its "
     "format"
 )
+MIN_PART_OF_TURN = 1e-3  # sine of half the angle: less is whole turns
 PER_BLOCK = ("means", "counts", "seconds", "time", "temperature")
 LOUDER_P_VALUE = 1e-5  # that a stretch of white noise seems louder than it is
 # Squares of neighbouring second differences of white noise correlate by 4/9 and 1/36.
@@ -133,6 +134,14 @@ class StaticPosition:
         """The direction that points up in this stretch, (3,)."""
         return turned(self.up, self.about, self.angle)
 
+    @property
+    def _level(self) -> Array | None:
+        """The level axes of the start in body axes now, (2, 3), after part of an upright turn."""
+        whole = abs(np.sin(self.angle / 2)) < MIN_PART_OF_TURN
+        if whole or not is_vertical(self.up, self.about):
+            return None
+        return np.array([turned(axis, self.about, self.angle) for axis in level_axes(self.up)])
+
     def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
         """Mean reading over the first `seconds`, and its sigma from the noise."""
         count = int(np.searchsorted(self._starts, seconds))
@@ -144,7 +153,9 @@ class StaticPosition:
         """The observation of the accelerometers in the first `seconds`."""
         mean, sigma = self.over(seconds)
         stretch = self.during(seconds)
-        return StaticForce(self.manoeuvre.position, self.up_now, mean, sigma, stretch=stretch)
+        return StaticForce(
+            self.manoeuvre.position, self.up_now, mean, sigma, stretch=stretch, level=self._level
+        )
 
     def mean_of(self, values: Array) -> float:
         """The mean of a quantity over all samples, from its means in the blocks, (k,)."""

@@ -47,7 +47,8 @@ class StaticForce:
 
     `sensitivities`: of the means to the parameters of effects, or with `felt` of the specific force
     that the sensors feel; `stretch`: of time; `turning`: not at rest, the table turns steadily;
-    `level`: where it turns about the vertical, the level axes at its start, mean in body axes.
+    `level`: where it turns about the vertical, or has turned, the level axes at the start of that,
+    mean in body axes.
     """
 
     position: str
