@@ -165,7 +165,8 @@ def not_compensated(result: SensorResult, mount: str) -> Iterator[Row]:
 def _not_determined(result: SensorResult, sensor: str) -> str:
     if len(result.missing) == 1 and not any(row["value"] for row in result.rows.values()):
         (reason,) = result.missing  # one for all twelve
-        return _("The {sensor}s are not compensated: {reason}.", sensor=sensor, reason=reason)
+        told = reason.removesuffix(".")
+        return _("The {sensor}s are not compensated: {reason}.", sensor=sensor, reason=told)
     reasons = "; ".join(f"{', '.join(names)}: {why}" for why, names in result.missing.items())
     return _(
         "The {sensor}s are not compensated, for not all of M and bias is determined. {value}.",

@@ -143,7 +143,9 @@ def why_not(rows: Sequence[Row], gravity: float) -> str:
         missing = [key for key, value in values.items() if value is None]
         if not missing:
             continue
-        reasons = dict.fromkeys(str(own[key]["reason"] or "") for key in missing if key in own)
+        reasons = dict.fromkeys(
+            str(own[key]["reason"] or "").removesuffix(".") for key in missing if key in own
+        )
         why = "; ".join(list(filter(None, reasons))[:2])
         listed = ", ".join(missing[:MOST_NAMED])
         if len(missing) > MOST_NAMED:
