@@ -27,8 +27,8 @@ OF_AXIS = ("tilt of axis 0", "tilt of axis 1")  # l
 OF_CASE = ("tilt of case 0", "tilt of case 1")  # t − l
 
 
-def names_of(positions: Sequence[str], kinds: Sequence[str] = TILTS) -> tuple[Name, ...]:
-    """The names of unknowns of positions."""
+def names_of(positions: Sequence[str], kinds: Sequence[str]) -> tuple[Name, ...]:
+    """The unknowns of these kinds of some positions."""
     return tuple((kind, position) for position in positions for kind in kinds)
 
 
