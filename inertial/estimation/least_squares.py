@@ -309,7 +309,7 @@ class EffectInformation:
         )
 
     def deviance_as_errors(self, prior: Array) -> float:
-        """−2 log of the likelihood with these as errors, less that without; `prior`: of `eliminated`."""
+        """−2 log of the likelihood with these as errors less that without; see `eliminated`."""
         with_prior = self.information + np.diag(prior)
         log_det = np.linalg.slogdet(with_prior)[1] - np.sum(np.log(prior))
         return float(log_det - self.right @ np.linalg.solve(with_prior, self.right))
