@@ -124,6 +124,7 @@ IN_PROPORTION = frozenset(
         "table_tilt",
         "table_axis_non_orthogonality",
         "table_position_error",
+        "table_axis_error",
         "table_wobble",
         "table_eccentricity",
         "table_ripple",
@@ -135,6 +136,7 @@ IN_PROPORTION = frozenset(
         "clock_scale",
     }
 )
+POSITION_OFF = ("table_position_error", "table_axis_error")
 LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
 
 
@@ -205,7 +207,7 @@ EXPLANATIONS = (
     # A table that moves: the readings are right, the position is not the planned one.
     Explanation(
         ("table_moving", "impact"),
-        _is("bias_jump", "oscillation", "table_position_error", *PERFORMANCE),
+        _is("bias_jump", "oscillation", *POSITION_OFF, *PERFORMANCE),
         same_manoeuvre,
     ),
 )
@@ -262,7 +264,8 @@ def _same_mount(cause: Hypothesis, other: Hypothesis) -> bool:
 def _explains_position(cause: Hypothesis, other: Hypothesis) -> bool:
     """A static position off the others: any effect of the accelerometers may look so."""
     if cause.stage == MODEL:
-        return cause.sensor in (None, other.sensor) or "table_position_error" in cause.causes
+        off = not set(POSITION_OFF).isdisjoint(cause.causes)
+        return cause.sensor in (None, other.sensor) or off
     return cause.stage != POSITIONS and same_manoeuvre(cause, other)
 
 

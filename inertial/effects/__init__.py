@@ -48,6 +48,7 @@ from inertial.effects.mounting_shift import MountingShift
 from inertial.effects.oscillation import Oscillation
 from inertial.effects.size_effect import SizeEffect
 from inertial.effects.table_angle_scale import TableAngleScale
+from inertial.effects.table_axis_error import TableAxisError
 from inertial.effects.table_axis_non_orthogonality import TableAxisNonOrthogonality
 from inertial.effects.table_eccentricity import TableEccentricity
 from inertial.effects.table_position_error import TablePositionError
@@ -106,6 +107,7 @@ CATALOGUE: dict[str, Effect] = {
         TableTilt(),
         TableAxisNonOrthogonality(),
         TablePositionError(),
+        TableAxisError(),
         TableWobble(),
         TableEccentricity(),
         TableRipple(),

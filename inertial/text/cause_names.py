@@ -104,6 +104,7 @@ NAMES = {
     "table_axis_non_orthogonality": _("table axis non-orthogonality"),
     "turn_angle_error": _("turn whose angle is off"),
     "table_position_error": _("set position that is off"),
+    "table_axis_error": _("set position that is off, with the axis of its turns"),
     "table_speed_error": _("wrong speed of the table"),
     "time_backwards": _("time goes backwards"),
     "unknown_structure": _("structure without a name"),

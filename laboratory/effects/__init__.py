@@ -63,6 +63,7 @@ from laboratory.effects.mounting_shift import MountingShift
 from laboratory.effects.oscillation import Oscillation
 from laboratory.effects.size_effect import SizeEffect
 from laboratory.effects.table_angle_scale import TableAngleScale
+from laboratory.effects.table_axis_error import TableAxisError
 from laboratory.effects.table_axis_non_orthogonality import TableAxisNonOrthogonality
 from laboratory.effects.table_creep import TableCreep
 from laboratory.effects.table_eccentricity import TableEccentricity
@@ -91,6 +92,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "table_tilt": TableTilt.specified,
     "table_axis_non_orthogonality": TableAxisNonOrthogonality.specified,
     "table_position_error": TablePositionError.specified,
+    "table_axis_error": TableAxisError.specified,
     "table_speed_error": TableSpeedError.specified,
     "table_angle_scale": TableAngleScale.specified,
     "turn_angle_error": TurnAngleError.specified,

@@ -179,6 +179,13 @@ class BlockResults:
                 },
             )
 
+    def _action(self, cause: Cause) -> str:
+        if cause.verdict not in NAMED:
+            return sentences.ACTION_WITHOUT_LAW
+        if cause.effect in LAWS:
+            return law_action(cause.effect, self.mount)
+        return sentences.action_against(KNOWN[cause.effect])
+
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
         split = None if cause.effect in LAWS else self.extended.splitting(number)
         free = cause.effect not in self.selection.families
@@ -187,9 +194,6 @@ class BlockResults:
         positions = self._positions(effect)
         identifier = finding_id(cause.effect, self.mount)
         clear = cause.verdict in NAMED
-        action = sentences.ACTION + sentences.split_sentence(split)
-        if cause.effect in LAWS:
-            action = law_action(cause.effect, self.mount)
         yield (
             "findings",
             {
@@ -208,7 +212,7 @@ class BlockResults:
                 "consequence": sentences.CONSEQUENCE
                 if clear
                 else sentences.CONSEQUENCE_WITHOUT_LAW,
-                "action": action if clear else sentences.ACTION_WITHOUT_LAW,
+                "action": self._action(cause) + sentences.split_sentence(split if clear else None),
                 "verdict": cause.verdict,
                 "statistic": cause.statistic,
                 "degrees": cause.degrees,

@@ -30,6 +30,7 @@ REASONS = {
 ACTION = _(
     "Remove it at its origin, or compensate readings with its terms too, which the export holds."
 )
+ACTION_WITHOUT_TERMS = _("Remove it at its origin. Readings are not compensated for it: {stays}.")
 ACTION_WITHOUT_LAW = _(
     "Look at the residuals against time; record again with the IMU switched on long before."
 )
@@ -119,6 +120,11 @@ def limit_sentence(effect: Effect, limit: Visible, why: str | None) -> str:
     values |= {"largest": significant(unit.of(limit.worst), 2)}
     values["scanned"] = _("the scanned value") if effect.scan is None else effect.scan.meaning
     return LIMIT_SCANNED.format_map(values)
+
+
+def action_against(effect: Effect) -> str:
+    """What to do against an effect."""
+    return ACTION if effect.terms else ACTION_WITHOUT_TERMS.format(stays=effect.stays)
 
 
 def split_sentence(split: Splitting | None) -> str:

@@ -20,7 +20,7 @@ SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
 UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
-OF_ONE_MANOEUVRE = ("table_position_error", "turn_angle_error")
+OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
 
 NO_JOINT = _("There is no joint result of the {sensors}.")

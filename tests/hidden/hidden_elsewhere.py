@@ -133,6 +133,13 @@ def _turned_too_far(random: Random) -> Told:
     return {"turn_angle_error": {"turn": turn, "further_arcsec": between(random, 60, 600)}}, {}
 
 
+def _axis_off(random: Random) -> Told:
+    north, east = between(random, 30, 200) * direction(random, 2)
+    position = f"{random.choice(list('xyz'))}-{random.choice(['up', 'down'])}"
+    lean = {"position": position, "north_arcsec": float(north), "east_arcsec": float(east)}
+    return {"table_axis_error": lean}, {}
+
+
 ELSEWHERE: tuple[Elsewhere, ...] = (
     Elsewhere(("oscillation",), "positions", _ringing),
     Elsewhere(("table_ripple",), "positions", _ripple),
@@ -174,4 +181,5 @@ ELSEWHERE: tuple[Elsewhere, ...] = (
         ),
     ),
     Elsewhere(("turn_angle_error",), "rates", _turned_too_far),
+    Elsewhere(("table_axis_error",), "stops", _axis_off),
 )

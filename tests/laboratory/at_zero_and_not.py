@@ -22,6 +22,10 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"sigma_arcsec": 0, "backlash_arcsec": 0},
         {"sigma_arcsec": 0, "backlash_arcsec": 30},
     ),
+    "table_axis_error": (
+        {"position": "of turn", "north_arcsec": 0, "east_arcsec": 0},
+        {"position": "of turn", "north_arcsec": 60, "east_arcsec": 0},
+    ),
     "table_speed_error": ({"rate_ppm": 0, "ramp_ppm": 0}, {"rate_ppm": 0, "ramp_ppm": 100}),
     "table_angle_scale": ({"scale_ppm": 0}, {"scale_ppm": 100}),
     "turn_angle_error": (
