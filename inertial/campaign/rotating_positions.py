@@ -23,7 +23,8 @@ from inertial.tables import ACCEL, AXES, STATIC_PHASES
 Array = NDArray[np.float64]
 
 LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU is mounted farther off
-MAX_TURN_IN_MEAN = np.radians(5)  # by how much the vertical may turn in the case within one mean
+# By how much may turn in the case within one mean the vertical, and a level axis about it.
+MAX_TURN_IN_MEAN, MAX_UPRIGHT = np.radians(5), np.radians(60)
 
 
 def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
@@ -63,8 +64,10 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
     axes = np.stack([mean_turned(own, m.axis, middle, angle) for own in level_axes(m.up)], axis=1)
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     rate = angle / seconds
-    turns = abs(float(angle[steady].sum())) * float(level)
-    pieces = np.array_split(steady, max(1, int(np.ceil(turns / MAX_TURN_IN_MEAN))))
+    upright = is_vertical(m.up, m.axis)
+    turned = abs(float(angle[steady].sum()))
+    means = turned / MAX_UPRIGHT if upright else turned * float(level) / MAX_TURN_IN_MEAN
+    pieces = np.array_split(steady, max(1, int(np.ceil(means))))
     rests = []
     for indices in (piece for piece in pieces if len(piece)):
         share = seconds[indices] / seconds[indices].sum()
@@ -79,7 +82,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
                 sensitivities=Sensitivities(tuple(LEVER_ARM), pull),
                 felt=True,
                 turning=True,
-                level=np.tensordot(share, axes[indices], 1) if is_vertical(m.up, m.axis) else None,
+                level=np.tensordot(share, axes[indices], 1) if upright else None,
             )
         )
     return rests
