@@ -21,11 +21,12 @@ def criticised(effects: dict[str, Any]) -> tuple[dict[str, Any], Any]:
 @pytest.mark.parametrize(
     ("sensor", "effects", "stage", "truth"),
     [
-        (
+        pytest.param(
             "accel",
             {"accel_flicker": {"instability_micro_g": 50}},
             "accelerometer",
             "accelerometer",
+            marks=pytest.mark.slow,
         ),
         ("gyro", {"gyro_flicker": {"instability_deg_h": 5}}, "gyroscope", "gyro"),
     ],

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import chain
 import numpy as np
+import pytest
 
 import laboratory
 
@@ -34,6 +35,7 @@ def test_a_second_jump_is_no_shift_of_the_case_and_no_size_effect():
     assert not results["criticism/structures"]["detected"].any()  # the drift at rest is all
 
 
+@pytest.mark.slow
 def test_a_true_effect_beside_one_true_jump_stays_certain():
     document = chain.demo(seed=8, effects={"accel_bias_jump": JUMP, "accel_quadratic": BESIDE})
     results = chain.in_memory_of(document, "criticism", chain.BESIDE)

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from html import unescape
+from itertools import product
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,7 @@ OPTIONS += " --enable-logging=stderr --window-size=1500,1000 --dump-dom"
 
 AXE = importlib.util.find_spec("axe_core_python")
 SERIOUS = ("serious", "critical")
+ALWAYS = [(1400, "light", "en"), (400, "dark", "zh")]  # the others with the slow tests
 FOCUSED = """(() => {
   const one = document.activeElement, style = getComputedStyle(one);
   return { ring: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) > 0,
@@ -70,9 +72,12 @@ def page(report: Path):
 
 
 @pytest.mark.skipif(AXE is None, reason="axe-core-python is not installed")
-@pytest.mark.parametrize("language", ["en", "zh"])
 @pytest.mark.parametrize(
-    ("width", "scheme"), [(1400, "light"), (1400, "dark"), (400, "light"), (400, "dark")]
+    ("width", "scheme", "language"),
+    [
+        pytest.param(*shown, marks=() if shown in ALWAYS else pytest.mark.slow)
+        for shown in product((1400, 400), ("light", "dark"), ("en", "zh"))
+    ],
 )
 def test_axe_has_no_serious_finding(
     page: Page, request: pytest.FixtureRequest, language: str, width: int, scheme: str
