@@ -1,6 +1,7 @@
 """Why a log gives no sample at all: what stands in it instead, and the cure."""
 
 import json
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -18,6 +19,10 @@ from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened
 
 _SENSORS = ("accelerometer", "gyro")
+MIN_FIELDS = 3  # of a row, the last not counted
+_NUMBER = {
+    decimal: re.compile(rf" *[+-]?\d+(?:[{decimal}]\d*)?(?:[eE][+-]?\d+)? *") for decimal in ".,"
+}
 MAX_NAMES = 8  # of messages that are listed
 # Source: NovAtel OEM7 Commands and Logs Reference Manual.
 _NAMES = {
@@ -92,6 +97,8 @@ def _all_refused(file: str, layout: Mapping[str, Any], count: int, first: Refuse
     else:
         expected = _("rows as its format says: {format}", format=_described(layout))
         cure = _("compare this line with the format in campaign.yaml, and correct the format")
+        if seems := _seems(first.text, layout):
+            cure = _("state {keys} in the format, for so the line is written", keys=seems)
     return Refusal(
         file,
         _("line {line}", line=first.line),
@@ -104,6 +111,21 @@ def _all_refused(file: str, layout: Mapping[str, Any], count: int, first: Refuse
         expected,
         cure,
     )
+
+
+def _seems(line: str, layout: Mapping[str, Any]) -> str:
+    """What the format should say of delimiter and decimal, for it makes numbers of all fields."""
+    for delimiter, decimal in ((";", ","), (";", "."), (None, ","), (",", ".")):
+        fields = line.split(delimiter)[:-1]  # the last may be cut short
+        if len(fields) >= MIN_FIELDS and all(_NUMBER[decimal].fullmatch(one) for one in fields):
+            seems = {"delimiter": delimiter, "decimal": decimal}
+            stated = {"delimiter": layout.get("delimiter"), "decimal": layout.get("decimal", ".")}
+            other = {key: value for key, value in seems.items() if value != stated[key]}
+            return ", ".join(
+                f'{key}: "{mark}"' if mark else _("no {key}", key=key)
+                for key, mark in other.items()
+            )
+    return ""
 
 
 def _described(layout: Mapping[str, Any]) -> str:

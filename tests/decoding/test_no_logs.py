@@ -156,3 +156,24 @@ def test_a_folder_is_no_log(tmp_path):
     ].index(True)
     assert refusal.value.place.startswith(f"line {line}")
     assert refusal.value.found == "'y-up.asc', a folder"
+
+
+@pytest.mark.parametrize(
+    ("line", "cure"),
+    [
+        (b"0,01;-9,81;0,2;0;1;2;3,5\n", 'state delimiter: ";", decimal: "," in the format'),
+        (b"0.01;-9.81;0.2;0;1;2;3.5\n", 'state delimiter: ";" in the format'),
+        (b"0,01 -9,81 0,2 0 1 2 3,5\n", 'state no delimiter, decimal: "," in the format'),
+        (b"0.01,-9.81,0.2,0,1,?,2\n", "compare this line with the format"),
+    ],
+)
+def test_a_line_that_is_separated_otherwise_says_how(tmp_path, line, cure):
+    log = tmp_path / "log.csv"
+    log.write_bytes(b"t,x,y,z,gx,gy,gz\n" + line * 20)
+    positional = COLUMNS | {
+        "time": {"column": 1, "unit": "s"},
+        "accelerometer": {"columns": [2, 3, 4], "unit": "g"},
+        "gyro": {"columns": [5, 6, 7], "unit": "deg/s"},
+        "header_lines": 1,
+    }
+    assert refused(log, positional).cure.startswith(cure)
