@@ -171,6 +171,17 @@ def test_the_unit_of_a_time_follows_from_a_plausible_rate(unit, tmp_path):
     assert layout["time"] == {"column": 1, "unit": unit}
 
 
+def test_increments_of_velocity_and_angle_are_divided_by_their_interval(tmp_path):
+    """As VectorNav's and Xsens's Δv and Δθ: m/s and rad over a sample."""
+    log = by_hand_log(4)
+    time = np.arange(len(log.force)) / RATE
+    text = written([time, log.force / RATE, log.rate / RATE])
+    layout = told(drafted({"log.txt": text}, tmp_path))["instrument"]["format"]
+    for sensor, unit in (("accelerometer", "m/s2"), ("gyro", "rad/s")):
+        assert layout[sensor]["unit"] == unit
+        assert layout[sensor]["counts_per_unit"] == pytest.approx(1 / RATE, rel=1e-6)
+
+
 def test_without_a_clock_gravity_shows_the_rate(tmp_path):
     """Gyros in rad/s carry gravity from rest to rest at the right rate only, to 1 % of scale."""
     log = by_hand_log(2)

@@ -54,7 +54,8 @@ class Scale:
     """Unit of a sensor, counts in it or none, their zero, (3,), and what says so.
 
     `axes`: what takes the readings to the axes of the other sensor; `shares`: by how much each gyro
-    turns gravity along these axes, relative to their mean, with sigma, (3, 2); empty if not seen.
+    turns gravity along these axes, relative to their mean, with sigma, (3, 2); empty if not seen;
+    `increments`: a reading is the integral of the unit over a sample.
     """
 
     unit: str
@@ -64,6 +65,7 @@ class Scale:
     guessed: bool
     axes: Permutation = AS_NAMED
     shares: tuple[tuple[float, float], ...] = ()
+    increments: bool = False
 
     @property
     def size(self) -> float:
@@ -125,6 +127,11 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
             counts is None and are_counts(values)
         ):
             return Scale(unit, counts, zero, seen, False)
+    step = 1 / recordings[0].series.accel_hz
+    for of_gravity, unit in ((STANDARD_GRAVITY, "m/s2"), (1.0, "g")):
+        if abs(length / (of_gravity * step) - 1) < MAX_UNIT_ERROR and not are_counts(values):
+            what = _("{seen}: increments over {step} s", seen=seen, step=significant(step))
+            return Scale(unit, step, zero, what, True, increments=True)
     power = float(2.0 ** np.round(np.log2(length)))
     usual = abs(length / power - 1) < MAX_COUNT_ERROR
     counts = power if usual else float(f"{length:.4g}")
@@ -303,11 +310,12 @@ def gyro_scale(
         factor=significant(turns.factor),
         percent=100 * turns.sigma,
     )
-    thousand = 1000.0 if thousandths else None
-    for unit, size in (("rad/s", 1.0), ("deg/s", DEGREE)):
-        error = abs(turns.factor * (thousand or 1.0) / size - 1)
-        if error < 2 * MAX_UNIT_ERROR and (thousandths or not are_counts(values)):
-            return Scale(unit, thousand, zero, seen, False, axes, shares)
+    step = 1 / recordings[0].series.gyro_hz
+    for of_unit, increments in ((1000.0 if thousandths else None, False), (step, True)):
+        for unit, size in (("rad/s", 1.0), ("deg/s", DEGREE)):
+            error = abs(turns.factor * (of_unit or 1.0) / size - 1)
+            if error < 2 * MAX_UNIT_ERROR and (thousandths or not are_counts(values)):
+                return Scale(unit, of_unit, zero, seen, increments, axes, shares, increments)
     per_degree = DEGREE / turns.factor
     most = max(MAX_COUNT_ERROR, 2 * turns.sigma)
     near = [each for each in USUAL_GYRO_COUNTS if abs(each / per_degree - 1) < most]

@@ -126,7 +126,7 @@ def _refuse_without_gravity(
     accel: Scale | None, columns: Columns, group: Sequence[Sequence[RawLog]]
 ) -> None:
     """Refuse accelerations from which a phone has taken gravity: less than a count would be 1 g."""
-    if accel is None or columns.accel is None or (accel.counts or 1.0) >= 1:
+    if accel is None or columns.accel is None or (accel.counts or 1.0) >= 1 or accel.increments:
         return
     raise Refusal(
         group[0][columns.accel.file].path.name,

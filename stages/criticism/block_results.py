@@ -184,7 +184,7 @@ class BlockResults:
             return sentences.ACTION_WITHOUT_LAW
         if cause.effect in LAWS:
             return law_action(cause.effect, self.mount)
-        return sentences.action_against(KNOWN[cause.effect])
+        return sentences.action_against(KNOWN.get(cause.effect))
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
         split = None if cause.effect in LAWS else self.extended.splitting(number)

@@ -122,9 +122,11 @@ def limit_sentence(effect: Effect, limit: Visible, why: str | None) -> str:
     return LIMIT_SCANNED.format_map(values)
 
 
-def action_against(effect: Effect) -> str:
-    """What to do against an effect."""
-    return ACTION if effect.terms else ACTION_WITHOUT_TERMS.format(stays=effect.stays)
+def action_against(effect: Effect | None) -> str:
+    """What to do against an effect; None: biases of each run."""
+    if effect is None or effect.terms:
+        return ACTION
+    return ACTION_WITHOUT_TERMS.format(stays=effect.stays)
 
 
 def split_sentence(split: Splitting | None) -> str:
