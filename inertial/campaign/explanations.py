@@ -172,8 +172,8 @@ EXPLANATIONS = (
     Explanation(("dead_axis",), _is("bias_jump"), same_axis),
     # A motion beyond the range does not explain findings of a rest before or after it.
     Explanation(("saturation",), _is("bias_jump"), same_readings),
-    # Once in every period a reading is off: beside it that makes spikes, and lines of a spectrum.
-    Explanation(("periodic_glitch",), _is("spike", "oscillation"), same_axis),
+    # Once in every period a reading is off: those that were not masked look like spikes.
+    Explanation(("periodic_glitch",), _is("spike"), same_axis),
     # Columns that do not hold what they should.
     Explanation(
         ("copied_channel", "gravity_removed", "bias_removed"),

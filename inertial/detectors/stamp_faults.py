@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.signal.detector import Description, Detector, Event, Log, Piece
+from inertial.signal.detector import Array, Description, Detector, Event, Log, Piece
 from inertial.signal.runs import runs
-from inertial.signal.stamps import disorders, kinds, stamps_of
+from inertial.signal.stamps import disorders, kinds, stamps_of, unit_of
 from inertial.text.messages import _, plural
 from inertial.text.numbers import counted, fixed, significant
 
@@ -204,10 +204,12 @@ class TimeStandsStill(Detector):
 
 
 MIN_STEP_SHARE = 0.02  # of an interval: smaller steps have no effect
+MIN_STEP_UNITS = 0.9  # of the stamps behind it: smaller steps are their rounding
 MIN_STEP_SIGMA = 10.0  # times what the stamps beside it scatter by, rms
 SIDE_STAMPS = 32  # stamps on either side
 MIN_SIDE_STAMPS = 8  # of them, where the log begins or ends
 MIN_EVEN_STEPS = 4  # steps alike and evenly apart, which are the rounding of stamps
+MIN_EVEN_SHARE = 0.85  # of the steps, and of the distances between them
 MAX_UNEVEN = 0.1  # of their size, and of the records from one to the next
 MAX_RETURN_SHARE = 0.5  # of the step, by which the stamps beside it may take it back
 
@@ -243,6 +245,9 @@ class ClockStep(Detector):
             scatter = float(np.sqrt(np.nanmean(np.append(before, behind) ** 2)))
             taken_back = abs(float(np.nansum(before[-2:]) + np.nansum(behind[:2])))
             step = float(off[k])
+            unit = unit_of(stamps.time[k + 1 :])
+            if abs(step) < MIN_STEP_UNITS * unit:
+                continue
             if abs(step) > MIN_STEP_SIGMA * scatter and taken_back < MAX_RETURN_SHARE * abs(step):
                 place = int(stamps.place[k + 1])
                 yield Event(
@@ -278,7 +283,10 @@ def _of_rounding(events: Sequence[Event]) -> bool:
     if len(events) < MIN_EVEN_STEPS:
         return False
     sizes = np.array([event.size * (1 if event.facts else -1) for event in events])
-    apart = np.diff([event.first for event in events])
-    return bool(
-        np.ptp(sizes) < MAX_UNEVEN * abs(sizes[0]) and np.ptp(apart) < MAX_UNEVEN * apart[0]
-    )
+    return all(map(_mostly_even, (sizes, np.diff([event.first for event in events]))))
+
+
+def _mostly_even(values: Array) -> bool:
+    """Whether all but a few are alike: the unit of stamps may change where they gain a digit."""
+    usual = float(np.median(values))
+    return float(np.mean(np.abs(values - usual) < MAX_UNEVEN * abs(usual))) > MIN_EVEN_SHARE

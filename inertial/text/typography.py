@@ -30,6 +30,11 @@ NO_BEGINNING = "，。；：、？！）》”"  # what no line begins with
 NO_END = "（《“"  # what no line ends with
 
 
+def capital(text: str) -> str:
+    """A sentence with its first letter large."""
+    return text if CHINESE.search(text) else text[:1].upper() + text[1:]
+
+
 def typeset(text: str) -> str:
     """A text with the marks of Chinese where it is Chinese."""
     if not CHINESE.search(text):

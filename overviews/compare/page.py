@@ -8,6 +8,7 @@ from pathlib import Path
 
 from inertial.text import numbers
 from inertial.text.messages import _, plural
+from inertial.text.typography import capital
 from inertial.text.units import Unit
 from overviews.compare.circumstances import Line, conditions, settings
 from overviews.compare.pair import READ, Compared, Pair
@@ -20,7 +21,7 @@ from stages.report.results import kind_of, quantity_of, symbol
 from stages.report.sections.findings import causes, title_of
 from stages.report.sections.verdict import LEVELS
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, SENSORS, capital, with_mount
+from stages.report.words import SENSOR, SENSORS, with_mount
 
 LINE_WIDTH = 100
 KINDS = ("bias", "scale", "cross")

@@ -11,12 +11,13 @@ from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _, plural
+from inertial.text.typography import capital
 from overviews.tables_of import made_from
 from stages.report import outline
 from stages.report.page import page
 from stages.report.results import quantity_of, symbol
 from stages.report.tables import Tables
-from stages.report.words import SENSOR, SENSORS, capital
+from stages.report.words import SENSOR, SENSORS
 
 Row = dict[str, Any]
 Rows = Mapping[str, Sequence[Row]]

@@ -10,6 +10,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from inertial.text.messages import _
 from inertial.text.parameters import AXES, BIAS, CROSS, PARTS, SCALE
+from inertial.text.typography import capital
 from inertial.text.units import Unit, quantity
 from overviews.units import Imu
 from stages.history.repeatability import UNKNOWN, YEAR, Observed
@@ -27,7 +28,7 @@ from stages.report.drawing import (
 )
 from stages.report.results import KIND
 from stages.report.tables import Record
-from stages.report.words import SENSOR, capital
+from stages.report.words import SENSOR
 
 KINDS = {"bias": BIAS, "scale": SCALE, "cross": CROSS}
 MARGINS = Margins(left=0.52, down=0.36, across=0.62, bottom=0.3)

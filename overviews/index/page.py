@@ -11,6 +11,7 @@ from urllib.parse import quote
 from inertial.text import numbers
 from inertial.text.messages import _, plural
 from inertial.text.parameters import PARTS
+from inertial.text.typography import capital
 from inertial.text.units import Unit, quantity
 from overviews.tables_of import RESULT, files_of, made_from
 from overviews.units import Imu
@@ -19,7 +20,7 @@ from stages.report.page import page
 from stages.report.sections.findings import causes, harmless, title_of
 from stages.report.sections.verdict import LEVELS, worst
 from stages.report.tables import Tables
-from stages.report.words import SENSOR, capital
+from stages.report.words import SENSOR
 
 SCRIPT = Path(__file__).with_name("sorted_tables.js")
 MOST_CAUSES = 2

@@ -23,7 +23,7 @@ from inertial.physics.effect import Array, Effect
 from inertial.tables import AXES
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, significant, with_sigma
+from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import quantity
 from stages.criticism import block_sentences as sentences
 from stages.criticism.bias_drift import Walk, drift_name
@@ -427,7 +427,7 @@ def _walk_size(sensor: str, walk: Walk) -> str:
     value, sigma = walk.size / unit.size, walk.sigma / unit.size
     if not np.isfinite(sigma):
         return f"{significant(value, 2)} {unit.name}"
-    return f"{' ± '.join(with_sigma(value, sigma, decimals_of(sigma)))} {unit.name}"
+    return f"{plus_minus(value, sigma)} {unit.name}"
 
 
 def unexplained_rows(

@@ -17,6 +17,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant
 from inertial.text.parameters import sign_of
+from inertial.text.typography import capital
 from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
 from stages.criticism.law_sentences import law_sentence
@@ -93,7 +94,7 @@ def cause_sentence(
 
 def not_named_sentence(effect: Effect, test: EffectTest, reason: str, blind: str) -> str:
     """Why an effect is not named; `reason`: that of the limit of its first parameter."""
-    title = _capital(in_words(effect.name))
+    title = capital(in_words(effect.name))
     if test.degrees:
         return NOT_SIGNIFICANT.format(effect=title, p_value=p_is(test.after_search))
     if reason == VISIBLE:
@@ -147,7 +148,3 @@ def _reason(effect: Effect, reason: str, blind: str) -> str:
         return ABSORBED_BY.format(parameters=effect.absorbed_by)
     why = blind.rstrip(".") or REASONS[reason]
     return why[:1].lower() + why[1:]
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

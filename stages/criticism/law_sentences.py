@@ -9,7 +9,7 @@ from inertial.effects.law import ALL, Law
 from inertial.model_selection.cause import ONE_OF_CLASS, Cause
 from inertial.text.cause_names import STATES, in_words
 from inertial.text.messages import _
-from inertial.text.numbers import decimals_of, significant, with_sigma
+from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import DEGREE, HOUR, quantity
 from stages.criticism.finding_rows import SENSORS
 
@@ -90,8 +90,7 @@ def _numbers(law: Law, parameters: Sequence[Estimated]) -> list[str]:
     written = []
     for one in clear or sizes[:1]:
         unit = quantity(one.name, one.unit).laboratory
-        sigma = unit.of(one.sigma or 0.0)
-        size = " ± ".join(with_sigma(unit.of(one.value or 0.0), sigma, decimals_of(sigma)))
+        size = plus_minus(unit.of(one.value or 0.0), unit.of(one.sigma or 0.0))
         label = "" if len(sizes) == 1 else f"{one.name} = "
         written.append(f"{label}{size} {unit.name}{_per(law)}")
     return written

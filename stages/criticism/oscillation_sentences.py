@@ -10,7 +10,8 @@ from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Ripple
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import counted, decimals_of, fixed, significant, with_sigma
+from inertial.text.numbers import counted, fixed, plus_minus, significant
+from inertial.text.typography import capital
 from inertial.text.units import ARC_SECOND
 from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
 from stages.criticism.oscillation_hypotheses import ANGLE, IN_TIME
@@ -115,9 +116,9 @@ def of_oscillation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str
     mean, axis = oscillation.mean, oscillation.likeliest.axis
     sentence = VIBRATION.format(
         axis=_("the table's axis") if axis == TABLE else axis,
-        frequency=_with_sigma(mean.frequency, mean.frequency_sigma),
+        frequency=plus_minus(mean.frequency, mean.frequency_sigma),
         rate=significant(_sampling_rate(turns, mean.manoeuvres), 3),
-        amplitude=_with_sigma(degrees(mean.amplitude), degrees(mean.amplitude_sigma)),
+        amplitude=plus_minus(degrees(mean.amplitude), degrees(mean.amplitude_sigma)),
         arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
         manoeuvres=_in_turns(mean.manoeuvres),
     )
@@ -145,7 +146,7 @@ def of_ripple(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTu
     in_turns = SAME_IN_TURNS if ripple.common else OWN_IN_TURNS
     sentence = (ECCENTRIC if eccentric(ripple) else RIPPLE).format(
         order=_order(ripple),
-        size=_with_sigma(ripple.amplitude / ARC_SECOND, ripple.amplitude_sigma / ARC_SECOND) + "″",
+        size=plus_minus(ripple.amplitude / ARC_SECOND, ripple.amplitude_sigma / ARC_SECOND) + "″",
         turns=in_turns.format(count=ripple.turns) if ripple.turns > 1 else IN_ONE_TURN,
     )
     return (
@@ -183,17 +184,19 @@ def action(oscillation: Oscillation) -> str:
 
 def not_searched(effect: str, count: int) -> str:
     """The search ended with other oscillations."""
-    return NOT_SEARCHED.format(effect=_title(effect), count=count)
+    return NOT_SEARCHED.format(effect=capital(in_words(effect)), count=count)
 
 
 def not_observable(effect: str, reason: str) -> str:
     """No turn shows any size of it."""
-    return NOT_OBSERVABLE.format(effect=_title(effect), reason=reason)
+    return NOT_OBSERVABLE.format(effect=capital(in_words(effect)), reason=reason)
 
 
 def not_significant(effect: str, *, after_others: bool = False) -> str:
     """Searched for and not detected; `after_others`: after named oscillations were removed."""
-    return (NO_FURTHER if after_others else NOT_SIGNIFICANT).format(effect=_title(effect))
+    return (NO_FURTHER if after_others else NOT_SIGNIFICANT).format(
+        effect=capital(in_words(effect))
+    )
 
 
 def may_be(named: str, effect: str) -> str:
@@ -238,18 +241,9 @@ def of_short_turn(share: float) -> str | None:
     return SHORT_TURN.format(share=share) if share < MIN_PERIODS_IN_TURN else None
 
 
-def _title(effect: str) -> str:
-    words = in_words(effect)
-    return words[:1].upper() + words[1:]
-
-
-def _with_sigma(value: float, sigma: float) -> str:
-    return " ± ".join(with_sigma(value, sigma, decimals_of(sigma)))
-
-
 def _order(ripple: Ripple) -> str:
     order, sigma = ripple.order, ripple.order_sigma
-    text = _with_sigma(order, sigma)
+    text = plus_minus(order, sigma)
     if abs(order - round(order)) < MAX_INTEGER_SIGMAS * sigma < 0.5:
         return _("{round} times ({text})", round=round(order), text=text)
     return _("{text} times", text=text)
@@ -277,7 +271,7 @@ def _multiples(oscillation: Oscillation) -> str:
     """Further lines of the same cause."""
     numbers = [part.number(oscillation.effects[0]) for part in oscillation.multiples]
     unit = " Hz" if oscillation.effects[0] == IN_TIME else _(" per revolution")
-    each = [_with_sigma(*number) + unit for number in numbers if number]
+    each = [plus_minus(*number) + unit for number in numbers if number]
     return MULTIPLES.format(each=", ".join(each)) if each else ""
 
 

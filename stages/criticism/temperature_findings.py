@@ -19,7 +19,7 @@ from inertial.effects import CATALOGUE
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import counted, decimals_of, fixed, p_is, significant, with_sigma
+from inertial.text.numbers import counted, fixed, p_is, plus_minus, significant
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 from stages.criticism.finding_rows import (
     ONLY_CONSISTENT,
@@ -107,9 +107,7 @@ class Kind:
 
     def per_kelvin(self, slope: float, sigma: float) -> str:
         """A slope with its sigma."""
-        scatter = sigma / self.size
-        numbers = with_sigma(slope / self.size, scatter, decimals_of(scatter))
-        return f"{' ± '.join(numbers)} {self.unit} per K"
+        return f"{plus_minus(slope / self.size, sigma / self.size)} {self.unit} per K"
 
 
 KINDS = {

@@ -10,10 +10,11 @@ from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, JOINT, PARTS, SENSOR_OF, STAGES, sign_of
+from inertial.text.typography import capital
 from stages.report.linked import DECISION_TABLES
 from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR_OF_STAGE, capital, sensor_of_stage, term, with_mount
+from stages.report.words import SENSOR_OF_STAGE, sensor_of_stage, term, with_mount
 
 ESTIMATE_TABLES = (
     "accelerometer_parameters",

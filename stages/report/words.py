@@ -7,7 +7,6 @@ import re
 from inertial.text.messages import ENGLISH, _, language
 from inertial.text.numbers import shortened
 from inertial.text.parameters import PARTS
-from inertial.text.typography import CHINESE
 
 SENSOR = {"gyro": _("gyro"), "accel": _("accelerometer")}
 SENSORS = {"gyro": _("gyros"), "accel": _("accelerometers")}
@@ -67,11 +66,6 @@ def parameter(sensor: str, quantity: str) -> str:
         return f"{SENSOR[sensor]} {quantity}"
     kind, axes = PARTS[quantity]
     return _("{sensor}, {kind} {axes}", sensor=SENSOR[sensor], kind=KINDS[kind], axes=axes)
-
-
-def capital(text: str) -> str:
-    """A sentence with its first letter large."""
-    return text if CHINESE.search(text) else text[:1].upper() + text[1:]
 
 
 def with_mount(name: str, mount: str | None) -> str:

@@ -473,6 +473,12 @@ def test_an_interval_that_whole_milliseconds_do_not_divide_sets_no_clock():
     assert "clock_step" not in causes(piece(rest(6000), time))
 
 
+def test_stamps_of_six_digits_set_no_clock_where_they_lose_one():
+    """The same, written as 99.9927, 100.003: from 100 s on the last digit is a millisecond."""
+    time = np.array([float(f"{9.999e-3 * n + 2.8e-3:.6g}") for n in range(40000)])
+    assert "clock_step" not in causes(piece(rest(len(time)), time))
+
+
 @pytest.mark.parametrize("first", [True, False], ids=["shorter part first", "longer part first"])
 def test_the_interval_of_most_of_a_log_is_the_reference(first):
     """Neither part has the stated rate; the one with fewer records is the one that differs."""

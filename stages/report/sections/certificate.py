@@ -16,6 +16,7 @@ from inertial.text.statements import (
     THIS_ITEM_ONLY,
     TRACEABILITY,
 )
+from inertial.text.typography import capital
 from inertial.text.units import COVERAGE_FACTOR, DEGREES, ICE_POINT, Unit
 from stages.report.outline import (
     Column,
@@ -50,7 +51,7 @@ from stages.report.sections.axes_of_case import axes_of_case
 from stages.report.sections.findings import causes, spoils
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, SENSORS, capital, term, with_mount
+from stages.report.words import SENSOR, SENSORS, term, with_mount
 
 ITEMS = {  # of the left and of the right column, each with the items that it joins
     _("Laboratory"): ("laboratory.name", "laboratory.address", "laboratory.accreditation"),

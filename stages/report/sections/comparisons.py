@@ -13,12 +13,13 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
+from inertial.text.typography import capital
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
 from stages.report.results import BIAS_UNIT, KIND, RESULT_TABLES, final_results
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, SENSOR_OF_STAGE, capital, parameter, with_mount
+from stages.report.words import SENSOR, SENSOR_OF_STAGE, parameter, with_mount
 
 KINDS = {
     "static_against_turns": _("Static, rotation"),

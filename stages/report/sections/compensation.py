@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from inertial.tables import AXES, CHANNELS
 from inertial.text import numbers, units
 from inertial.text.messages import _
+from inertial.text.typography import capital
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, capital, phases_in_words
+from stages.report.words import SENSOR, phases_in_words
 
 MAX_SIGMAS = 3.0  # from which a check is marked
 MOST_ROWS = 60

@@ -9,6 +9,7 @@ from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
+from inertial.text.typography import capital
 from stages.report import outline
 from stages.report.results import (
     KIND,
@@ -22,7 +23,7 @@ from stages.report.results import (
 )
 from stages.report.sections.effect_sentences import Tested
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, capital, count_in_words, with_mount
+from stages.report.words import SENSOR, count_in_words, with_mount
 
 MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, whole
+from inertial.text.typography import capital
 from stages.report import drawing
 from stages.report.drawing import Array
 from stages.report.outline import (
@@ -30,7 +31,7 @@ from stages.report.sections.residual_figures import (
     pieces_of,
 )
 from stages.report.tables import Tables, once
-from stages.report.words import SENSORS, capital
+from stages.report.words import SENSORS
 
 STEADY = "steady"
 MAX_SIGMAS = 3.0

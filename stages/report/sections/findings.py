@@ -8,6 +8,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, probability, shortened, whole
+from inertial.text.typography import capital
 from stages.report.declared import DECLARED
 from stages.report.outline import (
     Figure,
@@ -23,7 +24,7 @@ from stages.report.outline import (
 from stages.report.sections.evidence import evidence
 from stages.report.sizes import size_in_words
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, capital
+from stages.report.words import SENSOR
 
 FINDING_TABLES = (
     "quality_findings",

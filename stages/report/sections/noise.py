@@ -8,11 +8,12 @@ from inertial.tables import AXES
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import common_decimals, shortened, significant, with_sigma
+from inertial.text.typography import capital
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
 from stages.report.sections.noise_figures import allan_figure, spectrum_figure
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSORS, capital
+from stages.report.words import SENSORS
 
 # The terms of IEEE Std 952 in the order of their slopes, with their letters.
 SYMBOL = {

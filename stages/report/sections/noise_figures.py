@@ -16,11 +16,12 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import significant
+from inertial.text.typography import capital
 from inertial.text.units import DEGREES_PER_HOUR, MICRO_G, MILLI_G, RANDOM_WALK, Unit
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.tables import Record, arrays
-from stages.report.words import SENSORS, capital
+from stages.report.words import SENSORS
 
 HEIGHT = 1.95  # inches, of a panel
 MARGINS = drawing.Margins(left=0.46, right=0.16, top=0.24, across=0.62, bottom=0.36)

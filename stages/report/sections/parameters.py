@@ -15,6 +15,7 @@ from inertial.text import units
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import aligned, counted, fixed, shortened, significant, whole
+from inertial.text.typography import capital
 from stages.report.outline import (
     Column,
     Equation,
@@ -49,7 +50,7 @@ from stages.report.results import (
 )
 from stages.report.sections.effect_tables import extended
 from stages.report.tables import Record, Tables
-from stages.report.words import capital, phases_in_words, term
+from stages.report.words import phases_in_words, term
 
 BY_METHOD = _(
     "What follows is no result of its own: the same parameters by each method, side by side. How "

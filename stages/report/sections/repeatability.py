@@ -8,10 +8,11 @@ from inertial.tables import AXES, UNITS
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.parameters import JOINT
+from inertial.text.typography import capital
 from inertial.text.units import Unit, quantity
 from stages.report import outline
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, capital, parameter
+from stages.report.words import SENSOR, parameter
 
 FIRST = ("repeatability", "within")  # columns; what is left are components
 NAMES = {

@@ -15,6 +15,7 @@ from inertial.tables import AXES, CHANNELS, GYRO
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, shortened
+from inertial.text.typography import capital
 from inertial.text.units import DEGREES_PER_SECOND, Unit
 from stages.report.drawing import (
     AXIS_COLOUR,
@@ -47,7 +48,7 @@ from stages.report.outline import (
 from stages.report.sections.periodic_figures import turns_about
 from stages.report.sections.residual_figures import MIN_EXCESS_RATIO, beyond_noise
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSORS, capital, term
+from stages.report.words import SENSORS, term
 
 AT_REST = _("at rest")
 MOST_TURNS = 6

@@ -9,10 +9,11 @@ from matplotlib.axes import Axes
 
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed
+from inertial.text.typography import capital
 from inertial.text.units import quantity
 from stages.report import drawing, outline
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSORS, capital, plain, with_mount
+from stages.report.words import SENSORS, plain, with_mount
 
 ICE_POINT = 273.15  # K
 MOST_PANELS = 12

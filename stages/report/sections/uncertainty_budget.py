@@ -11,6 +11,7 @@ from matplotlib.figure import Figure as Drawn
 
 from inertial.text.messages import _
 from inertial.text.numbers import significant
+from inertial.text.typography import capital
 from stages.report.drawing import Margins, panels, style, svg
 from stages.report.outline import Column, Figure, Part, Row, Section, Table, columns, table_row
 from stages.report.results import (
@@ -23,7 +24,7 @@ from stages.report.results import (
     symbol,
 )
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, capital, with_mount
+from stages.report.words import SENSOR, with_mount
 
 SOURCES = {
     "noise": _("white noise"),

@@ -9,6 +9,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened, significant
 from inertial.text.parameters import JOINT
+from inertial.text.typography import capital
 from stages.report import outline
 from stages.report.linked import CAUSE_TABLES, GAIN_TABLES, decisions, effect_causes, gains
 from stages.report.results import RESULT_TABLES, shifts
@@ -33,7 +34,7 @@ from stages.report.sections.effect_sentences import (
 )
 from stages.report.sections.findings import FINDING_TABLES, cause_of_finding, title_of
 from stages.report.tables import Record, Tables, once
-from stages.report.words import capital, count_in_words
+from stages.report.words import count_in_words
 
 POSITION = "table_position_error"  # what an effect of the accelerometers may look like
 LINES = {"oscillation", "table_ripple", "table_eccentricity"}  # periodic in turns, all of them

@@ -16,7 +16,7 @@ from inertial.text.numbers import (
     significant,
     whole,
 )
-from inertial.text.typography import columns_of, typeset, wrapped
+from inertial.text.typography import capital, columns_of, typeset, wrapped
 from stages.report import outline
 from stages.report.sections.findings import (
     FINDING_TABLES,
@@ -31,7 +31,6 @@ from stages.report.sections.findings import (
 )
 from stages.report.sizes import size_in_words
 from stages.report.tables import Record, Tables, once
-from stages.report.words import capital
 
 SIMULATED = _(
     "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
