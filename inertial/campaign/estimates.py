@@ -14,10 +14,10 @@ from inertial.estimation import triad
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.switch_ons import SwitchOns
 from inertial.estimation.variance_components import ScatterFit
-from inertial.tables import AXES
+from inertial.tables import AXES, BODY, OF_TRIAD
 from inertial.tables.campaign_inputs import ESTIMATION
 from inertial.text.messages import _
-from inertial.text.parameters import CROSS, MOUNTING, PARTS, SCALE, SENSOR_OF, SYMMETRIC
+from inertial.text.parameters import CROSS, FREE, MOUNTING, PARTS, SCALE, SENSOR_OF, SYMMETRIC
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,7 @@ OF_POSITIONS = {
     for kind, quantity, unit in (("tilt", "tilt", "rad"), ("level", "horizontal", "rad/s"))
     for component in (0, 1)
 }
+EARTH_UP = ("earth", "up")
 OF_SWITCH_ONS = {f"switch-on {i}": axis for i, axis in enumerate(AXES)}
 UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 TABLES = {
@@ -98,7 +99,7 @@ class Estimates:
         ids = [self._id(method, name) for name in names]
         sigma = np.sqrt(np.diag(covariance))
         for i, name in enumerate(names):
-            unit, frame, meaning = described(self.stage, name)
+            unit, frame, meaning = described(self.stage, name, by_hand=method == FREE)
             missing = name in reasons
             self.rows["parameters"].append(
                 {
@@ -167,7 +168,9 @@ class Estimates:
     ) -> None:
         """Goodness of fit, the manoeuvres used, what was estimated of positions and switch-ons."""
         estimate = fitted.estimate
-        found = zip(estimate.names, estimate.values.tolist(), estimate.sigma.tolist(), strict=True)
+        found = list(
+            zip(estimate.names, estimate.values.tolist(), estimate.sigma.tolist(), strict=True)
+        )
         for (kind, name), value, sigma in found:
             row = self._key(method) | {"value": value, "sigma": sigma}
             for quantity, component, unit in OF_POSITIONS.get(kind, ()):
@@ -192,6 +195,7 @@ class Estimates:
                 "unit": UNIT[self.stage],
                 "random_walk": fitted.random_walk,
                 "random_walk_sigma": fitted.random_walk_sigma,
+                "earth_rate_up": next((v for name, v, _s in found if name == EARTH_UP), None),
             }
             | switch_on_columns(fitted.switch_ons)
         )
@@ -251,21 +255,22 @@ def reasons(
     return result
 
 
-def described(stage: str, name: str) -> tuple[str, str, str]:
+def described(stage: str, name: str, *, by_hand: bool = False) -> tuple[str, str, str]:
     """Unit, frame and meaning of a parameter."""
+    body = OF_TRIAD if by_hand else BODY
     kind, axes = PARTS[name]
     sensed, unit = SENSED[stage], UNIT[stage]
     sensor = "accelerometer" if stage == "accelerometer" else "gyro"
     if kind == "bias":
         return (
             unit,
-            "body",
+            body,
             _("reading of the {axes} {sensor} without input", axes=axes, sensor=sensor),
         )
     if kind == "scale":
         return (
             "1",
-            "body",
+            body,
             _(
                 "scale factor error of the {axes} {sensor}: M_{axes}{axes} − 1",
                 axes=axes,
@@ -275,7 +280,7 @@ def described(stage: str, name: str) -> tuple[str, str, str]:
     if kind == "cross":
         return (
             "1",
-            "body",
+            body,
             _(
                 "the {axes} {sensor}'s response to {sensed} along {axes_2}",
                 axes=axes[0],
@@ -287,7 +292,7 @@ def described(stage: str, name: str) -> tuple[str, str, str]:
     if kind == "mounting":
         return (
             "rad",
-            "body",
+            body,
             _(
                 "rotation of the {sensor} triad against the case, about {axes}",
                 sensor=sensor,

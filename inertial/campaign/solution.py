@@ -132,7 +132,7 @@ def solution_of(
     return Solution(
         triads["gyro"],
         triads["accel"],
-        Site(known["gravity"].number, known["earth_rate_up"].number, level),
+        Site(known["gravity"].number, _earth_rate_up(known, gyro, mount), level),
         tilts | levels,
         (gyro.random_walk(mount), accelerometer.random_walk(mount)),
         frozenset(free),
@@ -146,6 +146,13 @@ def solution_of(
             for switch_on, bias in of.deviations(mount).items()
         },
     )
+
+
+def _earth_rate_up(known: Mapping[str, Known], gyro: Estimated, mount: str) -> float:
+    """The upward component of the earth's rate, rad/s: without a latitude that of the joint fit."""
+    rows = [] if "latitude" in known or gyro.fit is None else joint_rows(gyro.fit, mount)
+    found = next((row["earth_rate_up"] for row in rows), None)
+    return known["earth_rate_up"].number if found is None else float(found)
 
 
 def joint_rows(table: pd.DataFrame, mount: str, method: str = JOINT) -> list[Row]:

@@ -49,7 +49,7 @@ def stamps_of(piece: Piece, log: Log) -> Stamps:
 
 
 def unit_of(steps: Array) -> float:
-    """Of what these stamps, or steps between them, (m,), s, are whole multiples, s; at least 1 ns."""
+    """Of what these stamps or steps of them, (m,), s, are whole multiples, s; at least 1 ns."""
     ticks = np.rint(steps / STAMP_DIGIT_S).astype(np.int64)
     return float(max(np.gcd.reduce(ticks), 1)) * STAMP_DIGIT_S if len(ticks) else STAMP_DIGIT_S
 

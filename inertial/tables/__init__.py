@@ -90,9 +90,11 @@ from inertial.tables.recorded import (
 from inertial.tables.shared import (
     ACCEL,
     AXES,
+    BODY,
     CHANNEL_PARTS,
     CHANNELS,
     GYRO,
+    OF_TRIAD,
     STATIC_PHASES,
     UNITS,
 )

@@ -159,7 +159,7 @@ COVARIANCE = Table(
 )
 FIT = Table(
     "fit",
-    6,
+    7,
     (
         MOUNT,
         SENSOR,
@@ -183,6 +183,14 @@ FIT = Table(
             "of the bias, which is that of the middle, beyond that of levels; 0: none",
         ),
         Column("random_walk_sigma", DOUBLE, "unit/√s", "its standard deviation", nullable=True),
+        Column(
+            "earth_rate_up",
+            DOUBLE,
+            "rad/s",
+            "upward component of the earth's rate, of which the latitude is an observation",
+            "level",
+            nullable=True,
+        ),
         Column(
             "switch_ons", INTEGER, "1", "between which biases may differ: parts of the campaign"
         ),

@@ -14,6 +14,8 @@ PHASES = (
 )
 CHANNEL_PARTS = {f"{sensor}_{axis}": (sensor, axis) for sensor in UNITS for axis in AXES}
 BODY = "body"  # axes x, y, z of the IMU's case, right-handed
+# By hand nothing tells the case: axes square to each other, nearest to those of the accelerometers.
+OF_TRIAD = "accelerometer triad"
 
 
 def vector(stem: str, unit: str, meaning: str, *, nullable: bool = True) -> list[Column]:

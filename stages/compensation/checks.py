@@ -250,7 +250,12 @@ def rate_check(
     data: CampaignData,
     scatter: Array,
 ) -> Iterator[Check]:
-    """The rate along up; a tilt turns part of the level earth rate into it."""
+    """The rate along up; a tilt turns part of the level earth rate into it.
+
+    None without a latitude, for then nothing is known to compare it with.
+    """
+    if "latitude" not in data.known:
+        return
     reading, noise = position.over()
     noise = np.hypot(noise, scatter)
     up, earth = position.up_now, data.earth

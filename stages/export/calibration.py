@@ -37,7 +37,7 @@ from inertial.estimation.triad import linear_names
 from inertial.physics import forward as physics
 from inertial.physics.forward import Sized, force_of, rate_of
 from inertial.physics.motion import stretches
-from inertial.tables import CHANNELS
+from inertial.tables import BODY, CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
 from stages.export.examples import Example
@@ -105,6 +105,7 @@ class Triad:
     manoeuvres : those of the fit, and those that it leaves out
     effects : those in the model
     verdict : row of the diagnosis; none where there is no result
+    frame : of matrix and bias, body or accelerometer triad
     """
 
     kind: str
@@ -120,6 +121,7 @@ class Triad:
     manoeuvres: Sequence[Part] = ()
     effects: Sequence[EffectOfResult] = ()
     verdict: Row | None = None
+    frame: str = BODY
 
     @property
     def determined(self) -> int:
@@ -306,6 +308,7 @@ def _triad(
         manoeuvres=parts_of(own(fits.manoeuvres)),
         effects=result.effects,
         verdict=verdict,
+        frame=next((row["frame"] for row in rows.values()), BODY),
     )
 
 

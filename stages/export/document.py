@@ -20,7 +20,7 @@ from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from inertial.campaign.measurement import EffectOfResult
 from inertial.campaign.records import Part, Row, labels, omissions
-from inertial.tables import CHANNEL_PARTS
+from inertial.tables import BODY, CHANNEL_PARTS, OF_TRIAD
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
@@ -65,9 +65,16 @@ EQUATION = {
         "right-hand rule; it contains the earth's rate, so a corrected gyro at rest "
         "reads that and not zero."
     ),
-    "frame": _(
+}
+FRAMES = {
+    BODY: _(
         "Body axes x, y, z of the IMU, right-handed, as its data sheet names them and "
         "as the campaign set them on the table. No axis is exchanged or turned over."
+    ),
+    OF_TRIAD: _(
+        "Axes x, y, z at right angles to each other, right-handed, nearest to those of the "
+        "accelerometers, so that their matrix is symmetric. Their rotation against the case is "
+        "not determined: no attitude of the case was known."
     ),
 }
 
@@ -90,7 +97,7 @@ def document(calibration: Calibration) -> Row:
         "simulated": bool(campaign["simulated"]),
         "not_exported": calibration.not_exported,
         **{key: campaign[key] for key in texts},
-        "equation": EQUATION,
+        "equation": EQUATION | {"frame": FRAMES[_frame(calibration.mounts)]},
         "mounts": [_mount(mount) for mount in calibration.mounts],
         "noise": [_noise(row, for_filters.get(row["channel"])) for row in calibration.noise],
         "filter_use": {
@@ -121,6 +128,11 @@ def document(calibration: Calibration) -> Row:
         ],
         "made_by": list(calibration.made_by),
     }
+
+
+def _frame(mounts: Sequence[Mount]) -> str:
+    """That of matrices and biases: by hand there is one mount, and no axes of a case."""
+    return next((mount.accelerometer.frame for mount in mounts), BODY)
 
 
 def _mount(mount: Mount) -> Row:

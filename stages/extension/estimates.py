@@ -9,11 +9,13 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
 from inertial.physics.motion import Motion
+from inertial.tables import BODY, OF_TRIAD
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, STAGES
 from stages.extension.candidates import Candidate
@@ -96,6 +98,7 @@ class Solved:
             "unit": UNIT[self.stage],
             "random_walk": self.random_walk,
             "random_walk_sigma": None,
+            "earth_rate_up": None,
         }
 
 
@@ -106,7 +109,7 @@ def solved(
     motion: Motion,
     random_walk: float,
     sizes: SelectedSizes,
-    mount: str,
+    data: CampaignData,
 ) -> Solved:
     """The twelve parameters of a sensor and those of the effects of a candidate.
 
@@ -116,7 +119,8 @@ def solved(
     stage = STAGES[sensor]
     places = list(range(UNKNOWNS))
     effects: list[str] = []
-    unknowns = [(name, *described(stage, name)) for name in linear_names()]
+    mount, by_hand = data.mount, data.by_hand is not None
+    unknowns = [(name, *described(stage, name, by_hand=by_hand)) for name in linear_names()]
     for effect in candidate.effects:
         for parameter in effect.parameters:
             label = f"{effect.label}.{parameter.name}"
@@ -125,7 +129,8 @@ def solved(
                 places.append(place)
                 effects.append(effect.name)
                 name = f"{effect.name}.{parameter.name}"
-                unknowns.append((name, parameter.unit, "body", parameter.meaning))
+                frame = OF_TRIAD if by_hand else BODY
+                unknowns.append((name, parameter.unit, frame, parameter.meaning))
     values = estimate.values.copy()
     values[:UNKNOWNS] = errors_of(values[:UNKNOWNS])
     effect_of = dict(zip(places[UNKNOWNS:], effects, strict=True))

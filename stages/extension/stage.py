@@ -260,7 +260,7 @@ class Extension:
         own = given(with_columns(system, columns), sized)
         walk = self.random_walks[SENSORS.index(sensor)]
         motion = models.extended.motion
-        solution = solved(sensor, own, candidate, motion, walk, sizes, self.data.mount)
+        solution = solved(sensor, own, candidate, motion, walk, sizes, self.data)
 
         def system_of(further: Sequence[Effect]) -> System:
             every = models.extended.system(sensor, [*candidate.effects, *further], PRIOR_SIGMA)

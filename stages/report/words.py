@@ -20,6 +20,7 @@ KINDS = {
 }
 # What tables say in a word, as a sentence has it.
 TERMS = {
+    "accelerometer triad": _("axes square to each other, nearest to the accelerometers'"),
     "as the gyros have it": _("as the gyros have it"),
     "at rest": _("at rest"),
     "amplitude": _("amplitude"),

@@ -122,8 +122,8 @@ def _direction(plan: Record, stem: str) -> str:
 def account_parts(tables: Tables) -> Iterator[Part]:
     """Lines by kind per log, bytes against the size of the file, and the refused lines."""
     rows, refused = tables.rows("accounts"), tables.rows("refused")
-    by_file = {row["file"]: row["size"] for row in tables.rows("inputs")}
-    size = {row["log"]: by_file.get(row["file"]) for row in tables.rows("logs")}
+    size = {row["file"]: row["size"] for row in tables.rows("inputs")}  # that of the gyros, too
+    size |= {row["log"]: size.get(row["file"]) for row in tables.rows("logs")}
     yield Table(
         _("Lines of each log by kind."),
         (

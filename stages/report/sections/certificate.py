@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from inertial.tables import BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
@@ -89,12 +90,13 @@ def parts(tables: Tables) -> Iterator[Part]:
     yield Sentences(tuple(verdict_sentences(tables)))
     yield Facts(tuple(_facts(tables)))
     yield _standards(tables)
-    yield Figure(
-        _("Axes of the case: right-handed; the axis that points up reads +g."),
-        axes_of_case(),
-        _("The axes x, y and z of the case, at right angles to each other."),
-        small=True,
-    )
+    if _frame(final_results(tables)) == BODY:
+        yield Figure(
+            _("Axes of the case: right-handed; the axis that points up reads +g."),
+            axes_of_case(),
+            _("The axes x, y and z of the case, at right angles to each other."),
+            small=True,
+        )
     yield Equation(
         _("reading = (I + S + N) · truth + b"),
         _(
@@ -238,6 +240,12 @@ def _known(tables: Tables) -> Iterator[tuple[str, str, str]]:
 # ---- The results with U.
 
 
+def _frame(results: Sequence[Estimate]) -> str:
+    """The frame of the results: by hand nothing tells the axes of the case."""
+    frames = (row["frame"] for one in results for row in one.parameters if row["frame"])
+    return str(next(frames, BODY))
+
+
 def _values(results: Sequence[Estimate], mount: str, earlier: Mapping[str, Record]) -> Table:
     """The twelve parameters of each sensor side by side, in the order of the first."""
     sensors = [result.sensor for result in results]
@@ -255,9 +263,11 @@ def _values(results: Sequence[Estimate], mount: str, earlier: Mapping[str, Recor
     extra = [Column(_("change"), "number")] if earlier else []
     return Table(
         _(
-            "Bias b, scale error s and cross-axis terms m{mount}, frame: case; index ij: response "
-            "of sensor i to an input along axis j. U: expanded uncertainty, k = 2, about 95 %.",
+            "Bias b, scale error s and cross-axis terms m{mount}, frame: {frame}; index ij: "
+            "response of sensor i to an input along axis j. U: expanded uncertainty, k = 2, about "
+            "95 %.",
             mount=_(", mount {mount}", mount=mount) if mount else "",
+            frame=term(_frame(results)),
         ),
         (
             Column("", "symbol"),

@@ -14,7 +14,7 @@ from inertial.tables import AXES
 from inertial.text import units
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import aligned, counted, fixed, shortened, significant, whole
+from inertial.text.numbers import aligned, counted, fixed, plus_minus, shortened, significant, whole
 from inertial.text.typography import capital
 from stages.report.outline import (
     Column,
@@ -227,14 +227,12 @@ def _random_walk(fit: Record) -> str:
         return ""
     unit = units.quantity("bias", fit["unit"]).shown
     size, sigma = (
-        significant(unit.of(units.HOUR**0.5 * (fit[key] or 0.0)), 2)
-        for key in ("random_walk", "random_walk_sigma")
+        unit.of(units.HOUR**0.5 * (fit[key] or 0.0)) for key in ("random_walk", "random_walk_sigma")
     )
     return _(
-        ". The random walk of the bias is {size} ± {sigma} {name}/√h; the bias is stated "
+        ". The random walk of the bias is {size} {name}/√h; the bias is stated "
         "for the middle of the campaign, and the σ include the random walk",
-        size=size,
-        sigma=sigma,
+        size=plus_minus(size, sigma) if sigma else significant(size, 2),
         name=unit.name,
     )
 
