@@ -6,11 +6,13 @@ import chain
 import numpy as np
 import pandas as pd
 import pytest
+from ruamel.yaml import YAML
 
 from inertial.campaign.measurement import measurement_of
 from inertial.effects import CATALOGUE
 from inertial.physics.forward import Triad, force_of, rate_of
 from inertial.physics.motion import Motion, stretches
+from inertial.physics.site import EARTH_RATE
 from inertial.tables import CHANNELS, parquet
 from inertial.tables.errors import Refusal
 from stages.compensation.correction import ALL, held, mounted
@@ -318,3 +320,19 @@ def test_compensated_must_be_true_or_false(tmp_path):
     file.write_text(f"compensated: yes\n{text}", encoding="utf-8")
     with pytest.raises(Refusal, match=r"line 1, compensated"):
         YamlFile(file).check("campaign")
+
+
+def test_without_a_latitude_the_gyros_tell_the_earths_rate(tmp_path):
+    """Both components: once it was taken to be level, by 0.8 of it, and residuals were as large."""
+    folder = chain.simulate(chain.short(seed=6), tmp_path / "raw")
+    file = folder / "campaign.yaml"
+    document = YAML(typ="safe").load(file)
+    up = EARTH_RATE * np.sin(np.radians(document["site"]["latitude_deg"]))
+    document["site"]["latitude_deg"] = None
+    YAML(typ="safe").dump(document, file)
+    results = chain.run(folder, tmp_path / "derived", "compensation")
+    (fit,) = results["gyroscope/fit"].query("method == 'joint'").to_dict("records")
+    assert fit["earth_rate_up"] == pytest.approx(up, rel=0.05)
+    assert not len(checks_of(results, "rate_up"))  # with what is not known
+    left = in_sigmas(results["compensation/residuals"], "rest")[GYRO].to_numpy()
+    assert np.sqrt(np.nanmean(left**2)) < 1.2

@@ -22,7 +22,7 @@ from inertial.estimation.between_positions import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import Name
 from inertial.estimation.gyroscope_equations import Linearisation
-from inertial.estimation.gyroscope_observations import SteadyRate
+from inertial.estimation.gyroscope_observations import EARTH_UP, SteadyRate
 from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
@@ -391,11 +391,12 @@ class Campaign:
             (f"{POSITION_UNKNOWNS[quantity]} {component}", position): value
             for (position, quantity, component), value in self.solution.position_parameters.items()
         }
+        levels[EARTH_UP] = self.solution.site.earth_up
         point = Linearisation(
             gyro.matrix,
             gyro.bias,
             levels,
-            constrained_positions(levels, self.inputs.earth.level),
+            constrained_positions(levels, self.solution.site.earth_level),
         )
         known = (self.inputs.earth, self.position_sigma)
         columns = _prior_sigmas(effects, 1.0)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign.records import Manoeuvre, Part, Row, with_mount
 from inertial.estimation import triad
+from inertial.estimation.gyroscope_observations import EARTH_UP
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.switch_ons import SwitchOns
 from inertial.estimation.variance_components import ScatterFit
@@ -63,7 +64,6 @@ OF_POSITIONS = {
     for kind, quantity, unit in (("tilt", "tilt", "rad"), ("level", "horizontal", "rad/s"))
     for component in (0, 1)
 }
-EARTH_UP = ("earth", "up")
 OF_SWITCH_ONS = {f"switch-on {i}": axis for i, axis in enumerate(AXES)}
 UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 TABLES = {

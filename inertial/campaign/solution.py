@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
-from inertial.estimation.gyroscope_observations import Position
+from inertial.estimation.gyroscope_observations import Earth, Position
 from inertial.estimation.switch_ons import covering
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
@@ -117,7 +117,7 @@ def solution_of(
     joint fit does not determine the accelerometers, positions of unknown attitude may, and then the
     gyros too, in the same axes.
     """
-    level = known["earth_rate_level"].number
+    up, level = _earth_rate(known, gyro, mount)
     tilts = accelerometer.position_parameters(mount, "tilt", np.inf)
     levels = gyro.position_parameters(mount, "horizontal", level / 3)
     triads = {
@@ -132,7 +132,7 @@ def solution_of(
     return Solution(
         triads["gyro"],
         triads["accel"],
-        Site(known["gravity"].number, _earth_rate_up(known, gyro, mount), level),
+        Site(known["gravity"].number, up, level),
         tilts | levels,
         (gyro.random_walk(mount), accelerometer.random_walk(mount)),
         frozenset(free),
@@ -148,11 +148,14 @@ def solution_of(
     )
 
 
-def _earth_rate_up(known: Mapping[str, Known], gyro: Estimated, mount: str) -> float:
-    """The upward component of the earth's rate, rad/s: without a latitude that of the joint fit."""
+def _earth_rate(known: Mapping[str, Known], gyro: Estimated, mount: str) -> tuple[float, float]:
+    """The earth's rate upwards and level, rad/s: without a latitude those of the joint fit."""
+    up, level = known["earth_rate_up"], known["earth_rate_level"].number
     rows = [] if "latitude" in known or gyro.fit is None else joint_rows(gyro.fit, mount)
     found = next((row["earth_rate_up"] for row in rows), None)
-    return known["earth_rate_up"].number if found is None else float(found)
+    if found is None:
+        return up.number, level
+    return float(found), Earth(up.number, up.scatter, level).level_beside(float(found))
 
 
 def joint_rows(table: pd.DataFrame, mount: str, method: str = JOINT) -> list[Row]:

@@ -30,7 +30,7 @@ from inertial.estimation import multi_position as forces
 from inertial.estimation.attitude import IntegratedMotion, Passage, integrate, integrated_motion
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock, whitened
-from inertial.estimation.gyroscope_observations import Earth
+from inertial.estimation.gyroscope_observations import EARTH_UP, Earth
 from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA
 from inertial.estimation.least_squares import Estimate, System, solve_iterated
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
@@ -257,7 +257,7 @@ class _Data:
             *((f"level {i}", stops[chain[0]]) for chain in self.chains for i in (0, 1)),
             *(("clock", clock) for clock in self.clocks),
             ("gravity", ""),
-            ("earth", "up"),
+            EARTH_UP,
         )
 
 

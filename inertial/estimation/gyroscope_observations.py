@@ -12,6 +12,9 @@ from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 Array = NDArray[np.float64]
 
 
+EARTH_UP = ("earth", "up")  # the name of the unknown: the upward component
+
+
 @dataclass(frozen=True)
 class Earth:
     """The earth's rate at the site, rad/s: upward component, its sigma, horizontal component."""
@@ -19,6 +22,14 @@ class Earth:
     up: float
     up_sigma: float
     level: float
+
+    def level_beside(self, up: float) -> float:
+        """The horizontal component beside this upward one, rad/s: of both the sum is known.
+
+        Without a latitude `level` and `up_sigma` are those of a direction of which nothing is
+        known; its squares still have the sum of the earth's.
+        """
+        return float(np.sqrt(max(self.up**2 + self.up_sigma**2 + self.level**2 - up**2, 0.0)))
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from inertial.estimation.gyroscope_equations import (
     steady_equations,
 )
 from inertial.estimation.gyroscope_observations import (
+    EARTH_UP,
     Earth,
     RateSegment,
     StaticRate,
@@ -193,7 +194,7 @@ class LinearisedEquations:
         for position, block, stretch in filter(None, self.blocks):
             by_position.setdefault(position, []).append((constrained(block), stretch))
         names = [("parameter", str(i)) for i in range(UNKNOWNS)]
-        names += [("earth", "up"), *(("effect", name) for name in self.effect_sigma)]
+        names += [EARTH_UP, *(("effect", name) for name in self.effect_sigma)]
         return DriftingEquations(
             [pair for pairs in by_position.values() for pair in pairs],
             [position for position, pairs in by_position.items() for _ in pairs],

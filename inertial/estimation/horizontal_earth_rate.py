@@ -13,7 +13,8 @@ from inertial.estimation.gyroscope_equations import (
     horizontal_names,
     horizontal_sigma,
 )
-from inertial.estimation.gyroscope_observations import Earth, Position
+from inertial.estimation.gyroscope_observations import EARTH_UP, Earth, Position
+from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.motion import turned_all
 
 Array = NDArray[np.float64]
@@ -24,11 +25,12 @@ Array = NDArray[np.float64]
 # is that of the site: (level 0, level 1) = ω_e cos φ (cos a, sin a), with the azimuth a alone
 # unknown. About an azimuth a₀ that is
 #
-#     cos a₀ · level 0 + sin a₀ · level 1 = ω_e cos φ
+#     cos a₀ · level 0 + sin a₀ · level 1 = ω_e cos φ = √(ω_e² − up²)
 #
-# without any equation for the component across. The neglected term grows with (a − a₀)²/2, so the
-# constraint is applied only where the data determine the azimuth well, and a₀ is that of the last
-# result; else the components are those of a random direction, each with the size as its sigma.
+# without any equation for the component across. Without a latitude `up`, ω_e sin φ, is as unknown,
+# and the right side is linear about its last value. The neglected term grows with (a − a₀)²/2, so
+# the constraint is applied only where the data determine the azimuth well, and a₀ is that of the
+# last result; else the components are those of a random direction, each with the size as its sigma.
 
 MAX_AZIMUTH_SIGMA = 0.2  # rad: the neglected term is then a tenth of the sigma of the size
 CONSTRAINT_SIGMA = 1e-4  # relative, of the size
@@ -66,6 +68,9 @@ def size_constraint(
         for name in point.azimuths
         if ("level 0", name) in sigma and ("level 0", name) in point.levels
     }
+    up = point.levels.get(EARTH_UP, earth.up)
+    size = earth.level_beside(up)
+    pending = pending if size else set()
     for name in pending:
         sigma |= dict.fromkeys((("level 0", name), ("level 1", name)), VAGUE_SIGMA * earth.level)
 
@@ -77,8 +82,9 @@ def size_constraint(
             level = np.array([point.levels[key] for key in keys])
             row = np.zeros((1, block.rows.shape[1]))
             row[0, [shared + block.own.index(key) for key in keys]] = level / np.linalg.norm(level)
-            row[0, -1] = earth.level
-            rows = np.vstack([block.rows, row / (CONSTRAINT_SIGMA * earth.level)])
+            row[0, UNKNOWNS] = up / size
+            row[0, -1] = size + up / size * (up - earth.up)
+            rows = np.vstack([block.rows, row / (CONSTRAINT_SIGMA * size)])
             # The azimuth is fitted, so there is one degree of freedom less.
             block = EquationBlock(rows, block.own, block.count - 1, block.deviance)
         return block
