@@ -151,6 +151,13 @@ def test_a_draft_by_hand_is_calibrated_to_its_truth(tmp_path):
     results = chain.run(folder, tmp_path / "derived")
     accel = results.parameters("accelerometer", "free_positions")
     assert set(accel.loc[list(linear_names()), "frame"]) == {"accelerometer triad"}
+    assert (
+        told(folder)["guessed"]
+        == [*results["plan/guesses"]["part"]]
+        == ["instrument", "format", "site"]
+    )
+    gravity = results["plan/known"].set_index("quantity").loc["gravity"]
+    assert gravity["assumed"] and gravity["origin"].startswith("guessed")
     symmetric = [f"symmetric_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz")]
     found = accel.loc[[*symmetric, "bias_x", "bias_y", "bias_z"]]
     right = log.imu.free - np.array([1, 1, 1, 0, 0, 0, 0, 0, 0])

@@ -21,6 +21,7 @@ BEST_HAND_TURN = 5.0  # degrees, sigma of an angle by hand that the gyros confir
 TABLE_RATE = 1000  # ppm, of a table of which nothing is known
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
 LARGEST_COUNT = 32767
+VERSION, GUESS = "campaign: 1", "# guessed:"
 
 
 def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -> str:
@@ -32,7 +33,7 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
     logs = {m.part.logs[0].path.name for m in plan}
     lines = [
         *_head(kinds, plan, name, by_hand),
-        "campaign: 1",
+        VERSION,
         *_instrument(kinds, name),
         "serial: unknown",
         "date: unknown",
@@ -53,7 +54,20 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
         if len(logs) > 1:
             keys |= _logs_of(m, kinds)
         lines.append(f"  - {flow(**keys)}{_seen(m)}")
+    told = _("delete each when it is confirmed")
+    lines.insert(lines.index(VERSION) + 1, f"guessed: {in_flow(_guessed(lines))}  # {told}")
     return "\n".join(lines) + "\n"
+
+
+def _guessed(lines: Sequence[str]) -> list[str]:
+    """The parts of the file in which a guess is marked."""
+    part, found = "", dict[str, None]()
+    for line in lines:
+        if opened := re.match(r"(?:  )?(instrument|format|formats|site|table|plan):", line):
+            part = "format" if opened[1] == "formats" else opened[1]
+        if GUESS in line and not line.startswith("#"):
+            found[part] = None
+    return list(found)
 
 
 def _place(m: Manoeuvre, kinds: Sequence[Kind]) -> int:
@@ -404,4 +418,4 @@ def _name(m: Manoeuvre) -> str:
 
 
 def _guess(why: str) -> str:
-    return f"  # guessed: {why}"
+    return f"  {GUESS} {why}"

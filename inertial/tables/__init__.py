@@ -60,6 +60,7 @@ from inertial.tables.planned import (
     ACCEPTED,
     CAMPAIGN,
     COUNT_SIZES,
+    GUESSES,
     IDEAL_READINGS,
     INPUTS,
     KNOWN,

@@ -184,6 +184,11 @@ MANOEUVRES = Table(
         Column("label", TEXT, "", "the records with this label", nullable=True),
     ),
 )
+GUESSES = Table(
+    "guesses",
+    1,
+    (Column("part", TEXT, "", "part of the campaign file that is guessed and not confirmed"),),
+)
 ACCEPTED = Table(
     "accepted",
     1,

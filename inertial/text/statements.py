@@ -4,6 +4,7 @@ from inertial.text.messages import _
 
 NOT_STATED = _("not stated")
 STATED = _("stated in the campaign file")
+GUESSED = _("guessed in the campaign file, and not confirmed")
 REALISES = {
     "angle": _("angle"),
     "rate": _("rotation rate"),

@@ -22,6 +22,7 @@ DECLARED = Declared(
         "purposes": tables.PURPOSES,
         "repairs": tables.REPAIRS,
         "accepted": tables.ACCEPTED,
+        "guesses": tables.GUESSES,
     },
     files=("campaign", "raw", "instruments", "published", "laboratory"),
 )

@@ -103,6 +103,7 @@ def plan(
             if row["purpose"]
         ],
         "repairs": set_right,
+        "guesses": [{"part": part} for part in file.content.get("guessed", [])],
         "accepted": [
             {"repair": repair, "place": file.place(["accept", number])}
             for number, repair in enumerate(file.content.get("accept", []))

@@ -1,6 +1,7 @@
 """What a campaign takes as known: every quantity with its sigma and where it is from."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from math import cos, radians, sin
 from typing import Any
 
@@ -15,7 +16,7 @@ from inertial.physics.site import (
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.statements import STATED
+from inertial.text.statements import GUESSED, STATED
 from inertial.text.units import ARC_SECOND, DEGREE_PER_HOUR
 
 # Where a campaign states no sigma, these are assumed, and the report states that.
@@ -46,6 +47,7 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
     `repairs`: those of gravity, of which at most one is applied.
     """
     site, table = file.content["site"], file.content.get("table", {})
+    guessed = file.content.get("guessed", [])
     sets_positions = _sets_positions(file)
     if by_hand(file.content) and sets_positions and "position_sigma_arcsec" not in table:
         raise file.refuse_text(
@@ -57,24 +59,24 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
                 example="{name: by hand, position_sigma_arcsec: 3600}",
             ),
         )
-    gravity, origin = _gravity(file), _gravity_origin(site)
+    gravity, origin = _gravity(file), GUESSED if "site" in guessed else _gravity_origin(site)
     for repair in repairs:
         if repair["state"] != "refused":
             gravity, origin = (repair["value"], repair["sigma"]), repair["sentence"]
-    yield _row("gravity", *gravity, "m/s²", origin)
+    yield _row("gravity", *gravity, "m/s²", origin, assumed=origin == GUESSED)
     yield from _earth_rate(site["latitude_deg"])
     heading = table.get("heading_deg")
     if heading is None:
         yield _row("heading", None, None, "rad", _("not known"))
     else:
         yield _row("heading", radians(heading), None, "rad", STATED)
+    of_table = partial(_of_table, table, GUESSED if "table" in guessed else STATED)
     if sets_positions or "position_sigma_arcsec" in table:
-        sigma = ASSUMED_POSITION
-        yield _of_table(table, "position", "position_sigma_arcsec", ARC_SECOND, sigma, "rad")
+        yield of_table("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
     else:
         yield _row("position", 0.0, ASSUMED_POSITION, "rad", _("not used, for no position is set"))
-    yield _of_table(table, "turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
-    yield _of_table(table, "turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
+    yield of_table("turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
+    yield of_table("turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
 
 
 def _row(
@@ -97,11 +99,18 @@ def _row(
 
 
 def _of_table(
-    table: Mapping[str, Any], quantity: str, key: str, unit_size: float, assumed: float, unit: str
+    table: Mapping[str, Any],
+    stated: str,
+    quantity: str,
+    key: str,
+    unit_size: float,
+    assumed: float,
+    unit: str,
 ) -> Row:
-    """The sigma of what the table sets, stated or `assumed`; `unit_size`: of the key, in `unit`."""
+    """The sigma of what the table sets, `stated` or `assumed`; `unit_size`: of the key."""
     if key in table:
-        return _row(quantity, 0.0, table[key] * unit_size, unit, STATED)
+        sigma = table[key] * unit_size
+        return _row(quantity, 0.0, sigma, unit, stated, assumed=stated == GUESSED)
     origin = _("assumed, for the campaign file states no {key}", key=key)
     return _row(quantity, 0.0, assumed, unit, origin, assumed=True)
 

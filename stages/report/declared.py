@@ -8,6 +8,7 @@ DECLARED = Declared(
         "campaign": From("plan", tables.CAMPAIGN),
         "certificate": From("plan", tables.CERTIFICATE),
         "standards": From("plan", tables.STANDARDS),
+        "guesses": From("plan", tables.GUESSES),
         "known": From("plan", tables.KNOWN),
         "ideal_readings": From("plan", tables.IDEAL_READINGS),
         "sensors": From("plan", tables.SENSORS),

@@ -115,6 +115,7 @@ def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
         "ideal_readings": rows_as(tables.IDEAL_READINGS, plan.ideal()),
         "certificate": rows_as(tables.CERTIFICATE, plan.certificate()),
         "standards": tables.STANDARDS.empty(),
+        "guesses": tables.GUESSES.empty(),
         "conformity": tables.CONFORMITY.empty(),
         "uncertainty_budget": rows_as(tables.UNCERTAINTY_BUDGET, estimates.budget()),
         "covariance": tables.COVARIANCE.empty(),

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from inertial.tables import BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.statements import (
     IN_FULL_ONLY,
@@ -72,6 +73,10 @@ ITEMS = {  # of the left and of the right column, each with the items that it jo
 }
 IF_STATED = {"laboratory.place", "item.axes", "conditions.humidity", "conditions.measured_with"}
 NOT_USABLE = "not_usable"  # the verdict
+GUESSES = _(
+    "Guessed in the campaign file and not confirmed: {guesses}. The values below are as good as "
+    "these guesses. Correct them there, and delete from `guessed` what is confirmed."
+)
 # Of the errors of the table those on which the results rest, by their sources in the budget.
 TABLE_ERRORS = {"position": "position", "turn_angle": "angle"}
 MIN_UNCORRECTED = 0.1  # σ of a parameter, from which a cause that is not corrected is stated
@@ -88,6 +93,8 @@ def parts(tables: Tables) -> Iterator[Part]:
     word, tone, meaning = LEVELS[worst(tables)]
     yield Level(word, tone, meaning)
     yield Sentences(tuple(verdict_sentences(tables)))
+    if guesses := [term(row["part"]) for row in tables.rows("guesses")]:
+        yield Paragraph(GUESSES.format(guesses=listed(guesses)), "fair")
     yield Facts(tuple(_facts(tables)))
     yield _standards(tables)
     if _frame(final_results(tables)) == BODY:
@@ -158,7 +165,9 @@ def _facts(tables: Tables) -> Iterator[tuple[str, str]]:
     yield _("Number"), certificate_number(tables)
     yield _("Campaign"), campaign["campaign"]
     maker, part, firmware = (stated.get(f"item.{key}") for key in ("maker", "part", "firmware"))
-    item = [campaign["instrument"], _("serial {serial}", serial=campaign["serial"])]
+    guessed = any(row["part"] == "instrument" for row in tables.rows("guesses"))
+    kind = campaign["instrument"] + (_(" (guessed)") if guessed else "")
+    item = [kind, _("serial {serial}", serial=campaign["serial"])]
     item += [_("part {part}", part=part)] if part else []
     item += [_("firmware {firmware}", firmware=firmware)] if firmware else []
     if maker and not str(campaign["instrument"]).lower().startswith(maker.lower()):
@@ -482,8 +491,8 @@ SECTION = Section(
     "",
     (
         *RESULT_TABLES,
-        *("campaign", "certificate", "standards", "known", "clocks", "blocks", "manoeuvres"),
-        *("conformity", "earlier", "causes", "verdict", "uncertainty_budget"),
+        *("campaign", "certificate", "guesses", "standards", "known", "clocks", "blocks"),
+        *("manoeuvres", "conformity", "earlier", "causes", "verdict", "uncertainty_budget"),
     ),
     parts,
 )
