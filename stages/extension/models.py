@@ -161,3 +161,12 @@ def with_columns(system: System, shown: frozenset[str]) -> System:
         # The eliminated errors are not used here, and refer to the other columns.
         eliminated=system.eliminated and replace(system.eliminated, steps=()),
     )
+
+
+def compressed(system: System) -> System:
+    """Fewer equations with the same sum of squares, for many fits of some of the columns."""
+    whole = np.column_stack([system.design, system.observed]) / system.sigma[:, None]
+    triangle = np.asarray(np.linalg.qr(whole, mode="r"))
+    return replace(
+        system, design=triangle[:, :-1], observed=triangle[:, -1], sigma=np.ones(len(triangle))
+    )

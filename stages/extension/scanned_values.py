@@ -1,8 +1,12 @@
-"""What the scanned value of an effect is uncertain by, in the covariance of the parameters.
+"""What the scanned value of an effect is uncertain by, in the parameters and their covariance.
 
 A time constant is found by a scan, and the parameters are fitted beside it. As it is uncertain, so
 are they: the derivative of the readings by it is one more unknown t, and the parameters θ get
 C_θt C_tt⁻¹ C_tθ on top of their covariance, to first order.
+
+The moment of a jump has no such derivative, and where it may have been in either of two pauses the
+parameters have two values: half a jump before +y up, with another scale factor, explains as much as
+a whole one behind it. They are those of the mixture over all moments, by their likelihood.
 """
 
 from collections.abc import Callable, Sequence
@@ -12,12 +16,16 @@ from types import MappingProxyType
 import numpy as np
 
 from inertial.estimation.least_squares import System
+from inertial.estimation.mixture import mixture
+from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Solved
-from stages.extension.models import PRIOR_SIGMA
+from stages.extension.models import PRIOR_SIGMA, compressed, with_columns
 
 STEP = 0.05  # of the scanned value, of the derivative
+NEAR = 1.5  # spacings of the moments, within which two are the same
+MIN_SHARE = 1e-4  # of the likeliest: a moment that is less likely has no part
 
 
 class ByScannedValue(Effect):
@@ -82,6 +90,96 @@ def with_scanned_values(
         for row, sigma in zip(solution.rows, sigmas, strict=True)
     ]
     return replace(solution, rows=rows, covariance=solution.covariance + added)
+
+
+def sets_in(effect: Effect) -> bool:
+    """Whether it is there from a moment on that was searched."""
+    scan = effect.scan
+    return scan is not None and scan.name == "t0" and effect.at is not None
+
+
+def over_moments(
+    solution: Solved,
+    effects: Sequence[Effect],
+    of_both: Sequence[Effect],
+    motion: Motion,
+    system_of: Callable[[Sequence[Effect]], System],
+) -> Solved:
+    """The fit as the mixture over the moments at which its effects may have set in.
+
+    `of_both`: the effects that were named in both sensors; `system_of`: as above. One moment is
+    varied at a time, the others are those that were named.
+    """
+    beside = [other for other in of_both if sets_in(other)]
+    for effect in effects:
+        if sets_in(effect):
+            solution = _over_moments_of(effect, effects, beside, solution, motion, system_of)
+    return solution
+
+
+def _over_moments_of(
+    effect: Effect,
+    effects: Sequence[Effect],
+    beside: Sequence[Effect],
+    solution: Solved,
+    motion: Motion,
+    system_of: Callable[[Sequence[Effect]], System],
+) -> Solved:
+    moments = [one for one in effect.candidates(motion) if one.label != effect.label]
+    system = compressed(system_of(moments))
+    scanned = {name for one in (effect, *moments) for name in one.columns}
+    others = {name for kind, name in system.names if kind == "effect"} - scanned
+    label = dict(pair for e in effects for pair in zip(of_effect(e), e.columns, strict=True))
+    named = solution.estimate
+    excess = max(1.0, named.chi_squared / max(named.degrees, 1))
+
+    def fitted(one: Effect) -> tuple[float, Array, Array] | None:
+        """Chi-squared, values and covariance in the order of the rows; None: not determined."""
+        fit = with_columns(system, frozenset({*others, *one.columns})).solve_shared()
+        of_one = dict(zip(effect.columns, one.columns, strict=True))
+        column = {name: i for i, (kind, name) in enumerate(fit.names) if kind == "effect"}
+        wanted = [label[row["parameter"]] for row in solution.of_effects]
+        own = [*range(UNKNOWNS), *(column[of_one.get(name, name)] for name in wanted)]
+        if not all(fit.determined[column[name]] for name in one.columns):
+            return None
+        return fit.chi_squared, fit.values[own], fit.covariance[np.ix_(own, own)]
+
+    before = fitted(effect)
+    if before is None:
+        return solution
+    found = [(effect, before), *((one, fit) for one in moments if (fit := fitted(one)))]
+    fits = [fit for _one, fit in found]
+    least = min(chi_squared for chi_squared, *_ in fits)
+    weights = np.exp([(least - chi_squared) / 2 / excess for chi_squared, *_ in fits])
+    weights *= _shared_with([one for one, _fit in found], beside)
+    weights[weights < MIN_SHARE * weights.max()] = 0.0
+    values, covariances = (np.array([fit[k] for fit in fits]) for k in (1, 2))
+    mean, covariance = mixture(values, covariances, weights)
+    shift, added = mean - before[1], covariance - before[2]
+    covariance = solution.covariance + added
+    rows = [
+        row
+        if row["sigma"] is None
+        else {**row, "value": row["value"] + float(by), "sigma": float(np.sqrt(variance))}
+        for row, by, variance in zip(solution.rows, shift, np.diag(covariance), strict=True)
+    ]
+    return replace(solution, rows=rows, covariance=covariance)
+
+
+def _shared_with(moments: Sequence[Effect], beside: Sequence[Effect]) -> Array:
+    """How much likelier each moment is for what sets in at another one, (n,), not normalised.
+
+    A knock or a restart changes both sensors, so a moment is as likely to be one of theirs as it is
+    to be any.
+    """
+    at = np.array([one.at or 0.0 for one in moments])
+    spacing = np.median(np.diff(np.unique(at))) if len(at) > 1 else 0.0
+    odds = np.ones(len(at))
+    for other in beside:
+        if other.name != moments[0].name:
+            near = np.abs(at - (other.at or 0.0)) < NEAR * spacing
+            odds += near * len(at) / max(near.sum(), 1)
+    return odds
 
 
 def of_effect(effect: Effect) -> list[str]:

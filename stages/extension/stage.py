@@ -45,7 +45,7 @@ from stages.extension.models import (
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
 from stages.extension.proposed import proposed_rows
-from stages.extension.scanned_values import with_scanned_values
+from stages.extension.scanned_values import over_moments, with_scanned_values
 from stages.extension.selected_sizes import SelectedSizes, selected_sizes
 from stages.extension.temperature_shapes import with_shapes
 from stages.extension.warm_up import warm_up_rows
@@ -271,6 +271,7 @@ class Extension:
         if not solution.effects:
             return None
         solution = with_scanned_values(solution, candidate.effects, system_of)
+        solution = over_moments(solution, candidate.effects, models.effects, motion, system_of)
         return solution, with_shapes(solution, candidate.effects, motion, system_of)
 
     def _solution(self, solution: Solved) -> Iterator[tuple[str, Any]]:

@@ -34,7 +34,7 @@ from inertial.model_selection.effect_classes import log_evidence
 from inertial.physics.effect import Array, Effect
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Row, Solved
-from stages.extension.models import with_columns
+from stages.extension.models import compressed, with_columns
 
 GRID = 25  # knots over the range
 FINE, FINE_SIGMAS = 17, 4.0  # about the knot that was named, to so many of its sigma
@@ -147,7 +147,7 @@ class _Equations:
             for f, own in knots.items()
             for at in own
         }
-        self.system = _compressed(system_of([self.smooth, *self.bends.values()]))
+        self.system = compressed(system_of([self.smooth, *self.bends.values()]))
         self.named = {p: f"{model.label}.{p.name}" for p in model.pieces if p.function in knots}
         own = {name for effect in (self.smooth, *self.bends.values()) for name in effect.columns}
         self.others = [
@@ -334,15 +334,6 @@ def _written(
         covariance=covariance,
         effects=[row["effect"] for row in rows[UNKNOWNS:]],
         constants=[*(r for r in solution.constants if r["effect"] != model.name), *constants],
-    )
-
-
-def _compressed(system: System) -> System:
-    """Fewer equations with the same sum of squares, for many fits of some of the columns."""
-    whole = np.column_stack([system.design, system.observed]) / system.sigma[:, None]
-    triangle = np.asarray(np.linalg.qr(whole, mode="r"))
-    return replace(
-        system, design=triangle[:, :-1], observed=triangle[:, -1], sigma=np.ones(len(triangle))
     )
 
 

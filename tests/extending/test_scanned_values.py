@@ -1,8 +1,10 @@
-"""The sigmas of biases hold what the time constant of a warm-up is uncertain by."""
+"""What the time constant of a warm-up, and the moment of a jump, is uncertain by is in the sigmas."""
 
+import chain
 import numpy as np
 import pytest
 
+import laboratory
 from inertial.effects import CATALOGUE
 from inertial.estimation.least_squares import System
 from inertial.estimation.triad import linear_names
@@ -73,3 +75,20 @@ def test_what_is_not_scanned_stays_as_it_is():
     ramp = CATALOGUE["gyro_bias_ramp"]
     fit = Solved("gyro", [], np.zeros((0, 0)), None, 0.0)
     assert with_scanned_values(fit, [ramp], with_time_constant) is fit
+
+
+def test_a_jump_that_may_have_been_in_either_of_two_pauses_leaves_a_scale_factor_open():
+    """Half of it before the last pair of faces, with another scale factor, explains as much."""
+    document = chain.demo(seed=81)
+    plan = document["campaign"]["plan"]
+    document["campaign"]["plan"] = [m for m in plan if m["do"] != "turn"]  # z-up, z-down at its end
+    jump = -800.0  # µg
+    hidden = {"size_micro_g": [400, 2500, jump], "at_s": 1770.0}  # between these two
+    document["effects"] = {"accel_bias_jump": hidden}
+    results = chain.in_memory(laboratory.perform(laboratory.specify(document)), "extension")
+    found = results["extension/parameters"].query("sensor == 'accel' and method == 'extended'")
+    scale = found.set_index("parameter").loc["scale_z"]
+    true = document["truth"]["accelerometer"]["matrix"][2][2] - 1
+    assert abs(scale["value"] - true) < 2 * scale["sigma"]
+    # 200 ppm are either of the two from their middle.
+    assert scale["sigma"] == pytest.approx(abs(jump) / 4 * 1e-6, rel=0.3)
