@@ -170,4 +170,5 @@ def motion_of(
         peaks=unknown,
         senses=unknown,
         tumbled=np.zeros((n, 3)),
+        square=rate**2,
     )

@@ -14,7 +14,7 @@ from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
-from inertial.tables import ACCEL
+from inertial.tables import ACCEL, STATIC_PHASES
 from inertial.text.messages import _
 
 # --- One static position, a rotation block by block, a rotation sample by sample ---
@@ -45,7 +45,9 @@ def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion
     return replace(rest, surveyed=surveyed, tumbled=tumbled[None])
 
 
-def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
+def in_blocks(
+    data: CampaignData, m: Manoeuvre, turn: RateSegment, phase: NDArray[Any], time: Array
+) -> Motion:
     """A rotation in the k blocks of its sums, with the angles that the gyros measured."""
     solution, set_position = data.result.since(m.switch_on), position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(set_position)
@@ -55,11 +57,24 @@ def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) 
         turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned, 1 / turn.density
     )
     rate = angle / turn.seconds
-    # The table is at rest before and after, so that the acceleration integrates to zero.
-    edges = np.concatenate([[0.0], (rate[1:] + rate[:-1]) / 2, [0.0]])
-    acceleration = np.diff(edges) / turn.seconds
+    acceleration = np.diff(_between(rate, phase)) / turn.seconds
     blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
     return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
+
+
+def _between(rate: Array, phase: NDArray[Any]) -> Array:
+    """The rate between the k blocks of a turn and at its ends, where it is at rest, (k + 1,).
+
+    Within a phase it is the mean of its neighbours. Where one begins the acceleration jumps, and
+    the rate is that of the rest or of the steady part.
+    """
+    still, steady = np.isin(phase, STATIC_PHASES), phase == "steady"
+    edges = (rate[1:] + rate[:-1]) / 2
+    known = np.where(still, 0.0, rate)
+    for side in (slice(None, -1), slice(1, None)):
+        own = (phase[1:] != phase[:-1]) & (still | steady)[side]
+        edges = np.where(own, known[side], edges)
+    return np.concatenate([[0.0], edges, [0.0]])
 
 
 def at_rate(data: CampaignData, m: Manoeuvre, steady: SteadyRate, time: Array) -> Motion:
@@ -235,7 +250,8 @@ class CampaignMotions:
 
     def turning(self, rotation: Recorded, turn: RateSegment) -> Motion:
         """A rotation from rest to rest in its blocks."""
-        motion = in_blocks(self._data, rotation.plan, turn, self._time_of(rotation.blocks))
+        blocks = rotation.blocks
+        motion = in_blocks(self._data, rotation.plan, turn, blocks.phase, self._time_of(blocks))
         return self._placed(rotation.plan.name, motion, rotation.blocks, turn)
 
     def at_rate(self, rotation: Recorded, steady: SteadyRate) -> Motion:
@@ -301,8 +317,6 @@ def mean_motions(motion: Motion, merged: Merged) -> list[Motion]:
     """The mean motion of each of the merged stretches."""
     names = [field.name for field in fields(Motion) if field.name != "about"]
     means: dict[str, Any] = {name: merged.mean(getattr(motion, name)) for name in names}
-    # The acceleration at a lever arm is quadratic in the rate, so the rate is the rms.
-    means["rate"] = np.sign(means["rate"]) * np.sqrt(merged.mean(motion.rate**2))
     means["seconds"] = merged.seconds
     for name in ("surveyed", "position", "run", "peaks", "senses", "tumbled"):
         means[name] = getattr(motion, name)[merged.starts]

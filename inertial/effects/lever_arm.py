@@ -27,5 +27,4 @@ class LeverArm(Effect):
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         swing = cross(motion.alpha, values)
-        pull = cross(motion.omega, cross(motion.omega, values))
-        return replace(truth, force=truth.force + swing + pull)
+        return replace(truth, force=truth.force + swing + motion.pull(values))

@@ -35,6 +35,5 @@ class SizeEffect(Effect):
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         felt = []
         for i, arm in enumerate(values.reshape(3, 3)):
-            pull = cross(motion.omega, cross(motion.omega, arm))
-            felt.append((cross(motion.alpha, arm) + pull)[:, i])
+            felt.append((cross(motion.alpha, arm) + motion.pull(arm))[:, i])
         return replace(reading, accel=reading.accel + np.column_stack(felt))

@@ -110,7 +110,8 @@ class Motion:
     specific force; `peaks`: (n, 3), m/s², the last extreme of specific force along each axis on the
     way to the manoeuvre; `senses`: (n, 3), ±1, in which it last turned about each axis on that way.
     These four are NaN where they are not known. `tumbled`: (n, 3), rad, the angle through which a
-    tumble has turned the table to the position since its start, along its axis; else 0.
+    tumble has turned the table to the position since its start, along its axis; else 0. `square`:
+    (n,), rad²/s², the mean of the squared rate.
     """
 
     time: Array
@@ -130,6 +131,7 @@ class Motion:
     peaks: Array
     senses: Array
     tumbled: Array
+    square: Array
 
     @property
     def omega(self) -> Array:
@@ -140,6 +142,10 @@ class Motion:
     def alpha(self) -> Array:
         """Angular acceleration of the table as a vector, (n, 3), rad/s²."""
         return self.acceleration[:, None] * self.about
+
+    def pull(self, arm: Array) -> Array:
+        """The mean of ω × (ω × r) over each stretch, (n, 3), m/s², for an arm r (3,), m."""
+        return self.square[:, None] * cross(self.about, cross(self.about, arm))
 
     @property
     def up_at_start(self) -> Array:
@@ -210,6 +216,7 @@ def turning(
         np.full(n, np.nan),
         *(np.full((n, 3), np.nan),) * 3,
         np.zeros((n, 3)),
+        rate**2 + (acceleration * seconds) ** 2 / 12,  # as constant as the acceleration is
     )
 
 
@@ -228,6 +235,7 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         temperature,
         *(unknown, unknown, unknown),
         np.zeros((n, 3)),
+        zero,
     )
 
 

@@ -1,4 +1,4 @@
-"""What the time constant of a warm-up, and the moment of a jump, is uncertain by is in the sigmas."""
+"""What a time constant, and the moment of a jump, are uncertain by is in the sigmas."""
 
 import chain
 import numpy as np
