@@ -179,6 +179,17 @@ def test_the_unit_of_a_time_follows_from_a_plausible_rate(unit, tmp_path):
     assert layout["time"] == {"column": 1, "unit": unit}
 
 
+def test_names_with_units_behind_the_axis_are_those_of_their_sensor(tmp_path):
+    log = by_hand_log(3)
+    sensors = {"acc_{}_mps2": log.force, "gyro_{}_rad_s": log.rate}
+    names = ["time_s", *(name.format(axis) for name in sensors for axis in "xyz")]
+    columns = [np.arange(len(log.force)) / RATE, *sensors.values()]
+    logs = {"log.csv": ",".join(names) + "\n" + written(columns)}
+    layout = told(drafted(logs, tmp_path))["instrument"]["format"]
+    assert layout["accelerometer"] == {"columns": names[1:4], "unit": "m/s2"}
+    assert layout["gyro"] == {"columns": names[4:], "unit": "rad/s"}
+
+
 def test_increments_of_velocity_and_angle_are_divided_by_their_interval(tmp_path):
     """As VectorNav's and Xsens's Δv and Δθ: m/s and rad over a sample."""
     log = by_hand_log(4)

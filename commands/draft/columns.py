@@ -42,6 +42,7 @@ COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECAS
 TEMPERATURE = re.compile(r"temp", re.IGNORECASE)
 PLAUSIBLE = {"degC": (-80.0, 150.0), "K": (190.0, 425.0)}  # of an IMU
 AXIS = re.compile(r"^(.*?)([xyz0-9])([^xyz0-9]*)$")
+UNIT = re.compile(r"[_ ](m?g|m[/p_]?s_?2|m?dps|m?(rad|deg)[/p_]?s)$")  # behind a name
 
 
 @dataclass(frozen=True)
@@ -240,7 +241,7 @@ def _kind(name: str) -> str | None:
 def _plain(name: str) -> str:
     """A name without its unit, in small letters; gyro[0] is gyro0."""
     name = re.sub(r"\[(\d)\]", r"\1", name)
-    return re.sub(r"[\[(].*", "", name).strip().lower()
+    return UNIT.sub("", re.sub(r"[\[(].*", "", name).strip().lower())
 
 
 def _threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:

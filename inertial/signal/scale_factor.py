@@ -23,10 +23,12 @@ UNIT_FACTORS = {
     "accel": {
         STANDARD_GRAVITY: _("the values are in m/s² but are read as g"),
         1 / STANDARD_GRAVITY: _("the values are in g but are read as m/s²"),
+        1000.0: _("the values are in mg but are read as g (or in mm/s² as m/s²)"),
     },
     "gyro": {
         1 / DEGREE: _("the values are in degrees but are read as radians"),
         DEGREE: _("the values are in radians but are read as degrees"),
+        1000.0: _("the values are in thousandths of the stated unit, such as milli-°/s"),
     },
 }
 
