@@ -164,6 +164,11 @@ MISTAKES = {
         "accel_deg_s2: 5, seconds: 60",
         ["plan[1].seconds", "about 38 s"],
     ),
+    "a rate that is never reached": (
+        "rate_deg_s: 10",
+        "rate_deg_s: 50",  # the square root of 360 times 5 is 42.43
+        ["plan[1].rate_deg_s", "50", "at most 42.43", "accel_deg_s2: 5"],
+    ),
     "a turn of nothing": (", degrees: 360, rate_deg_s: 10", "", ["plan[1]", "two of them"]),
     "mark along up": ("up: +x, seconds", "up: +x, mark: -x, seconds", ["plan[0].mark"]),
     "a vector of zeros": ("up: +x, seconds", "up: [0, 0, 0], seconds", ["plan[0].up"]),

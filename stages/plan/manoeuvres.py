@@ -14,6 +14,7 @@ from inertial.text.units import ARC_SECOND, DEGREE, ICE_POINT, in_si
 from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 
 AXES = np.eye(3)
+MAX_BELOW_RATE = 0.01  # by which a turn may stay below its rate
 Row = dict[str, Any]
 
 
@@ -154,6 +155,7 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
     _check_signs(file, key, item)
     if angle is not None and rate is not None:
         rate = float(np.copysign(rate, angle))
+        _check_peak(file, key, angle, rate, acceleration)
         profile = Profile(abs(angle), abs(rate), acceleration or np.inf)
         if seconds is not None and not isclose(profile.seconds, seconds, rel_tol=0.05):
             raise file.refuse(
@@ -185,6 +187,26 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
         "rate": None if rate is None else sense * rate,
         "seconds": seconds,
     }
+
+
+def _check_peak(
+    file: YamlFile, key: Key, angle: float, rate: float, acceleration: float | None
+) -> None:
+    """Refuse a turn that must stop before it has reached its rate."""
+    peak = np.sqrt(abs(angle) * (acceleration or np.inf)) / DEGREE
+    if peak < (1 - MAX_BELOW_RATE) * abs(rate) / DEGREE:
+        raise file.refuse_text(
+            [*key, "rate_deg_s"],
+            f"{abs(rate) / DEGREE:g}",
+            _(
+                "at most {peak:.4g}, which is reached within degrees: {degrees:g} by "
+                "accel_deg_s2: {acceleration:g}",
+                peak=peak,
+                degrees=angle / DEGREE,
+                acceleration=(acceleration or np.inf) / DEGREE,
+            ),
+            _("correct one of the three, as the table was set"),
+        )
 
 
 def _sense(file: YamlFile) -> int:
