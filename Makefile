@@ -154,7 +154,7 @@ try-draft: .venv/complete
 	mapfile -t words < <(xargs --no-run-if-empty printf '%s\n' <<< "$$LOG")
 	logs=()
 	for word in "$${words[@]}"; do
-		mapfile -t found < <(compgen -G "$$word" || true)
+		mapfile -t found < <(compgen -G "$$word" | sort || true)
 		if [[ -e $$word || $${#found[@]} == 0 ]]; then found=("$$word"); fi
 		logs+=("$${found[@]}")
 	done

@@ -14,7 +14,7 @@ import sys
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 from commands.no_result import NoResult, no_results
@@ -32,6 +32,7 @@ from stages.diagnosis.declared import DECLARED
 LINE_WIDTH = 100
 MAX_FULL_CAUSES = 20  # of further ones only the names are listed
 APPLIED = ("applied", "confirmed")  # states of a repair
+WITHOUT_IT = ("masked", "interpolated", "left_out")  # cures
 SPOILS, SET_RIGHT, WEAKENS, GOOD_TO_KNOW = range(4)
 GRADES = {
     SPOILS: (_("spoils a result"), _("spoil a result")),
@@ -93,8 +94,24 @@ def recording_of(derived: Path) -> Recording:
         for row in rows_of(tables.ACCOUNTS.read(derived / "decode/accounts.parquet"))
         if row["kind"] == "refused"
     }
-    causes = sorted(compete(list(hypotheses(findings))), key=_worst_first)
+    cured = _cured(derived / "diagnosis/causes.parquet")
+    explained = [_as_cured(each, cured) for each in compete(list(hypotheses(findings)))]
+    causes = sorted(explained, key=_worst_first)
     return Recording(list(no_results(derived)), causes, list(performed.values()), refused)
+
+
+def _cured(diagnosed: Path) -> set[tuple[str, str]]:
+    """Cause and sensor of what the result does without; none where there is no diagnosis."""
+    rows = rows_of(tables.CAUSES.read(diagnosed)) if diagnosed.exists() else []
+    return {(row["cause"], row["sensor"]) for row in rows if row["cure"] in WITHOUT_IT}
+
+
+def _as_cured(each: Explained, cured: set[tuple[str, str]]) -> Explained:
+    """The same, which spoils nothing where its records are left out, as the diagnosis has it."""
+    row = each.cause.row
+    if row["severity"] < 3 or (row["cause"], row["sensor"]) not in cured:
+        return each
+    return replace(each, cause=replace(each.cause, row={**row, "severity": 2}))
 
 
 def _worst_first(each: Explained) -> tuple[int, float, int, str]:

@@ -92,7 +92,12 @@ class Columns:
 
 
 def time_of(log: RawLog) -> Name | None:
-    """The column that grows steadily, a named one before others; None where none does."""
+    """The column that grows steadily, a named one before others; None where none does.
+
+    The messages of a receiver have one, however few they are.
+    """
+    if log.kind == "rawimus":
+        return "time"
     growing = [name for name, values in log.columns.items() if _grows(values)]
     named = [name for name in growing if TIME.search(str(name))]
     return next(iter(named + growing), None)

@@ -128,7 +128,10 @@ class TableMoving(Detector):
                     size=size,
                 ),
                 _("The mean of this rest hardly changes; its noise does."),
-                _("The rest is used as it is. Keep off the table while it records."),
+                _(
+                    "The rest is used as it is. Touch neither it nor what it stands on while it "
+                    "records."
+                ),
             )
         confirmation = (
             _("the gyros turn along ({share:.0%} of it)", share=motion.agreement.share)

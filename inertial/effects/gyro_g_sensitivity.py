@@ -19,7 +19,10 @@ class GyroGSensitivity(Effect):
     """
 
     name = "gyro_g_sensitivity"
-    cause = _("mass unbalance, or stress of the package, pulls the gyro off null under load")
+    cause = _(
+        "the bias of the gyro depends on the specific force: mass unbalance, or stress of the "
+        "package"
+    )
     source = "IEEE Std 528-2019, 'acceleration-sensitive drift rate'"
     parameters = tuple(
         Parameter(

@@ -72,7 +72,7 @@ WALK_CONSEQUENCE = _("The sigmas of all parameters allow for it.")
 REPEAT = _(
     "Record the positions once more, in another order, to distinguish a random walk from others."
 )
-SHORTEN = _("A shorter campaign, or turns there and back, reduce its influence.")
+SHORTEN = _("A shorter campaign, or rotations forth and back, reduce its influence.")
 UNEXPLAINED = _(
     "The residuals of the {sensors} are {ratio:.1f} times as large as noise, and no "
     "effect of the catalogue explains it."

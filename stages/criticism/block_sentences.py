@@ -32,6 +32,10 @@ ACTION = _(
     "Remove it at its origin, or compensate readings with its terms too, which the export holds."
 )
 ACTION_WITHOUT_TERMS = _("Remove it at its origin. Readings are not compensated for it: {stays}.")
+ACTION_PER_RUN = _(
+    "If the IMU was switched off in between, state power_cycle: true in the first manoeuvre after "
+    "it: then each run has biases of its own, and the report says how well they repeat."
+)
 ACTION_WITHOUT_LAW = _(
     "Look at the residuals against time; record again with the IMU switched on long before."
 )
@@ -125,7 +129,9 @@ def limit_sentence(effect: Effect, limit: Visible, why: str | None) -> str:
 
 def action_against(effect: Effect | None) -> str:
     """What to do against an effect; None: biases of each run."""
-    if effect is None or effect.terms:
+    if effect is None:
+        return ACTION_PER_RUN
+    if effect.terms:
         return ACTION
     return ACTION_WITHOUT_TERMS.format(stays=effect.stays)
 

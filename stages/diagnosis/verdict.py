@@ -97,7 +97,7 @@ def verdict(
         return Verdict(ON_CONDITION, sentence + _others(own, unconfirmed), " ".join(conditions))
     if own:
         sentence = _(
-            "{sensors}: {causes}. Usable with these remarks.",
+            "{sensors}: {causes}. Usable within these limits.",
             sensors=sensors,
             causes=_names(own, _limit),
         )

@@ -36,7 +36,7 @@ CURES: dict[str, dict[str, Any]] = {
     },
 }
 SENTENCES = {
-    "gyro": "Gyros: gyro g-sensitivity (in the model). Usable with these remarks.",
+    "gyro": "Gyros: gyro g-sensitivity (in the model). Usable within these limits.",
     "accel": "Accelerometers: usable. "
     "No fault was detected; the report states the detection limits.",
 }

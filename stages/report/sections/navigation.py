@@ -68,8 +68,8 @@ SECTION = outline.Section(
         "The rests and whole turns of this campaign as free inertial navigation, before and after "
         "calibration: at rest, and after a whole turn, attitude, velocity and position should be "
         "those of the start. Every calibration aligns itself at rest before, level by its "
-        "accelerometers, north by the plan, or by the earth's rate where the gyros show it; so "
-        "what an alignment absorbs is no gain."
+        "accelerometers, north by the plan, or by the earth's rate where the gyros show it. An "
+        "error that this alignment removes is therefore not counted as a gain."
     ),
     _(
         "Errors are root mean squares over the manoeuvres, of all three axes. Predicted is what "
