@@ -133,7 +133,8 @@ def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named():
     # Free to lean there, the case gives the parameters back; what it has not seen is foretold.
     moved = results["extension/moved"].set_index("joint_id")
     cross = moved.loc["accelerometer/joint/cross_zy"]
-    assert abs(cross["difference"]) == pytest.approx(np.radians(OFF) / 8, rel=0.3)
+    # Of eight equal means an eighth; the turns there tell the tilt of the axis, which takes some.
+    assert np.radians(OFF) / 16 < abs(cross["difference"]) < np.radians(OFF) / 7
     assert cross["extended_sigma"] < cross["joint_sigma"] / 10
     verdict = results["diagnosis/verdict"].set_index("sensor")
     assert dict(verdict["method"]) == {"gyro": "joint", "accel": "extended"}

@@ -43,8 +43,12 @@ NO_BETTER = _(
 ONE_NOT_DETERMINED = _("beside it one parameter would not be determined")
 NOT_DETERMINED = _("beside it {count} parameters would not be determined")
 REPLACED = _(
-    "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {drop}, of "
-    "{expected} attainable, and no finding remains unexplained."
+    "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {drop}, "
+    "where exactly known effects would bring {expected}, and no finding remains unexplained."
+)
+REPLACED_WALK = _(
+    "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {drop} "
+    "against the joint fit and its random walk, and no finding remains unexplained."
 )
 FREED = _(
     "The result of the {sensors} includes {effects}: that is the own error of "
@@ -126,7 +130,8 @@ def decided(
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
         same = frozenset(one["method"] for one in alike)
         return Decision(best["method"], reason + others, freed, same)
-    reason = REPLACED.format(
+    replaced = REPLACED if best["drop"] <= best["snr_squared"] else REPLACED_WALK
+    reason = replaced.format(
         sensors=sensors,
         effects=names,
         drop=significant(best["drop"]),

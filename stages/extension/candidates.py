@@ -121,7 +121,7 @@ def sentence_of(
         sentence = REDUCED.format(effects=effects, drop=validated.drop, expected=expected)
     else:
         sentence = INCREASED.format(effects=effects, growth=-validated.drop, expected=expected)
-    if validated.walk_drop > 0:
+    if validated.walk_drop:
         sentence += AGAINST_WALK.format(drop=validated.drop - validated.walk_drop)
     if omitted := validated.not_counted:
         each = "it" if len(omitted) == 1 else "each"
