@@ -26,7 +26,7 @@ JOINT = candidate("joint", probability=0.0, drop=None, snr_squared=None)
 def test_it_counts_where_others_predict_it_and_nothing_warns():
     decision = decided([JOINT, candidate()], [effect()])
     assert decision.method == "extended"
-    for words in ("of the gyros includes", "gyro bias ramp", "falls by 35.00", "of 40.00"):
+    for words in ("of the gyros includes", "gyro bias ramp", "falls by 35.00", "would bring 40.00"):
         assert words in decision.reason
 
 
