@@ -157,7 +157,7 @@ def test_nothing_conforms_of_a_sensor_that_is_not_usable():
 def test_the_certificate_says_what_is_not_stated():
     shown = section_on(campaign(logs=()), SECTION)
     assert "<dt>Customer</dt><dd>A customer</dd>" in shown
-    assert "<dt>Laboratory</dt><dd>not stated</dd>" in shown
+    assert "<dt>Not stated</dt><dd>Laboratory" in shown
     assert "<span>Calibrated by</span> not stated" in shown
     assert "Not assessed: no tolerances are stated." in shown
     assert "End of the certificate." in shown

@@ -102,7 +102,7 @@ def _report(tables: Tables, language: str) -> dict[str, str]:
     )
     number = shortened(certificate.certificate_number(tables), 80)
     outline = Report(
-        title=_("Calibration certificate {number}", number=number),
+        title=certificate.title_of(tables, number),
         campaign=name,
         instrument=instrument,
         running=f"{number} · {instrument}" + (_(" · simulated") if about["simulated"] else ""),

@@ -88,11 +88,18 @@ def certificate_number(tables: Tables) -> str:
     return str(_stated(tables).get("number") or tables.row("campaign")["campaign"])
 
 
+def title_of(tables: Tables, number: str) -> str:
+    """A certificate has a laboratory that stands by it; without one it is a report."""
+    if "laboratory.name" in _stated(tables):
+        return _("Calibration certificate {number}", number=number)
+    return _("Calibration report {number}", number=number)
+
+
 def parts(tables: Tables) -> Iterator[Part]:
     """What 7.8 asks for: who, what, how, with which standards; then results and statements."""
     word, tone, meaning = LEVELS[worst(tables)]
     yield Level(word, tone, meaning)
-    yield Sentences(tuple(verdict_sentences(tables)))
+    yield Sentences((*verdict_sentences(tables), *_misfits(tables)))
     if guesses := [term(row["part"]) for row in tables.rows("guesses")]:
         yield Paragraph(GUESSES.format(guesses=listed(guesses)), "fair")
     yield Facts(tuple(_facts(tables)))
@@ -173,13 +180,17 @@ def _facts(tables: Tables) -> Iterator[tuple[str, str]]:
     if maker and not str(campaign["instrument"]).lower().startswith(maker.lower()):
         item.insert(0, maker)
     yield _("Item"), ", ".join(item)
+    missing = []
     for name, items in ITEMS.items():
-        texts = [stated[one] for one in items if one in stated]
-        if texts or not IF_STATED.issuperset(items):
-            yield name, "; ".join(texts) or NOT_STATED
+        if texts := [stated[one] for one in items if one in stated]:
+            yield name, "; ".join(texts)
+        elif not IF_STATED.issuperset(items):
+            missing.append(name)
     yield _("Recorded"), _recorded(tables)
     yield _("Temperature of the IMU"), _temperature(tables)
     yield _("Remarks"), campaign["notes"] or _("none")
+    if missing:
+        yield capital(NOT_STATED), ", ".join(missing)
 
 
 def _recorded(tables: Tables) -> str:
@@ -247,6 +258,14 @@ def _known(tables: Tables) -> Iterator[tuple[str, str, str]]:
 
 
 # ---- The results with U.
+
+
+def _misfits(tables: Tables) -> Iterator[str]:
+    """What the model of a result that counts leaves beyond noise."""
+    for result in final_results(tables):
+        if result.misfit:
+            words, _tone = result.fit_in_words()
+            yield f"{capital(result.sensor)}: {words}."
 
 
 def _frame(results: Sequence[Estimate]) -> str:
