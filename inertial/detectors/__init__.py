@@ -34,7 +34,12 @@ from inertial.detectors.stamps_misstated import RateOff, WrongDay, WrongTimeUnit
 from inertial.detectors.status_invalid import StatusInvalid
 from inertial.detectors.table_moving import TableMoving
 from inertial.detectors.temperatures import TemperatureDrift, TemperatureMisstated
-from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate
+from inertial.detectors.turns_against_plan import (
+    IncompleteTurn,
+    WrongDirection,
+    WrongRate,
+    WrongTimeUnitOfTurns,
+)
 from inertial.detectors.wrong_imu_type import WrongImuType
 from inertial.detectors.wrong_scale_factor import (
     GravityRemoved,
@@ -90,6 +95,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     AxisSwapAgainstPlan(),
     SignFlipAgainstPlan(),
     WrongScaleOfTurns(),
+    WrongTimeUnitOfTurns(),
     ManoeuvreSwapped(),
     ManoeuvreMissing(),
     WrongDirection(),

@@ -10,6 +10,55 @@ from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, tu
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
 
+MIN_TURNS = 2  # that show a unit of the time
+MAX_TIME_RATIO = 1.1  # of the thousands by which all turns take longer
+TIME_UNITS = ("s", "ms", "µs", "ns")  # each a thousandth of the one before
+
+
+def thousands_longer(recorded: Recorded) -> int:
+    """By how many thousands all turns take longer than planned at the planned rate; 0: by none."""
+    rate, angle = turn_ratios(recorded)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        longer = np.log10(np.abs(angle / rate))
+    longer = longer[np.isfinite(longer)]
+    if len(longer) < MIN_TURNS:
+        return 0
+    thousands = round(float(np.median(longer)) / 3)
+    alike = np.abs(longer - 3 * thousands) < np.log10(MAX_TIME_RATIO)
+    return thousands if alike.all() and abs(thousands) < len(TIME_UNITS) else 0
+
+
+class WrongTimeUnitOfTurns(PlanDetector):
+    """All turns go at the planned rate, and a thousand times, or a thousandth, as far.
+
+    Cause: the time is in another unit than the format states. Rates are read as they are, so every
+    angle, which is a rate times a time, is off by that factor.
+    """
+
+    name = "wrong_time_unit"
+    source = "milliseconds that were read as seconds: 359542° in a turn of 360°"
+    severity = 3
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        if thousands := thousands_longer(recorded):
+            yield Deviation(None, "", 1000.0**thousands, facts=thousands)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        thousands = deviation.facts
+        coarse, fine = TIME_UNITS[0], TIME_UNITS[abs(thousands)]
+        stated, likely = (coarse, fine) if thousands > 0 else (fine, coarse)
+        return Description(
+            _(
+                "All turns have the planned rate and {ratio} times the planned angle: as if the "
+                "time of the logs were in {likely} where {stated} is stated.",
+                ratio=f"{1000.0**thousands:g}",
+                likely=likely,
+                stated=stated,
+            ),
+            _("Angles of turns, durations and drifts are off by this factor."),
+            _("Nothing is changed. Correct the unit of the time in the format."),
+        )
+
 
 class IncompleteTurn(PlanDetector):
     """A turn that was not recorded from rest to rest, or not to the planned angle.
@@ -26,6 +75,8 @@ class IncompleteTurn(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        if thousands_longer(recorded):
+            return
         common = common_turn_ratio(recorded)
         _, angle = turn_ratios(recorded)
         # By other axes no turn is used, though it may be whole.

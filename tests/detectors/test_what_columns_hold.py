@@ -131,11 +131,18 @@ def zeroed(folder: Path, records: int | None) -> chain.Results:
     return chain.run(folder / "raw", folder / "derived", "diagnosis")
 
 
-def test_milliseconds_that_are_stated_as_seconds_are_one_cause(tmp_path):
+@pytest.mark.parametrize(
+    ("rate", "said"),
+    [
+        ({"rate_hz": 100}, "as if the time were in ms where s is stated"),
+        ({}, "as if the time of the logs were in ms where s is stated"),  # the turns show it
+    ],
+)
+def test_milliseconds_that_are_stated_as_seconds_are_one_cause(rate, said, tmp_path):
     """Twelve turns of 359922 degrees, each a cause of its own, and the unit said last."""
     document = chain.short(seed=5)
     document["receiver"] |= {"message": "columns", "line_end": "lf"}
-    document["campaign"]["instrument"] = {"name": "made up", "rate_hz": 100}
+    document["campaign"]["instrument"] = {"name": "made up", **rate}
     laboratory.write(laboratory.perform(laboratory.specify(document)), tmp_path / "raw")
     for path in (tmp_path / "raw").glob("*.asc"):
         log = pd.read_csv(path)
@@ -144,7 +151,7 @@ def test_milliseconds_that_are_stated_as_seconds_are_one_cause(tmp_path):
     tables = chain.run(tmp_path / "raw", tmp_path / "derived", "diagnosis", chain.BESIDE)
     (cause,) = tables["diagnosis/causes"].to_dict("records")
     assert cause["cause"] == "wrong_time_unit"
-    assert "as if the time were in ms where s is stated" in cause["sentence"]
+    assert said in cause["sentence"]
 
 
 def test_gyros_zeroed_at_the_beginning_of_each_log_keep_their_scale_factors(tmp_path):
