@@ -108,11 +108,12 @@ def over_moments(
     """The fit as the mixture over the moments at which its effects may have set in.
 
     `of_both`: the effects that were named in both sensors; `system_of`: as above. One moment is
-    varied at a time, the others are those that were named.
+    varied at a time, the others are those that were named; of several with one name none is.
     """
     beside = [other for other in of_both if sets_in(other)]
+    names = [effect.name for effect in effects]
     for effect in effects:
-        if sets_in(effect):
+        if sets_in(effect) and names.count(effect.name) == 1:
             solution = _over_moments_of(effect, effects, beside, solution, motion, system_of)
     return solution
 
