@@ -138,7 +138,7 @@ def test_the_manoeuvre_that_splits_a_class_is_named(criticised):
     assert "45°" in cause["split_manoeuvre"] and cause["split_snr"] > 10
     assert cause["split_manoeuvre"] in cause["action"]
     (cause,) = criticised("lever_arm", 51)["criticism/findings"].to_dict("records")
-    assert cause["split_snr"] < 3.3 and "Not even this" in cause["action"]
+    assert cause["split_snr"] < 3.3 and "No further manoeuvre" in cause["action"]
 
 
 def test_a_jump_is_told_with_its_time(criticised):

@@ -70,7 +70,10 @@ SAME_RATE = _(
 )
 
 SPLIT = _(" To distinguish them, {manoeuvre}: expected separation {sigmas} sigma.")
-SPLIT_TOO_WEAK = _(" Not even this would distinguish them: {manoeuvre} ({sigmas} sigma).")
+SPLIT_TOO_WEAK = _(
+    " No further manoeuvre would distinguish them: the best of those that were tried, {manoeuvre}, "
+    "would by {sigmas} sigma."
+)
 
 
 def cause_sentence(
