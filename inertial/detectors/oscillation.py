@@ -129,7 +129,8 @@ class Oscillation(Detector):
             _consequence(tone, ringing.not_at_rest and ringing.turning > MIN_MAJORITY),
             _(
                 "Nothing is changed: over many periods it averages out. Look for a loose screw, "
-                "and for a drive, fan or pump nearby, and switch that off to see whether it is that."
+                "and for a drive, fan or pump nearby, and switch that off to see whether it is "
+                "that."
             ),
         )
 

@@ -119,6 +119,14 @@ def parts(tables: Tables) -> Iterator[Part]:
             "Further terms are added to the reading."
         ),
     )
+    yield Equation(
+        _("truth = (I + S + N)⁻¹ · (reading − b − further terms)"),
+        _(
+            "The correction of a reading. The inverse stands ready, with its sigmas, in "
+            "{campaign}.calibration.json beside this report.",
+            campaign=tables.row("campaign")["campaign"],
+        ),
+    )
     yield Heading(_("Results"), breaks=True)
     earlier = _earlier(tables)
     for mount in dict.fromkeys(result.mount for result in final_results(tables)):
