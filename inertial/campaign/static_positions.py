@@ -13,7 +13,7 @@ from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
-from inertial.physics.motion import is_vertical, level_axes, turned
+from inertial.physics.motion import are_parts_of_turns, is_vertical, level_axes, turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
 
@@ -93,7 +93,6 @@ NO_NOISE = _(
     "its noise is not known, for it is too short, or has no time: state sigma with mean_of in its "
     "format"
 )
-MIN_PART_OF_TURN = 1e-3  # sine of half the angle: less is whole turns
 PER_BLOCK = ("means", "counts", "seconds", "time", "temperature")
 LOUDER_P_VALUE = 1e-5  # that a stretch of white noise seems louder than it is
 # Squares of neighbouring second differences of white noise correlate by 4/9 and 1/36.
@@ -137,8 +136,8 @@ class StaticPosition:
     @property
     def _level(self) -> Array | None:
         """The level axes of the start in body axes now, (2, 3), after part of an upright turn."""
-        whole = abs(np.sin(self.angle / 2)) < MIN_PART_OF_TURN
-        if whole or not is_vertical(self.up, self.about):
+        part = are_parts_of_turns(np.asarray(self.angle))
+        if not part or not is_vertical(self.up, self.about):
             return None
         return np.array([turned(axis, self.about, self.angle) for axis in level_axes(self.up)])
 

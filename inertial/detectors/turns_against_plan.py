@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from inertial.detectors.stamps_misstated import TIME_UNITS
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled, Reversed
 from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, turn_ratios
@@ -12,7 +13,6 @@ from inertial.text.numbers import counted, fixed, significant, whole
 
 MIN_TURNS = 2  # that show a unit of the time
 MAX_TIME_RATIO = 1.1  # of the thousands by which all turns take longer
-TIME_UNITS = ("s", "ms", "µs", "ns")  # each a thousandth of the one before
 
 
 def thousands_longer(recorded: Recorded) -> int:

@@ -4,15 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Scan, Truth, of_tables
-from inertial.physics.motion import Motion, all_level_axes, cross, turned_all
+from inertial.effects.table_position_error import TablePositionError
+from inertial.physics.effect import Array, Truth
+from inertial.physics.motion import Motion, all_level_axes, are_parts_of_turns, cross, turned_all
 from inertial.text.messages import _
-from inertial.text.units import ARC_SECOND
-
-MIN_PART_OF_TURN = 1e-3  # sine of half the angle: less is whole turns
 
 
-class TableAxisError(Effect):
+class TableAxisError(TablePositionError):
     """The axis of one set position is off with the case on it: f += δ × f, δ fixed to the earth.
 
     So it is on a table of several axes, where an outer axis sets the direction of the inner one. In
@@ -23,19 +21,6 @@ class TableAxisError(Effect):
 
     name = "table_axis_error"
     cause = _("the outer axis of the table was set wrong, so the axis of the turns leans with it")
-    source = "IEEE Std 1554-2005, position accuracy of tables"
-    parameters = tuple(
-        Parameter(
-            f"lean_{i}",
-            "rad",
-            2 * ARC_SECOND,
-            _("about the {which} level axis at the start", which=which),
-        )
-        for i, which in ((1, "first"), (2, "second"))
-    )
-    sizes = of_tables(ARC_SECOND, 2, 30)
-    thinkable = 1000.0  # a person who sets it may be degrees off
-    scan = Scan("position", "1", _("place of the position among those of the plan"), between=False)
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         lean = np.zeros_like(motion.up)
@@ -46,4 +31,4 @@ class TableAxisError(Effect):
         return replace(truth, force=truth.force + cross(lean, truth.force))
 
     def grid(self, motion: Motion) -> Array:
-        return np.unique(motion.position[np.abs(np.sin(motion.angle / 2)) > MIN_PART_OF_TURN])
+        return np.unique(motion.position[are_parts_of_turns(motion.angle)])

@@ -24,7 +24,7 @@ class TablePositionError(Effect):
             f"lean_{i}",
             "rad",
             2 * ARC_SECOND,
-            _("about the {which} level axis of the case", which=which),
+            _("about the {which} level axis at the start", which=which),
         )
         for i, which in ((1, "first"), (2, "second"))
     )

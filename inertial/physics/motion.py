@@ -15,6 +15,7 @@ from inertial.text.messages import _
 Array = NDArray[np.float64]
 
 MIN_VERTICAL_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
+MIN_PART_OF_TURN = 1e-3  # sine of half the angle: less is whole turns
 NEARLY = 0.1  # of a direction cosine: differences that do not count
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
@@ -45,6 +46,11 @@ def level_axes(up: Array) -> tuple[Array, Array]:
 def is_vertical(up: Array, about: Array) -> bool:
     """Whether a table turns about the vertical: about a body axis that points up, or down."""
     return bool(abs(up @ about) > MIN_VERTICAL_COSINE)
+
+
+def are_parts_of_turns(angle: Array) -> NDArray[np.bool_]:
+    """Which angles, rad, are no whole turns."""
+    return np.asarray(np.abs(np.sin(angle / 2)) > MIN_PART_OF_TURN)
 
 
 def all_level_axes(ups: Array) -> Array:
