@@ -23,7 +23,7 @@ from inertial.tables import ACCEL, AXES, STATIC_PHASES
 Array = NDArray[np.float64]
 
 LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU is mounted farther off
-# By how much may turn in the case within one mean the vertical, and a level axis about it.
+# How far the vertical, or in an upright turn a level axis, may turn in the case within one mean.
 MAX_TURN_IN_MEAN, MAX_UPRIGHT = np.radians(5), np.radians(60)
 
 

@@ -193,7 +193,9 @@ def _check_peak(
     file: YamlFile, key: Key, angle: float, rate: float, acceleration: float | None
 ) -> None:
     """Refuse a turn that must stop before it has reached its rate."""
-    peak = np.sqrt(abs(angle) * (acceleration or np.inf)) / DEGREE
+    if acceleration is None:
+        return
+    peak = np.sqrt(abs(angle) * acceleration) / DEGREE
     if peak < (1 - MAX_BELOW_RATE) * abs(rate) / DEGREE:
         raise file.refuse_text(
             [*key, "rate_deg_s"],
@@ -203,7 +205,7 @@ def _check_peak(
                 "accel_deg_s2: {acceleration:g}",
                 peak=peak,
                 degrees=angle / DEGREE,
-                acceleration=(acceleration or np.inf) / DEGREE,
+                acceleration=acceleration / DEGREE,
             ),
             _("correct one of the three, as the table was set"),
         )
