@@ -86,7 +86,7 @@ SECTION = outline.Section(
     _(
         "Before and after are differences from the known value. In σ is the remaining "
         "difference over its own σ; beyond 3 the result does not describe all errors, "
-        "and the causes on page one may say why. In the figures grey is before, "
+        "and the causes in section 2 may say why. In the figures grey is before, "
         "colour after."
     ),
     (

@@ -186,7 +186,7 @@ def _table(findings: list[Record]) -> Table:
 SECTION = Section(
     "findings",
     _("What shows each cause"),
-    _("The pictures and the findings behind each cause of page one."),
+    _("The pictures and the findings behind each cause of section 2."),
     _(
         "Left, the whole log, where a wedge marks the place; right, the samples there. p is the "
         "probability of such a size if nothing is wrong. What concerns the model alone stands "

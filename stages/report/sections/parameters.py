@@ -103,7 +103,7 @@ PARAMETERS = Section(
         "reads +g. Rotations follow the right-hand rule. The result is the one on the "
         "certificate, in the archive, in the exports and in “Residuals”, “Compensation”, "
         "“Navigation performance” and “Uncertainty budget”; sections that use another fit say so. "
-        "It holds under the verdict of page one. Bias, "
+        "It is valid as far as the verdict on page one says. Bias, "
         "scale errors and cross-axis terms are estimated; mounting rotation and non-orthogonality "
         "are derived from them."
     ),
