@@ -13,7 +13,7 @@ import argparse
 import sys
 import textwrap
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
@@ -27,12 +27,14 @@ from inertial.tables.errors import Refusal
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened, visible
+from stages.diagnosis.causes import INTERPOLATED, LEFT_OUT, MASKED, MAX_MOVE, NONE
 from stages.diagnosis.declared import DECLARED
 
 LINE_WIDTH = 100
 MAX_FULL_CAUSES = 20  # of further ones only the names are listed
 APPLIED = ("applied", "confirmed")  # states of a repair
-WITHOUT_IT = ("masked", "interpolated", "left_out")  # cures
+WITHOUT_IT = (MASKED, INTERPOLATED, LEFT_OUT)  # cures
+SPOILING, WEAKENING = 3, 2  # severities
 SPOILS, SET_RIGHT, WEAKENS, GOOD_TO_KNOW = range(4)
 GRADES = {
     SPOILS: (_("spoils a result"), _("spoil a result")),
@@ -94,24 +96,29 @@ def recording_of(derived: Path) -> Recording:
         for row in rows_of(tables.ACCOUNTS.read(derived / "decode/accounts.parquet"))
         if row["kind"] == "refused"
     }
-    cured = _cured(derived / "diagnosis/causes.parquet")
-    explained = [_as_cured(each, cured) for each in compete(list(hypotheses(findings)))]
+    severities = _severities(derived / "diagnosis/causes.parquet")
+    explained = [_as_diagnosed(each, severities) for each in compete(list(hypotheses(findings)))]
     causes = sorted(explained, key=_worst_first)
     return Recording(list(no_results(derived)), causes, list(performed.values()), refused)
 
 
-def _cured(diagnosed: Path) -> set[tuple[str, str]]:
-    """Cause and sensor of what the result does without; none where there is no diagnosis."""
+def _severities(diagnosed: Path) -> dict[tuple[str, str], int]:
+    """By cause and sensor, how grave it is once cured, or not; empty without a diagnosis."""
     rows = rows_of(tables.CAUSES.read(diagnosed)) if diagnosed.exists() else []
-    return {(row["cause"], row["sensor"]) for row in rows if row["cure"] in WITHOUT_IT}
+    return {
+        (row["cause"], row["sensor"]): SPOILING if row["cure"] == NONE else WEAKENING
+        for row in rows
+        if row["cure"] in WITHOUT_IT or (row["cure"] == NONE and (row["moves"] or 0.0) > MAX_MOVE)
+    }
 
 
-def _as_cured(each: Explained, cured: set[tuple[str, str]]) -> Explained:
-    """The same, which spoils nothing where its records are left out, as the diagnosis has it."""
+def _as_diagnosed(each: Explained, severities: Mapping[tuple[str, str], int]) -> Explained:
+    """The same, as grave as it is by the diagnosis: nothing spoils of which no record is used."""
     row = each.cause.row
-    if row["severity"] < 3 or (row["cause"], row["sensor"]) not in cured:
+    severity = severities.get((row["cause"], row["sensor"]))
+    if severity is None or (severity == WEAKENING and row["severity"] < SPOILING):
         return each
-    return replace(each, cause=replace(each.cause, row={**row, "severity": 2}))
+    return replace(each, cause=replace(each.cause, row={**row, "severity": severity}))
 
 
 def _worst_first(each: Explained) -> tuple[int, float, int, str]:
@@ -126,7 +133,7 @@ def _grade(each: Explained) -> int:
     repair, severity = each.cause.repair, each.cause.row["severity"]
     if repair is not None and repair["state"] in APPLIED:
         return SET_RIGHT
-    return {3: SPOILS, 2: WEAKENS}.get(severity, GOOD_TO_KNOW)
+    return {SPOILING: SPOILS, WEAKENING: WEAKENS}.get(severity, GOOD_TO_KNOW)
 
 
 def as_text(recording: Recording, campaign: str) -> str:

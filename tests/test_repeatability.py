@@ -370,6 +370,42 @@ def test_power_cycles_are_simulated_and_are_no_finding():
     assert len(own) == 8 and own.abs().to_numpy().max() > 10 * np.radians(0.012) / 60 / np.sqrt(60)
 
 
+def test_runs_are_not_usable_until_it_is_stated_that_the_biases_are_others(tmp_path):
+    """Three logs of one clock each. Then 30 mg are no tilt, of which 1 − cos would be 400 ppm."""
+    document = deepcopy(
+        chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
+    )
+    document["receiver"] |= {"message": "columns", "line_end": "lf"}
+    document["campaign"]["instrument"] = {"name": "made up", "rate_hz": 100}
+    document["handling"]["change_s"] = 10
+    document["campaign"]["site"] |= {"gravity_m_s2": 9.8088, "gravity_sigma_m_s2": 1e-5}
+    document["effects"]["turn_on_bias"] = {"gyro_deg_h": 40, "accelerometer_micro_g": 30_000}
+    plan = document["campaign"]["plan"]
+    for each in plan:
+        each.pop("power_cycle", None)
+    plan[12:] = [each | {"id": f"{each['id']}-{run}"} for run in (2, 3) for each in plan[:6]]
+    for number, each in enumerate(plan):
+        each["log"] = f"run-{max(1, number // 6)}.csv"
+    for first in (12, 18):
+        plan[first]["power_cycle"] = True
+    raw = chain.simulate(document, tmp_path / "raw")
+    stated = chain.run(raw, tmp_path / "stated", "diagnosis", chain.BESIDE)
+    assert set(stated["diagnosis/verdict"]["verdict"]) == {"usable"}
+    result = stated["diagnosis/result"].set_index(["sensor", "parameter"]).loc["accel"]
+    for i, axis in enumerate("xyz"):
+        scale = result.loc[f"scale_{axis}"]
+        true = document["truth"]["accelerometer"]["matrix"][i][i] - 1
+        assert scale["value"] == pytest.approx(true, abs=4 * scale["sigma"])
+        assert scale["sigma"] < 2e-5
+    path = raw / "campaign.yaml"
+    path.write_text(path.read_text().replace("power_cycle: true", "power_cycle: false"))
+    tables = chain.run(raw, tmp_path / "left_out", "diagnosis", chain.BESIDE)
+    causes = tables["diagnosis/causes"].set_index("cause")
+    assert {"gyro_bias_per_log", "accel_bias_per_log"} <= set(causes.index)
+    assert causes.loc["accel_bias_per_log", "action"].startswith("If the IMU was switched off")
+    assert set(tables["diagnosis/verdict"]["verdict"]) == {"not_usable"}
+
+
 def test_beside_power_cycles_an_effect_is_found_and_they_are_estimated_beside_it():
     document = deepcopy(
         chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document

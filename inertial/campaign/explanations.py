@@ -86,6 +86,7 @@ _KIND = {
 # What a recording shows of its circumstances: no fault; whether it matters follows from the model.
 CIRCUMSTANCES = ("temperature_drift",)
 MAX_WALK_P = 0.005  # as of all names together, of a random walk that is a cause and no mere noise
+PER_RUN = ("accel_bias_per_log", "gyro_bias_per_log")
 MISFITS = ("unexplained", "unknown_structure")
 PERFORMANCE = (
     "incomplete_turn",
@@ -223,6 +224,8 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         return _explains_position(cause, other)
     if other.cause == "bias_jump" and _without_law(cause):
         return cause.sensor == other.sensor
+    if cause.cause == "bias_removed" and other.cause in PER_RUN:  # each log lacks a mean of its own
+        return same_sensor(cause, other)
     if _uncertain(other):
         return _explains_uncertain(cause, other)
     if other.named:

@@ -202,7 +202,8 @@ def _drifting(
     names = [("parameter", str(i)) for i in range(UNKNOWNS)] + [("gravity", "")]
     names += [("effect", name) for name in effect_sigma]
     prior = np.concatenate([PRIOR, [reference.gravity], np.zeros(len(effect_sigma))])
-    rows = linear_rows(statics, reference.gravity, about, prior, list(effect_sigma))
+    effects = list(effect_sigma)
+    rows = linear_rows(statics, reference.gravity, about, prior, effects, reference.position_sigma)
     noise = np.hypot([static.sigma for static in statics], scatter)
     same: dict[Hashable, list[int]] = {}
     for i, key in enumerate(keys):
@@ -239,8 +240,12 @@ def linear_rows(
     about: Triad,
     prior: Array,
     effects: Sequence[str],
+    position_sigma: float = np.inf,
 ) -> Array:
-    """Coefficients of the s shared unknowns and of four tilts, and the observed, (n, 3, s + 5)."""
+    """Coefficients of the s shared unknowns and of four tilts, and the observed, (n, 3, s + 5).
+
+    `position_sigma`: of the planned attitudes, rad.
+    """
     s = len(prior)
     ups = np.array([static.up for static in statics])
     along = ups @ about.matrix.T
@@ -256,7 +261,9 @@ def linear_rows(
     for i in range(tilts.shape[1]):
         rows[:, :, s + i] = cross(tilts[:, i], gravity * ups) @ about.matrix.T
     means = np.array([static.mean for static in statics])
-    rows[:, :, -1] = means + gravity * (1 + _versed(statics, ups, about))[:, None] * along
+    since = _since_switch_on(statics, gravity * ups, about, gravity * position_sigma)
+    versed = _versed(statics, ups, about, means - since)
+    rows[:, :, -1] = means + gravity * (1 + versed)[:, None] * along
     rows[:, :, -1] -= rows[:, :, :s] @ prior
     return rows
 
@@ -271,13 +278,39 @@ def tilt_axes(statics: Sequence[StaticForce]) -> Array:
     return in_force(case, level)
 
 
-def _versed(statics: Sequence[StaticForce], ups: Array, about: Triad) -> Array:
-    """1 − cos of the angle from the planned upward direction to the one that is read, (n,).
+def _since_switch_on(
+    statics: Sequence[StaticForce], forces: Array, about: Triad, tilted: float
+) -> Array:
+    """What the readings since a switch-on differ by from those of all, (n, 3), m/s².
+
+    Without it a bias would pass for a tilt of all positions. `forces`: by the planned attitudes,
+    (n, 3); `tilted`: sigma of what a tilt adds across them, m/s².
+    """
+    parts = np.array([s.stretch.switch_on if s.stretch is not None else 0 for s in statics])
+    left = np.array([static.mean for static in statics]) - about.bias - forces @ about.matrix.T
+    since = np.zeros_like(forces)
+    if len(set(parts)) == 1 or not np.isfinite(left).all():
+        return since
+    noise = np.array([static.sigma for static in statics]) ** 2
+    at_rest = np.array([not static.turning for static in statics])
+    along = np.einsum("ni,nj->nij", forces, forces)
+    along /= np.sum(forces**2, axis=1)[:, None, None]
+    across = np.eye(3) - along
+    mean = np.mean(noise, axis=1)[:, None, None]
+    weights = along / mean + across / (mean + tilted**2)
+    for part in set(parts):
+        own = (parts == part) & (at_rest | ~np.any(at_rest & (parts == part)))
+        right = np.einsum("nij,nj->i", weights[own], left[own])
+        since[parts == part] = np.linalg.pinv(weights[own].sum(axis=0), hermitian=True) @ right
+    return since
+
+
+def _versed(statics: Sequence[StaticForce], ups: Array, about: Triad, means: Array) -> Array:
+    """1 − cos of the angle from the planned upward direction to that of the `means`, (n,).
 
     0 where it cannot be told yet. While the table turns, the pull at the lever arm would pass for a
     tilt, which is that of the rests in the same position.
     """
-    means = np.array([static.mean for static in statics])
     force = np.linalg.solve(about.matrix, (means - about.bias).T).T
     cosine = np.sum(force * ups, axis=1) / np.linalg.norm(force, axis=1)
     versed = np.clip(1 - cosine / np.linalg.norm(ups, axis=1), 0.0, 1.0)

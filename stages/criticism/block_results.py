@@ -26,7 +26,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import quantity
 from stages.criticism import block_sentences as sentences
-from stages.criticism.bias_drift import Walk, drift_name
+from stages.criticism.bias_drift import Walk, drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import (
     SENSORS,
@@ -43,6 +43,8 @@ from stages.criticism.without_law import WithoutLaw
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
 WALK = "gyro_random_walk"
+MAX_SCATTERED = 2  # manoeuvres of a run, each with a bias of its own by their scatter
+BIAS_UNITS = {"gyro": "rad/s", "accel": "m/s²"}
 WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 # Effects by the beginning of their names that change the readings of a sensor though not its own.
 SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
@@ -194,21 +196,28 @@ class BlockResults:
         positions = self._positions(effect)
         identifier = finding_id(cause.effect, self.mount)
         clear = cause.verdict in NAMED
+        sensor = self.selection.sensor(cause)
+        if cause.effect == per_log_name(sensor):
+            difference = self._between_runs(cause)
+            sentence = sentences.per_log_sentence(cause, difference, BIAS_UNITS[sensor])
+            size = (difference, BIAS_UNITS[sensor]) if self._long_runs() else (cause.snr, "sigma")
+        else:
+            names = [name for name, _ in positions]
+            sentence = sentences.cause_sentence(cause, effect, parameters, names)
+            size = cause.snr, "sigma"
         yield (
             "findings",
             {
                 "id": identifier,
                 "mount": self.mount,
                 "cause": cause.effect,
-                "sensor": self.selection.sensor(cause),
+                "sensor": sensor,
                 "count": 1,
-                "size": cause.snr,
-                "unit": "sigma",
+                "size": size[0],
+                "unit": size[1],
                 "p_value": cause.p_value,
                 "severity": 2,
-                "sentence": sentences.cause_sentence(
-                    cause, effect, parameters, [name for name, _ in positions]
-                ),
+                "sentence": sentence,
                 "consequence": sentences.CONSEQUENCE
                 if clear
                 else sentences.CONSEQUENCE_WITHOUT_LAW,
@@ -223,8 +232,8 @@ class BlockResults:
                 "split_stated": clear if split else None,
             },
         )
-        if cause.effect == drift_name(self.selection.sensor(cause)):
-            others = self.lawless.members[self.selection.sensor(cause)]
+        if cause.effect == drift_name(sensor):
+            others = self.lawless.members[sensor]
             yield from member_rows(identifier, self.mount, (*cause.members, *others))
         else:
             shares = cause.weights, cause.captured
@@ -232,6 +241,18 @@ class BlockResults:
         for rank, (position, statistic) in enumerate(positions, 1):
             row = {"finding": identifier, "mount": self.mount, "rank": rank}
             yield "cause_positions", row | {"position": position, "statistic": statistic}
+
+    def _between_runs(self, cause: Cause) -> float:
+        """The largest difference between the biases of two runs; that of the first is 0 here."""
+        others = [i for c in self.selection.named.causes if c is not cause for i in c.columns]
+        chosen = list(dict.fromkeys([*cause.columns, *others]))
+        values = self.selection.evidence.total.estimate(chosen)[0][: len(cause.columns)]
+        return float(np.ptp(np.vstack([np.zeros(3), values.reshape(-1, 3)]), axis=0).max())
+
+    def _long_runs(self) -> bool:
+        """Whether a run holds so many manoeuvres that a scatter of these does not stand for it."""
+        motion = self.campaign.motion
+        return len(np.unique(motion.visit)) > MAX_SCATTERED * len(np.unique(motion.run))
 
     def _positions(self, effect: Effect | None) -> list[tuple[str, float]]:
         """The positions, or turns, that an effect of a single one may be at, and its χ² drop."""

@@ -49,8 +49,13 @@ CONSEQUENCE_WITHOUT_LAW = _(
 )
 
 PER_LOG = {
-    "gyro_bias_per_log": _("The biases of the gyros are others in each run.{others}"),
-    "accel_bias_per_log": _("The biases of the accelerometers are others in each run.{others}"),
+    "gyro_bias_per_log": _(
+        "The biases of the gyros are others in each run: they differ by up to {size}.{others}"
+    ),
+    "accel_bias_per_log": _(
+        "The biases of the accelerometers are others in each run: they differ by up to {size}."
+        "{others}"
+    ),
 }
 DRIFT = _("The biases drift in a way that no effect of the catalogue explains{nearest}.")
 
@@ -76,6 +81,16 @@ SPLIT_TOO_WEAK = _(
 )
 
 
+def per_log_sentence(cause: Cause, difference: float, si: str) -> str:
+    """Of biases that are others in each run; `difference`: the largest, in its SI unit."""
+    others = _others(cause)
+    unit = quantity("bias", si).laboratory
+    return PER_LOG[cause.effect].format(
+        size=f"{significant(unit.of(difference))} {unit.name}",
+        others=_(" Or it is {others}.", others=_(" or ").join(others)) if others else "",
+    )
+
+
 def cause_sentence(
     cause: Cause, effect: Effect | None, parameters: Sequence[Estimated], positions: Sequence[str]
 ) -> str:
@@ -83,11 +98,7 @@ def cause_sentence(
 
     `positions`: those that it may be at, if it is an effect of a single position.
     """
-    others = [in_words(member) for member in cause.members if member != cause.effect]
-    if effect is None and cause.effect in PER_LOG:
-        return PER_LOG[cause.effect].format(
-            others=_(" Or it is {others}.", others=_(" or ").join(others)) if others else ""
-        )
+    others = _others(cause)
     if effect is None:
         return DRIFT.format(
             nearest=_("; nearest is {others}", others=", ".join(others)) if others else ""
@@ -97,6 +108,11 @@ def cause_sentence(
     return effect_sentence(
         cause.effect, effect.cause, parameters, cause.verdict, cause.members, positions
     )
+
+
+def _others(cause: Cause) -> list[str]:
+    """The other members of its class, in words."""
+    return [in_words(member) for member in cause.members if member != cause.effect]
 
 
 def not_named_sentence(effect: Effect, test: EffectTest, reason: str, blind: str) -> str:

@@ -90,7 +90,8 @@ class Selection:
     def without_certain_names(self, sensors: Sequence[str]) -> "Selection":
         """The same with structure in the residuals of these sensors, so no certain name there.
 
-        Nor of an effect of both sensors that would not be named without their readings.
+        Nor of an effect of both sensors that would not be named without their readings. That
+        biases are others in each run is no law, and stays.
         """
         if not sensors:
             return self
@@ -103,7 +104,9 @@ class Selection:
                 of_structure[cause.effect] = max(own, key=own.__getitem__)
         moved = replace(self, of_structure=of_structure)
         causes = tuple(
-            replace(cause, verdict=UNKNOWN_STRUCTURE) if moved.sensor(cause) in sensors else cause
+            replace(cause, verdict=UNKNOWN_STRUCTURE)
+            if (sensor := moved.sensor(cause)) in sensors and cause.effect != per_log_name(sensor)
+            else cause
             for cause in self.named.causes
         )
         return replace(moved, named=replace(self.named, causes=causes))

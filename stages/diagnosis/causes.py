@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from inertial.campaign.explanations import MIN_SPOILING, Explained
+from inertial.campaign.explanations import MIN_SPOILING, PER_RUN, Explained
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,
@@ -281,6 +281,8 @@ class Evidence:
             (result.sensor, result.mount) for result in own
         }:
             return CURVE, None, None
+        if cause.cause in PER_RUN and cause.row["unit"] != "sigma":  # no scatter stands for it
+            return NONE, _moved_by_runs(cause.row["size"], own), None
         if cause.stage == MODEL:
             return self._cure_of_effect(cause, own)
         if cause.cause == CLOCK and cause.sensor == "accel":
@@ -354,6 +356,12 @@ def _moved_by_turning(
     angle = max((result.angle(MOUNTING_SHIFT) for result in modelled), default=0.0)
     sigmas = [result.cross_sigma for result in others]
     return [angle / sigma for sigma in sigmas if sigma and angle]
+
+
+def _moved_by_runs(difference: float, own: Sequence[SensorResult]) -> float | None:
+    """By how many sigma the bias is that of no run, where that of two runs differs."""
+    sigmas = [sigma for result in own if (sigma := result.bias_sigma) is not None]
+    return difference / 2 / min(sigmas) if sigmas else None
 
 
 def _moved_by_clock(error: float, own: Sequence[SensorResult]) -> float | None:

@@ -158,7 +158,7 @@ def test_gyros_zeroed_at_the_beginning_of_each_log_keep_their_scale_factors(tmp_
     """By 4.7 s, which are no whole windows. Else it was a structure that nobody explained."""
     tables = zeroed(tmp_path, 470)
     causes = tables["diagnosis/causes"].set_index("cause")
-    assert set(causes.index) == {"bias_removed", "gyro_bias_per_log"}
+    assert set(causes.index) == {"bias_removed"}
     assert "over about the first 5.0 s of 12 logs" in causes.loc["bias_removed", "sentence"]
     verdicts = tables["diagnosis/verdict"].set_index("sensor")["verdict"]
     assert verdicts["gyro"] == "usable_within_limits" and verdicts["accel"] == "usable"
