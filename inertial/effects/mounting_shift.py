@@ -36,6 +36,7 @@ class MountingShift(Effect):
         for axis in "xyz"
     )
     sizes = of_tables(ARC_SECOND, 10, 60)
+    vector = True
     thinkable = 1000.0  # degrees, where a screw comes loose
     scan = Scan("t0", "s", _("time of the shift since the first sample of all logs"))
 

@@ -141,7 +141,8 @@ class Effect(ABC):
 
     `absorbed_by`: what every calibration estimates or knows that has the same effect on readings,
     so that it is not observable by any plan of these manoeuvres; `blind`: why it is not observable
-    in a certain campaign; `of_stillness`: what the sway of a hand at rest would be taken for.
+    in a certain campaign; `of_stillness`: what the sway of a hand at rest would be taken for;
+    `vector`: its parameters are the components of a vector of any direction.
 
     `scan`: a nonlinear parameter. The effect in the catalogue is then a family whose
     `candidates` for a campaign have one value each, `at`; each is an effect like others.
@@ -165,6 +166,7 @@ class Effect(ABC):
     finding: ClassVar[str] = ""
     absorbed_by: ClassVar[str] = ""
     of_stillness: ClassVar[bool] = False
+    vector: ClassVar[bool] = False
     scan: ClassVar[Scan | None] = None
     terms: ClassVar[tuple[Term, ...]] = ()
     stays: ClassVar[str] = _("the table, the site or the mounting causes it, and the IMU feels it")

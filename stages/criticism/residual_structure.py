@@ -135,6 +135,9 @@ def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
     They are left out one after the other, each time that without which the most significant
     structure explains least; those that turn out not to be needed are put back.
     """
+    left_out, remaining = list[str](), tested.of(sensor)
+    if not remaining:
+        return ()
     campaign = tested.fitted.campaign
     names = list(dict.fromkeys(campaign.manoeuvres_of(sensor)))
 
@@ -144,7 +147,6 @@ def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
     def found(some: Sequence[str]) -> list[Structure]:
         return _tests(without(some), tested.noise_degrees, tested.level).of(sensor)
 
-    left_out, remaining = list[str](), tested.of(sensor)
     while remaining and len(left_out) < min(MAX_CARRYING, len(names) // 2):
         others = [name for name in names if name not in left_out]
         explained = [_explained(without([*left_out, name]), remaining[0]) for name in others]

@@ -13,7 +13,9 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.switch_ons import covering
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
+from inertial.physics.effect import Effect
 from inertial.physics.motion import Motion
 from inertial.tables import BODY, OF_TRIAD
 from inertial.text.messages import _
@@ -171,6 +173,28 @@ def solved(
     return Solved(
         sensor, rows, covariance, estimate, random_walk, effects, mount, constants, method
     )
+
+
+def unseen_components(effects: Sequence[Effect], solution: Solved) -> dict[str, float]:
+    """The sigma of each component of a vector of any direction that no reading shows, by column.
+
+    They are drawn as those that are seen: of k of these, by Student's distribution of k degrees.
+    """
+    rows = {row["parameter"]: row["value"] for row in solution.of_effects}
+    found: dict[str, float] = {}
+    for effect in effects:
+        if not effect.vector:
+            continue
+        names = [f"{effect.name}.{parameter.name}" for parameter in effect.parameters]
+        seen = [rows[name] for name in names if rows.get(name) is not None]
+        if seen:
+            size = covering(np.sqrt(np.mean(np.square(seen))), len(seen) + 1)
+            found |= {
+                column: float(size)
+                for name, column in zip(names, effect.columns, strict=True)
+                if name not in rows
+            }
+    return found
 
 
 # ---- The change of each of the 24 parameters by the effects.

@@ -15,7 +15,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from inertial.estimation.least_squares import System
+from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.mixture import mixture
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
@@ -109,6 +109,7 @@ def over_moments(
 
     `of_both`: the effects that were named in both sensors; `system_of`: as above. One moment is
     varied at a time, the others are those that were named; of several with one name none is.
+    Only the parameters that the sensor shows at the moment named are unknown at the others.
     """
     beside = [other for other in of_both if sets_in(other)]
     names = [effect.name for effect in effects]
@@ -129,19 +130,22 @@ def _over_moments_of(
     moments = [one for one in effect.candidates(motion) if one.label != effect.label]
     system = compressed(system_of(moments))
     scanned = {name for one in (effect, *moments) for name in one.columns}
-    others = {name for kind, name in system.names if kind == "effect"} - scanned
+    there = {name for kind, name in system.names if kind == "effect"}
+    others = there - scanned
+    shown = [i for i, name in enumerate(effect.columns) if name in there]
+    seen = [i for i in shown if _determined(solution.estimate, effect.columns[i])]
     label = dict(pair for e in effects for pair in zip(of_effect(e), e.columns, strict=True))
     named = solution.estimate
     excess = max(1.0, named.chi_squared / max(named.degrees, 1))
 
     def fitted(one: Effect) -> tuple[float, Array, Array] | None:
         """Chi-squared, values and covariance in the order of the rows; None: not determined."""
-        fit = with_columns(system, frozenset({*others, *one.columns})).solve_shared()
-        of_one = dict(zip(effect.columns, one.columns, strict=True))
+        of_one = {effect.columns[i]: one.columns[i] for i in shown}
+        fit = with_columns(system, frozenset({*others, *of_one.values()})).solve_shared()
         column = {name: i for i, (kind, name) in enumerate(fit.names) if kind == "effect"}
         wanted = [label[row["parameter"]] for row in solution.of_effects]
         own = [*range(UNKNOWNS), *(column[of_one.get(name, name)] for name in wanted)]
-        if not all(fit.determined[column[name]] for name in one.columns):
+        if not all(_determined(fit, one.columns[i]) for i in seen):
             return None
         return fit.chi_squared, fit.values[own], fit.covariance[np.ix_(own, own)]
 
@@ -165,6 +169,10 @@ def _over_moments_of(
         for row, by, variance in zip(solution.rows, shift, np.diag(covariance), strict=True)
     ]
     return replace(solution, rows=rows, covariance=covariance)
+
+
+def _determined(fit: Estimate, column: str) -> bool:
+    return bool(fit.determined[fit.names.index(("effect", column))])
 
 
 def _shared_with(moments: Sequence[Effect], beside: Sequence[Effect]) -> Array:

@@ -32,7 +32,7 @@ from stages.extension.candidates import (
 from stages.extension.combinations import combinations_of, compared
 from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
 from stages.extension.declared import DECLARED
-from stages.extension.estimates import Solved, moved, solved
+from stages.extension.estimates import Solved, moved, solved, unseen_components
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.models import (
     PRIOR_SIGMA,
@@ -256,17 +256,30 @@ class Extension:
         told = shown[candidate.method].of_effects if candidate.method in shown else []
         sized = {row["parameter"]: (row["value"], row["sigma"]) for row in told if row["sigma"]}
         sized = {name: sized[name] for name in candidate.absorbed if name in sized}
-        columns = frozenset({*candidate.columns, *sized})
-        own = given(with_columns(system, columns), sized)
         walk = self.random_walks[SENSORS.index(sensor)]
         motion = models.extended.motion
-        solution = solved(sensor, own, candidate, motion, walk, sizes, self.data)
 
-        def system_of(further: Sequence[Effect]) -> System:
+        def system_of(further: Sequence[Effect] = ()) -> System:
             every = models.extended.system(sensor, [*candidate.effects, *further], PRIOR_SIGMA)
             assert every is not None  # there is one without them
             names = {name for effect in further for name in effect.columns}
-            return given(with_columns(every, columns | names), sized)
+            columns = frozenset({*candidate.columns, *sized, *names})
+            alike = {
+                column: sized[name]
+                for effect in candidate.effects
+                for other in further
+                if other.name == effect.name
+                for name, column in zip(effect.columns, other.columns, strict=True)
+                if name in sized
+            }
+            return given(with_columns(every, columns), sized | alike)
+
+        own = given(with_columns(system, frozenset({*candidate.columns, *sized})), sized)
+        solution = solved(sensor, own, candidate, motion, walk, sizes, self.data)
+        if unseen := unseen_components(candidate.effects, solution):
+            sized |= {name: (0.0, sigma) for name, sigma in unseen.items()}
+            candidate = replace(candidate, absorbed=(*candidate.absorbed, *unseen))
+            solution = solved(sensor, system_of(), candidate, motion, walk, sizes, self.data)
 
         if not solution.effects:
             return None
