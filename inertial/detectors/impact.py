@@ -101,8 +101,12 @@ class Impact(Detector):
                 channels=counted(blow.channels, "channel"),
                 seconds=significant(blow.seconds, 2),
             ),
-            _("Its records say nothing of the rest or the turn; what follows reads as before."),
-            _("They are masked: left out of a rest, interpolated in a turn at steady rate."),
+            _(
+                "Its records say nothing of the rest or the turn, and are masked. If it turned the "
+                "IMU in its fixture, where no position is recorded on both sides of it, the "
+                "cross-axis terms have taken that."
+            ),
+            _("After a blow record a position again that was recorded before it."),
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from inertial.campaign.explanations import MIN_SPOILING, PER_RUN, Explained
@@ -78,7 +78,7 @@ class Cause:
     `moves`: largest shift of a parameter of the result that it causes or, undone, caused, in its
     sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns;
     `modelled`: those of them whose result has it in its model; `freed`: the manoeuvre whose own
-    error it is there.
+    error it is there; `turns`: by how many sigma one of its class turns a sensor's axes.
     """
 
     members: tuple[Explained, ...]
@@ -90,6 +90,7 @@ class Cause:
     gain: str | None = None
     modelled: frozenset[str] = frozenset()
     freed: str | None = None
+    turns: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, sensor: str) -> Cause:
         """What it is for the result of one sensor, with its consequences there."""
@@ -98,7 +99,8 @@ class Cause:
             for member in self.members
         )
         cure = MODELLED if sensor in self.modelled else self.cure
-        return replace(self, members=members, cure=cure)
+        moves = max(filter(None, (self.moves, self.turns.get(sensor))), default=self.moves)
+        return replace(self, members=members, cure=cure, moves=moves)
 
     @property
     def main(self) -> Hypothesis:
@@ -251,7 +253,8 @@ class Evidence:
         elif cure == NONE and modelled:
             done = ONLY_MODELLED.format(sensors=_(" and ").join(SENSORS[s] for s in modelled))
         sensors = tuple(dict.fromkeys(result.sensor for result in own))
-        return Cause(members, sensors, cure, done, moves, drop, _gain(main, drop), modelled, freed)
+        gain, turns = _gain(main, drop), {} if freed else _turns(main, own)
+        return Cause(members, sensors, cure, done, moves, drop, gain, modelled, freed, turns)
 
     def _own(self, cause: Hypothesis) -> Iterator[SensorResult]:
         """The results that a cause concerns: of its sensor, and where the model has its effect."""
@@ -260,7 +263,7 @@ class Evidence:
                 continue
             if self._in_turns(cause) and sensor == "accel":
                 continue  # no mean of theirs is of a turn
-            of_both = cause.sensor is None or cause.cause == MOUNTING_SHIFT
+            of_both = cause.sensor is None or MOUNTING_SHIFT in cause.causes
             of_both = of_both or sensor in {rival["sensor"] for rival in cause.rivals}
             if of_both or cause.sensor == sensor or cause.causes & result.effects.keys():
                 yield result
@@ -345,15 +348,26 @@ def _moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
     return relative / min(sigmas) if sigmas else None
 
 
+def _turns(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
+    """By how many sigma it turns the axes of a sensor that does not show it, if it is that shift.
+
+    Where a shift is one of a class.
+    """
+    if MOUNTING_SHIFT not in cause.causes - {cause.cause}:
+        return {}
+    others = [result for result in own if not result.shows({MOUNTING_SHIFT})]
+    return {r.sensor: move for r in others for move in _moved_by_turning(own, [r])}
+
+
 def _moved_by_turning(
-    modelled: Sequence[SensorResult], others: Sequence[SensorResult]
+    showing: Sequence[SensorResult], others: Sequence[SensorResult]
 ) -> list[float]:
     """Upper bound, in sigma, of the change of cross-axis terms of the other sensor.
 
     All its rotations may be before or all after the shift: then its terms hold for one of the two
     mountings, and its residuals show nothing.
     """
-    angle = max((result.angle(MOUNTING_SHIFT) for result in modelled), default=0.0)
+    angle = max((result.angle(MOUNTING_SHIFT) for result in showing), default=0.0)
     sigmas = [result.cross_sigma for result in others]
     return [angle / sigma for sigma in sigmas if sigma and angle]
 

@@ -77,8 +77,10 @@ class SensorResult:
         return self._smallest(CROSS)
 
     def angle(self, effect: str) -> float:
-        """The largest angle of an effect in the model of the result, rad; 0 without it."""
-        own = [r for r in self.chosen.rows if r["effect"] == effect and r["unit"] == "rad"]
+        """The largest angle of an effect by the likeliest candidate that has it, rad; 0: none."""
+        method = self.effects.get(effect)
+        rows = [] if method is None else self.candidates[method].rows
+        own = [r for r in rows if r["effect"] == effect and r["unit"] == "rad"]
         return max((abs(row["value"]) for row in own), default=0.0)
 
     def _smallest(self, names: Collection[str]) -> float | None:

@@ -1,5 +1,9 @@
 """What a time constant, and the moment of a jump, are uncertain by is in the sigmas."""
 
+import sys
+from itertools import product
+from pathlib import Path
+
 import chain
 import numpy as np
 import pytest
@@ -9,8 +13,12 @@ from inertial.effects import CATALOGUE
 from inertial.estimation.least_squares import System
 from inertial.estimation.triad import linear_names
 from inertial.physics.motion import stretches
+from inertial.text.units import ARC_SECOND
 from stages.extension.estimates import Solved
 from stages.extension.scanned_values import with_scanned_values
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "hidden"))
+import hidden_plans
 
 TAU, NOISE = 900.0, 1e-6  # s, rad/s
 SIZES = np.array([9e-6, -9e-6, -3e-6])  # rad/s
@@ -92,3 +100,22 @@ def test_a_jump_that_may_have_been_in_either_of_two_pauses_leaves_a_scale_factor
     assert abs(scale["value"] - true) < 2 * scale["sigma"]
     # 200 ppm are either of the two from their middle.
     assert scale["sigma"] == pytest.approx(abs(jump) / 4 * 1e-6, rel=0.3)
+
+
+def test_what_no_reading_shows_of_a_shift_in_the_fixture_is_in_the_sigmas():
+    """In its middle y-up shows no rotation about y; what is left after it takes that for others."""
+    document = hidden_plans.stops(seed=11)
+    rotation = {"rotation_arcsec": [120.0, -150.0, 140.0], "at_s": 900.0}
+    document["effects"] = {"mounting_shift": rotation}
+    results = chain.in_memory_of(document, "diagnosis", chain.BESIDE)
+    assert set(results["diagnosis/verdict"]["verdict"]) == {"usable_within_limits"}
+    result = results["diagnosis/result"].set_index(["sensor", "parameter"])
+    for sensor, name in (("accel", "accelerometer"), ("gyro", "gyro")):
+        truth = np.array(document["truth"][name]["matrix"]) - np.eye(3)
+        for (i, one), (j, other) in product(enumerate("xyz"), enumerate("xyz")):
+            row = result.loc[sensor, f"scale_{one}" if i == j else f"cross_{one}{other}"]
+            assert abs(row["value"] - truth[i, j]) < 4 * row["sigma"]
+        thetas = [result.loc[sensor, f"mounting_shift.theta_{axis}"] for axis in "xyz"]
+        unseen = max(thetas, key=lambda row: row["sigma"])
+        assert abs(unseen["value"]) < unseen["sigma"] / 10  # nothing is known but a size
+        assert 100 * ARC_SECOND < unseen["sigma"] < 1000 * ARC_SECOND
