@@ -11,12 +11,13 @@ from commands.draft.columns import Triad
 from commands.draft.manoeuvres import Manoeuvre, missing
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
+from commands.draft.timing import Timing
 from commands.new_campaign import comment, flow, in_flow, scalar
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole
 
 HAND_POSITION, TABLE_SIGMA = 3600, 180  # arc seconds, of what a person or an unknown table sets
-HAND_TURN, FEW_TURNS = 10.0, 3  # °, sigma of an angle by hand; turns that show it
+HAND_TURN, FEW_TURNS = 8.0, 3  # °, sigma of an angle by hand; turns that show it
 BEST_HAND_TURN = 5.0  # degrees, sigma of an angle by hand that the gyros confirm
 TABLE_RATE = 1000  # ppm, of a table of which nothing is known
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
@@ -144,10 +145,10 @@ def _questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) 
         percent=100 * GRAVITY_SIGMA / GRAVITY,
     )
     for kind in kinds:
-        if kind.timing.guessed and kind.timing.unit in (None, "sample"):
+        if _without_clock(kind.timing):
             yield _(
-                "rate_hz: {log} has no clock; how many samples a second are there? Gyros are as "
-                "wrong as this rate.",
+                "rate_hz: {log} has no clock; how many samples a second are there? Count sizes of "
+                "gyros go with the rate: draft it again with RATE=",
                 log=_logs(kind),
             )
         if kind.gyro is not None and kind.gyro.axes.moved:
@@ -171,11 +172,12 @@ def _evidence(kind: Kind) -> Iterator[str]:
     rows = sum(logs[0].rows for logs in {id(p.logs): p.logs for p in kind.parts}.values())
     seconds = sum(part.series.seconds for part in kind.parts)
     yield _(
-        "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz; {why}",
+        "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz{assumed}; {why}",
         logs=_logs(kind),
         rows=whole(rows),
         seconds=seconds,
         rate=significant(timing.rate),
+        assumed=_(", a rate that is assumed") if _without_clock(timing) else "",
         why=timing.evidence,
     )
     which = []
@@ -188,6 +190,11 @@ def _evidence(kind: Kind) -> Iterator[str]:
             yield f"{word}: {scale.evidence}"
     if columns.unused:
         yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
+
+
+def _without_clock(timing: Timing) -> bool:
+    """Whether samples are counted at a rate that nothing states."""
+    return timing.guessed and timing.unit in (None, "sample")
 
 
 def _logs(kind: Kind) -> str:

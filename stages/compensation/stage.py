@@ -78,7 +78,10 @@ def compensation(
     attitudes = [_by_hand(data, measurements.get(data.mount, NOTHING)) for data in mounts]
     for data, by_hand in zip(mounts, attitudes, strict=True):
         measurement = measurements.get(data.mount, NOTHING)
-        scatter = _scatters(fits, data.mount) if by_hand.by_hand else _between_switch_ons(data)
+        if by_hand.by_hand:
+            scatter = _scatters(fits, data.mount)
+        else:
+            scatter = _deviations(data, measurement, fits)
         rows += [check.row(data.mount) for check in checks(by_hand, measurement, scatter)]
         figures += characteristics(data, measurement, by_counts)
         shares += budget_rows(data, measurement, fits)
@@ -140,11 +143,26 @@ def _by_hand(data: CampaignData, measurement: Measurement) -> CampaignData:
     return with_attitudes(data, triad)
 
 
-def _between_switch_ons(data: CampaignData) -> tuple[Array, Array]:
-    """What biases differ by between switch-ons, of accelerometers and gyros; the result has one."""
-    sizes = (data.drift(sensor).switch_on for sensor in ("accel", "gyro"))
-    accel, gyro = (np.zeros(3) if size is None else size for size in sizes)
-    return accel, gyro
+def _deviations(
+    data: CampaignData, measurement: Measurement, fits: Sequence[Row]
+) -> tuple[Array, Array]:
+    """What biases are off by, of accelerometers and gyros, where the result has one of each.
+
+    From one switch-on to the next, by a scatter of the manoeuvres, and by a random walk, which at
+    any time of T is K √(T/6) from its mean.
+    """
+    time, _warm = data.course
+    seconds = float(np.ptp(time[np.isfinite(time)])) if np.isfinite(time).any() else 0.0
+
+    def of(result: SensorResult) -> Array:
+        between = data.drift(result.sensor).switch_on
+        fit = (result.triad is not None and _fit(fits, data.mount, result)) or {}
+        scatter, walk = (fit.get(name) or 0.0 for name in ("scatter", "random_walk"))
+        sizes = [np.full(3, scatter), np.full(3, walk * np.sqrt(seconds / 6))]
+        sizes += [] if between is None else [between]
+        return np.asarray(np.sqrt(np.sum(np.square(sizes), axis=0)))
+
+    return of(measurement.accelerometer), of(measurement.gyro)
 
 
 def _scatters(fits: Sequence[Row], mount: str) -> tuple[Array, Array]:

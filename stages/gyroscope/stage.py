@@ -20,7 +20,10 @@ from stages.gyroscope.free_positions import add_free_gyros
 
 CURES = {
     "bias": _("neither a rest nor a turn there and back shows it: add a rest"),
-    "matrix": _("no whole turn about {axis} was recorded: add one of 360° about {axis}"),
+    "matrix": _(
+        "no whole turn about {axis}, its angle known to a few degrees, was recorded: add one of "
+        "360° about {axis}"
+    ),
 }
 
 

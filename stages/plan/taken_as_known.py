@@ -75,8 +75,19 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
         yield of_table("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
     else:
         yield _row("position", 0.0, ASSUMED_POSITION, "rad", _("not used, for no position is set"))
-    yield of_table("turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
+    if "angle_sigma_arcsec" not in table and (sigmas := _sigmas_of_turns(file.content["plan"])):
+        by_plan = GUESSED if "plan" in guessed else _("stated in the plan, the largest of a turn")
+        sigma = radians(max(sigmas))
+        yield _row("turn_angle", 0.0, sigma, "rad", by_plan, assumed=by_plan == GUESSED)
+    else:
+        yield of_table("turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
     yield of_table("turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
+
+
+def _sigmas_of_turns(plan: Sequence[Mapping[str, Any]]) -> list[float]:
+    """The sigma of the angle of each turn, degrees; none unless the plan states it of all."""
+    turns = [item for item in plan if item["do"] == "turn" and "degrees" in item]
+    return [i["degrees_sigma"] for i in turns] if all("degrees_sigma" in i for i in turns) else []
 
 
 def _row(
