@@ -13,7 +13,9 @@ from inertial.campaign.measurement import measurement_of
 from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad, Use
 from stages.export.examples import Example
 
-REASON = "no whole turn about y, its angle known to a few degrees, was recorded: add one of 360° about y"
+REASON = (
+    "no whole turn about y, its angle known to a few degrees, was recorded: add one of 360° about y"
+)
 ERRORS = {
     "accelerometer": [[0.003, 0.002, 0.0075], [-0.0027, -0.004, -0.0008], [-0.0076, 0.0007, 0.002]],
     "gyroscope": [[0.0006, 0.0025, 0.0076], [-0.0024, -0.00002, -0.0007], [-0.0076, 0.0008, 6e-4]],
