@@ -33,7 +33,11 @@ from inertial.detectors.stamp_faults import ArrivalStamps, ClockStep, TimeBackwa
 from inertial.detectors.stamps_misstated import RateOff, WrongDay, WrongTimeUnit
 from inertial.detectors.status_invalid import StatusInvalid
 from inertial.detectors.table_moving import TableMoving
-from inertial.detectors.temperatures import TemperatureDrift, TemperatureMisstated
+from inertial.detectors.temperatures import (
+    TemperatureDrift,
+    TemperatureMisstated,
+    WrongTemperatureUnit,
+)
 from inertial.detectors.turns_against_plan import (
     IncompleteTurn,
     WrongDirection,
@@ -87,6 +91,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     GravityError(),
     WrongScaleFactor(),
     TemperatureDrift(),
+    WrongTemperatureUnit(),
 )
 # Of the records of each rest, once the plan is found in the logs.
 OF_RESTS: tuple[Detector, ...] = (TableMoving(), BiasJump())

@@ -135,6 +135,48 @@ class TemperatureDrift(Detector):
         )
 
 
+POSSIBLE = (150.0, 500.0)  # K, beyond which no IMU works, though a log may say so
+UNIT_OF_OFFSET = {-ICE_POINT: ("°C", "K"), ICE_POINT: ("K", "°C")}  # held, and stated
+
+
+class WrongTemperatureUnit(Detector):
+    """No IMU works at the temperature of a log, but at one that is 273.15 K off.
+
+    Cause: degrees Celsius that are stated as kelvin, or the reverse.
+    """
+
+    name = "wrong_temperature_unit"
+    source = "IEEE Std 1554-2005: instruments operate from -55 °C to 125 °C at the most"
+    unit = "K"
+
+    def detect_in_log(self, log: Log) -> Iterator[Event]:
+        lowest, highest = _range(log.windows.temperature)
+        low, high = POSSIBLE
+        for off in UNIT_OF_OFFSET:
+            if not low < lowest <= highest < high and low < lowest - off <= highest - off < high:
+                yield log.event(off, facts=(lowest, highest))
+
+    def describe(self, event: Event, name: str) -> Description:
+        held, stated = UNIT_OF_OFFSET[event.size]
+        low, high = (_celsius(value) for value in event.facts)
+        return Description(
+            _(
+                "{name}: temperatures from {low} to {high} °C, as if in {held} where {stated} is "
+                "stated.",
+                name=name,
+                low=low,
+                high=high,
+                held=held,
+                stated=stated,
+            ),
+            _(
+                "The parameters hold for a temperature that is 273.15 K off; how they change with "
+                "it is right."
+            ),
+            _("State unit: {unit} of the temperature.", unit={"K": "K", "°C": "degC"}[held]),
+        )
+
+
 def _range(temperature: Array) -> tuple[float, float]:
     """Lowest and highest temperature without wrong readings of the thermometer, K."""
     there = temperature[np.isfinite(temperature)]

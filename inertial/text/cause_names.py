@@ -35,6 +35,7 @@ NAMES = {
     "spike": _("spike"),
     "table_moving": _("table moving"),
     "temperature_drift": _("temperature drift"),
+    "wrong_temperature_unit": _("temperature in another unit than is stated"),
     "temperature_misstated": _("temperature misstated"),
     "time_stands_still": _("time stands still"),
     "wrong_direction": _("wrong direction"),

@@ -7,7 +7,7 @@ import pytest
 from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, rest, seen, stamps
 
 from inertial.detectors.gravity_error import GravityError
-from inertial.detectors.temperatures import TemperatureDrift
+from inertial.detectors.temperatures import TemperatureDrift, WrongTemperatureUnit
 from inertial.detectors.wrong_scale_factor import WrongScaleFactor
 from inertial.physics.site import is_refuted, latitude_of
 from inertial.signal.scale_factor import explanation_of
@@ -215,3 +215,21 @@ def test_an_imu_that_turns_and_falls_has_signed_counts():
     values[:, 2] = 32768 * count[2]
     (event,) = seen(WrongScaleFactor(), piece(values, stamps(1000)), recorded_on=None, count=count)
     assert "unsigned" not in WrongScaleFactor().describe(event, "log").sentence
+
+
+@pytest.mark.parametrize(
+    ("temperature", "said"),
+    [
+        (25.0, "as if in °C where K is stated"),
+        (273.15 + 298.0, "as if in K where °C is stated"),
+        (298.0, None),
+        (230.0, None),
+        (1e4, None),
+    ],
+)
+def test_temperatures_in_the_other_unit(temperature, said):
+    one = piece(rest(6000), stamps(6000), temperature=np.full(6000, temperature))
+    events = list(seen(WrongTemperatureUnit(), one))
+    assert [said in WrongTemperatureUnit().describe(e, "log").sentence for e in events] == (
+        [True] if said else []
+    )
