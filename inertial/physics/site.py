@@ -5,6 +5,8 @@ Constants of WGS 84 (NGA.STND.0036, 2014).
 
 from math import asin, cos, degrees, hypot, sin, sqrt
 
+from inertial.text.units import STANDARD_GRAVITY
+
 EARTH_RATE = 7.292115e-5  # rad/s
 SEMI_MAJOR = 6378137.0  # m
 FLATTENING = 1 / 298.257223563
@@ -44,14 +46,29 @@ def radii(latitude: float) -> tuple[float, float]:
 ANOMALY_SIGMA = 5e-4
 MIN_SIGMA = 3.0  # sigma
 LOWEST, HIGHEST = -500.0, 9000.0  # m, where a laboratory can stand
+# m: nine in ten people live below 1000 m, and cities up to 4000 m.
+USUAL_HEIGHT, HEIGHT_SIGMA = 500.0, 1000.0
+MAX_SIGMA_OF_UNIT = 1e-3  # m/s²: who knows gravity so well has not copied the unit g
 STEPS = 60  # of a bisection: to the last digit
+
+
+def gravity_at(latitude: float, height: float | None) -> tuple[float, float]:
+    """Gravity at `latitude`, rad, and `height`, m, None: not known; its sigma, m/s²."""
+    if height is not None:
+        return normal_gravity(latitude, height), ANOMALY_SIGMA
+    value = normal_gravity(latitude, USUAL_HEIGHT)
+    per_sigma = value - normal_gravity(latitude, USUAL_HEIGHT + HEIGHT_SIGMA)
+    return value, hypot(ANOMALY_SIGMA, per_sigma)
 
 
 def is_refuted(stated: float, sigma: float, latitude: float, height: float | None) -> bool:
     """Whether a gravity, m/s², differs from normal gravity by more than anomalies and its sigma.
 
-    Where the height, m, is not stated, none may explain it. `latitude`: rad.
+    Where the height, m, is not stated, none may explain it, unless it is the unit g that is stated
+    as if it had been measured. `latitude`: rad.
     """
+    if height is None and stated == STANDARD_GRAVITY and sigma < MAX_SIGMA_OF_UNIT:
+        return True
     if height is None:
         least, most = normal_gravity(latitude, HIGHEST), normal_gravity(latitude, LOWEST)
         off = stated - min(max(stated, least), most)

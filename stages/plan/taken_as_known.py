@@ -6,12 +6,13 @@ from math import cos, radians, sin
 from typing import Any
 
 from inertial.physics.site import (
-    ANOMALY_SIGMA,
     EARTH_RATE,
+    HEIGHT_SIGMA,
+    USUAL_HEIGHT,
     earth_rate,
+    gravity_at,
     is_refuted,
     latitude_of,
-    normal_gravity,
 )
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
@@ -162,8 +163,8 @@ def _gravity(file: YamlFile) -> tuple[float, float]:
             _("one of the two"),
             _("state gravity_m_s2, or latitude_deg and height_m for normal gravity"),
         )
-    value = normal_gravity(radians(site["latitude_deg"]), site.get("height_m", 0.0))
-    return value, site.get("gravity_sigma_m_s2", ANOMALY_SIGMA)
+    value, sigma = gravity_at(radians(site["latitude_deg"]), site.get("height_m"))
+    return value, site.get("gravity_sigma_m_s2", sigma)
 
 
 def gravity_repairs(file: YamlFile, repairs: str) -> Iterator[Row]:
@@ -180,7 +181,8 @@ def gravity_repairs(file: YamlFile, repairs: str) -> Iterator[Row]:
     latitude, height = radians(site["latitude_deg"]), site.get("height_m")
     if not is_refuted(stated, sigma, latitude, height):
         return
-    value = normal_gravity(latitude, height or 0.0)
+    value, of_value = gravity_at(latitude, height)
+    place = _place(site)
     state = "confirmed" if "gravity" in file.content.get("accept", []) else "applied"
     yield {
         "id": "gravity",
@@ -188,24 +190,21 @@ def gravity_repairs(file: YamlFile, repairs: str) -> Iterator[Row]:
         "state": state if repairs == "apply" else "refused",
         "sensor": "accel",
         "value": value,
-        "sigma": ANOMALY_SIGMA,
+        "sigma": of_value,
         "stated": stated,
         "unit": "m/s²",
         "finding": "quality/gravity_error/accel",
         "condition": _(
-            "gravity is that of latitude {latitude:g}° and height {height:g} m, not the stated "
-            "{stated:.5f} m/s².{rival}",
-            latitude=site["latitude_deg"],
-            height=height or 0.0,
+            "gravity is that of {place}, not the stated {stated:.5f} m/s².{rival}",
+            place=place,
             stated=stated,
-            rival=_other_latitude(stated, site["latitude_deg"], height or 0.0),
+            rival="" if height is None else _other_latitude(stated, site["latitude_deg"], height),
         ),
         "sentence": _(
-            "Gravity is taken as {value:.5f} m/s², normal gravity at latitude {latitude:g}° and "
-            "height {height:g} m, in place of the stated {stated:.5f} m/s².",
+            "Gravity is taken as {value:.5f} m/s², normal gravity at {place}, in place of the "
+            "stated {stated:.5f} m/s².",
             value=value,
-            latitude=site["latitude_deg"],
-            height=height or 0.0,
+            place=place,
             stated=stated,
         ),
     }
@@ -228,9 +227,21 @@ def _gravity_origin(site: dict[str, Any]) -> str:
         if "gravity_sigma_m_s2" in site:
             return STATED
         return _("{stated}, its sigma assumed as 5 mGal", stated=STATED)
-    height = f"{site['height_m']:g} m" if "height_m" in site else _("0 m, for no height is stated")
+    return _("normal gravity at {place}", place=_place(site))
+
+
+def _place(site: Mapping[str, Any]) -> str:
+    """Latitude and height in words, with what is assumed of a height that is not stated."""
+    if "height_m" in site:
+        return _(
+            "latitude {latitude_deg:g}°, height {height_m:g} m",
+            latitude_deg=site["latitude_deg"],
+            height_m=site["height_m"],
+        )
     return _(
-        "normal gravity at latitude {latitude_deg:g}°, height {height}",
+        "latitude {latitude_deg:g}°, height assumed as {usual:.0f} ± {sigma:.0f} m, for none is "
+        "stated",
         latitude_deg=site["latitude_deg"],
-        height=height,
+        usual=USUAL_HEIGHT,
+        sigma=HEIGHT_SIGMA,
     )
