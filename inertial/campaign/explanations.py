@@ -216,7 +216,7 @@ EXPLANATIONS = (
 
 def explains(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether the other finding vanishes where this cause is true."""
-    if cause is other or not _same_mount(cause, other):
+    if cause is other or not _same_mount(cause, other) or _set_right_by_another(cause, other):
         return False
     if _rank(cause) > _rank(other) and _same_cause(cause, other) and same_sensor(cause, other):
         return True
@@ -238,6 +238,13 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
         for rule in EXPLANATIONS
     )
+
+
+def _set_right_by_another(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Whether a repair of its own sets the other right, so that the cause alone does not."""
+    if other.repair is None or other.repair["state"] == "refused":
+        return False
+    return cause.repair is None or cause.repair["id"] != other.repair["id"]
 
 
 def _size(finding: Hypothesis) -> float:
