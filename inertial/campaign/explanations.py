@@ -97,6 +97,7 @@ PERFORMANCE = (
     "short_rest",
     "table_moving",
 )
+SET_RIGHT = ("applied", "confirmed")  # states of a repair
 MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
 # Faults that change all that a sensor reads: from what they spoil no effect is named. A wrong clock
 # changes it in proportion, so only effects in proportion to a rate, a force, or the earth's rate.
@@ -242,7 +243,7 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
 
 def _set_right_by_another(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether a repair of its own sets the other right, so that the cause alone does not."""
-    if other.repair is None or other.repair["state"] == "refused":
+    if other.repair is None or other.repair["state"] not in SET_RIGHT:
         return False
     return cause.repair is None or cause.repair["id"] != other.repair["id"]
 

@@ -45,6 +45,18 @@ def test_a_gap_explains_the_turn_that_it_cuts_and_no_other():
     assert causes(gap, other) == {"gap": set(), "incomplete_turn": set()}
 
 
+@pytest.mark.parametrize(("repair", "both"), [("applied", True), ("rival", False)])
+def test_what_another_repair_sets_right_is_a_cause_with_its_condition(repair, both):
+    """Exchanged axes and rad/s stated as °/s: 57.3 was left out of the condition."""
+    axes = {"id": "axes/gyro", "state": "applied", "axis": None}
+    swap = finding("segment", "axis_swap", "gyro", 3, repair=axes)
+    unit = {"id": "count_size/gyro", "state": repair, "axis": None}
+    scale = finding("segment", "wrong_scale_factor", "gyro", 3, repair=unit)
+    assert (
+        set(causes(swap, scale)) == {"axis_swap", "wrong_scale_factor"} if both else {"axis_swap"}
+    )
+
+
 @pytest.mark.parametrize(("rest", "explained"), [("p-01", {"bias_jump"}), ("p-02", set())])
 def test_a_clipped_motion_does_not_explain_the_jump_of_a_bias_at_rest(rest, explained):
     clipped = finding("quality", "saturation", "gyro", **of("p-01"), masked=True)
