@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -246,7 +246,7 @@ def _suppositions(
 
 
 def _exchanges(windows: Sequence[Division], case: _Case, lacking: Sequence[int]) -> Iterator[_Case]:
-    """Two windows of as many manoeuvres exchanged, or two manoeuvres of one window."""
+    """Two windows of as many manoeuvres exchanged, or two manoeuvres or positions of one window."""
     for a, b in combinations(lacking, 2):
         if len(case.plans[a]) == len(case.plans[b]):
             yield _with_names_exchanged(windows, case, a, b)
@@ -255,7 +255,15 @@ def _exchanges(windows: Sequence[Division], case: _Case, lacking: Sequence[int])
         for m in lost[:MAX_EXCHANGED]:
             for other in case.located[k].plan:
                 if other.name != m.name and "positions" not in (m.do, other.do):
-                    yield _with_places_exchanged(windows, case, k, (m.name, other.name))
+                    yield _with_places_exchanged(windows, case, k, [m.name], [other.name])
+        for one, two in combinations(_visits(case.plans[k]), 2):
+            if len(one) == len(two) > 1 and not {m.name for m in lost}.isdisjoint([*one, *two]):
+                yield _with_places_exchanged(windows, case, k, one, two)
+
+
+def _visits(plan: Sequence[Manoeuvre]) -> list[list[str]]:
+    """The names of the manoeuvres of each position, from one change of it to the next."""
+    return [[m.name for m in visit] for _, visit in groupby(plan, key=lambda m: m.position)]
 
 
 def _senses(case: _Case, *, by_axis: bool) -> Iterator[OtherSense]:
@@ -300,12 +308,15 @@ def _with_names_exchanged(windows: Sequence[Division], case: _Case, a: int, b: i
 
 
 def _with_places_exchanged(
-    windows: Sequence[Division], case: _Case, k: int, pair: tuple[str, str]
+    windows: Sequence[Division], case: _Case, k: int, one: Sequence[str], two: Sequence[str]
 ) -> _Case:
+    """`one`, `two`: as many manoeuvres, each list in the order of the plan."""
     order = list(case.plans[k])
-    i, j = (next(n for n, m in enumerate(order) if m.name == name) for name in pair)
-    names = tuple(sorted(pair, key=[m.name for m in order].index))
-    order[i], order[j] = order[j], order[i]
+    place = {m.name: n for n, m in enumerate(order)}
+    first, second = sorted([one, two], key=lambda names: place[names[0]])
+    for a, b in zip(first, second, strict=True):
+        order[place[a]], order[place[b]] = order[place[b]], order[place[a]]
+    names = (*first, *second)
     located, plans = list(case.located), list(case.plans)
     plans[k] = order
     located[k] = locate(windows[k], case.everywhere, order)
