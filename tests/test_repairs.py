@@ -1,7 +1,10 @@
 """Repairs: what is wrong as a whole is set right, named once, and moves no parameter."""
 
+import sys
 from collections.abc import Callable
+from dataclasses import replace
 from math import degrees
+from pathlib import Path
 from typing import Any
 
 import chain
@@ -9,8 +12,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import laboratory
 from inertial.estimation.triad import linear_names
 from inertial.tables.errors import Refusal
+
+sys.path.insert(0, str(Path(__file__).parent / "hidden"))
+import hidden_plans
 
 Document = dict[str, Any]
 Fault = dict[str, dict[str, Any]]
@@ -374,3 +381,27 @@ def test_a_repair_that_is_none_of_the_campaign_is_refused():
     assert "campaign.yaml, line" in words and "accept[0]" in words
     assert "'signs/gyros'" in words and "signs/gyro" in words
     assert "remove it from accept" in words
+
+
+def test_two_positions_that_changed_places_are_exchanged_with_all_their_manoeuvres():
+    """Of one log. It was the axes of a triad that no mounting has, with other causes beside it."""
+    document = hidden_plans.stops(seed=5)
+    document["handling"] = {"still_s": 4, "change_s": 8}
+    for one in document["campaign"]["plan"]:
+        one["log"] = "session.asc"
+    true = laboratory.perform(laboratory.specify(document))
+    plan = true.campaign["plan"]
+    told = [*plan[:4], *plan[8:12], *plan[4:8], *plan[12:]]
+    recording = replace(true, campaign={**true.campaign, "plan": told})
+    results = chain.in_memory(recording, "diagnosis", chain.BESIDE)
+    (repair,) = results["segment/repairs"].to_dict("records")
+    assert repair["id"] == "exchanged_manoeuvres/x-down-before/y-up-before"
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] == "manoeuvre_swapped"
+    assert set(results["diagnosis/verdict"]["verdict"]) == {"on_condition"}
+    result = results["diagnosis/result"].set_index(["sensor", "parameter"])
+    for sensor, name in (("accel", "accelerometer"), ("gyro", "gyro")):
+        for i, axis in enumerate("xyz"):
+            row = result.loc[sensor, f"scale_{axis}"]
+            true_scale = document["truth"][name]["matrix"][i][i] - 1
+            assert abs(row["value"] - true_scale) < 4 * row["sigma"]
