@@ -9,7 +9,7 @@ from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, re
 from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.temperatures import TemperatureDrift, WrongTemperatureUnit
 from inertial.detectors.wrong_scale_factor import WrongScaleFactor
-from inertial.physics.site import is_refuted, latitude_of
+from inertial.physics.site import gravity_at, is_refuted, latitude_of
 from inertial.signal.scale_factor import explanation_of
 
 
@@ -233,3 +233,14 @@ def test_temperatures_in_the_other_unit(temperature, said):
     assert [said in WrongTemperatureUnit().describe(e, "log").sentence for e in events] == (
         [True] if said else []
     )
+
+
+def test_a_height_that_is_not_stated_has_a_sigma():
+    """Free air gradient 0.3086 mGal/m (Heiskanen & Moritz 1967), and 50 mGal of anomalies."""
+    value, sigma = gravity_at(radians(48.0), None)
+    assert sigma == pytest.approx(np.hypot(1000 * 0.3086e-5, 50e-5), rel=2e-3)
+    assert value == pytest.approx(9.80891 - 500 * 0.3086e-5, abs=2e-5)
+    assert gravity_at(radians(48.0), 0.0)[1] == 50e-5
+    assert is_refuted(9.80665, 2e-5, radians(48.0), None)  # the unit g, not measured
+    assert not is_refuted(9.8066, 2e-5, radians(48.0), None)  # 750 m
+    assert not is_refuted(9.80665, 0.03, radians(48.0), None)
