@@ -22,6 +22,7 @@ Kind = Literal[
 ]
 # How grave a row, a paragraph or a figure is. Never by colour alone: a word says it too.
 Tone = Literal["", "good", "fair", "poor"]
+MOST_ROWS_TOGETHER = 12  # of a table that no page break cuts
 
 
 @dataclass(frozen=True)
@@ -118,6 +119,11 @@ class Table(Part):
     empty: str = _("None.")
     note: str = ""
     sortable: bool = False
+
+    @property
+    def short(self) -> bool:
+        """Whether it stands on one printed page as a whole."""
+        return len(self.rows) <= MOST_ROWS_TOGETHER
 
     @property
     def paddings(self) -> tuple[tuple[str, ...], ...]:
