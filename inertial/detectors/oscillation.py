@@ -153,7 +153,7 @@ def _consequence(tone: Tone, only_turning: bool) -> str:
     swing = tone.amplitude / (2 * np.pi * tone.frequency)
     mean = _(
         "A mean over 1 s is off by up to {significant} {unit}, over 100 s by up to "
-        "{significant_2}.",
+        "{significant_2} {unit}.",
         significant=significant(2 * scale * swing, 2),
         unit=unit,
         significant_2=significant(scale * swing / 50, 2),

@@ -62,6 +62,7 @@ class Quantity:
 MICRO_G = Unit("µg", STANDARD_GRAVITY * 1e-6)
 MILLI_G = Unit("mg", STANDARD_GRAVITY * 1e-3)
 PPM = Unit("ppm", 1e-6)
+PER_CENT = Unit("%", 0.01)
 SECONDS_OF_ARC = Unit("arcsec", ARC_SECOND)
 DEGREES = Unit("°", DEGREE)
 DEGREES_PER_SECOND = Unit("°/s", DEGREE)
@@ -74,6 +75,7 @@ RANDOM_WALK = {
 }
 
 _RATIO = Quantity(PPM, Unit("10⁻⁶", 1e-6))
+_SHARE = Quantity(PER_CENT, PER_CENT)  # of a whole, 0 to 1
 _ANGLE = Quantity(SECONDS_OF_ARC, Unit("µrad", 1e-6))
 _BY_UNIT = {
     "m/s²": Quantity(MICRO_G, Unit("10⁻³ m/s²", 1e-3)),
@@ -126,6 +128,7 @@ _DIMENSIONLESS = {
     "cross": _ANGLE,
     "symmetric": _ANGLE,
     "mounting": _ANGLE,
+    **{"s": _SHARE, "l": _SHARE},  # of the earth's rate that is missing; that a dead band loses
 }
 
 

@@ -22,6 +22,8 @@ from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
 from stages.criticism.law_sentences import law_sentence
 
+MIN_SEPARATION = 0.1  # sigma; below, which manoeuvre is the best says nothing
+
 REASONS = {
     NOT_EXCITED: _("no manoeuvre of this plan changes a reading by it"),
     ABSORBED: _("it cannot be separated here from the parameters that are always estimated"),
@@ -75,6 +77,7 @@ SAME_RATE = _(
 )
 
 SPLIT = _(" To distinguish them, {manoeuvre}: expected separation {sigmas} sigma.")
+SPLIT_NONE = _(" No further manoeuvre would distinguish them.")
 SPLIT_TOO_WEAK = _(
     " No further manoeuvre would distinguish them: the best of those that were tried, {manoeuvre}, "
     "would by {sigmas} sigma."
@@ -159,6 +162,8 @@ def split_sentence(split: Splitting | None) -> str:
     """The manoeuvre that would distinguish the members of a class."""
     if split is None:
         return ""
+    if not split.distinguishes and split.separation < MIN_SEPARATION:
+        return SPLIT_NONE
     template = SPLIT if split.distinguishes else SPLIT_TOO_WEAK
     return template.format(manoeuvre=split.manoeuvre, sigmas=significant(split.separation, 2))
 

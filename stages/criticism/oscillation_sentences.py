@@ -23,6 +23,7 @@ MIN_PERIODS_IN_TURN = 1.5  # below which a turn determines little of an eccentri
 MAX_INTEGER_SIGMAS = 3.0  # within which an order is a whole number
 MAX_TURNS = 4  # that a sentence names
 MAX_RATES = 3  # of the table that a sentence lists
+MIN_CLOCK_SHARE = 1e-6  # of a frequency: no clock of a log is known to less
 
 NO_TURN = _("no whole turn at a steady rate was recorded")
 NO_ANGLE = _("of no whole turn at a steady rate both rate and acceleration are stated")
@@ -66,12 +67,16 @@ MULTIPLES = _(" Lines at {each} have the same cause.")
 VERY_LARGE_ODDS = _("more than 10¹⁷")
 
 COUPLED_UNKNOWN = _(" Through the cross-axis terms it also appears in the other gyros.")
-COUPLED = _(" Through the cross-axis terms it also appears in the other gyros: {each}.")
+COUPLED = _(" Through the cross-axis terms it also appears in the other gyros: {each}{more}.")
 COUPLED_HIDDEN = _("{axis}, {expected} °/s expected, less than its noise shows")
 COUPLED_READ = _("{axis}, {expected} °/s expected, {read} °/s measured{more}")
 COUPLED_MORE = _(
     " ({excess} °/s apart with its phase, {tipping} °/s expected by the case's tipping in the "
     "table's rate)"
+)
+COUPLED_MORE_EACH = _(
+    " (each {excess} °/s apart with its phase, {tipping} °/s expected by the case's tipping in "
+    "the table's rate)"
 )
 
 CONSEQUENCE = _("{turn} Angles over part of a turn are in error by up to {swing}″.")
@@ -116,7 +121,7 @@ def of_oscillation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str
     mean, axis = oscillation.mean, oscillation.likeliest.axis
     sentence = VIBRATION.format(
         axis=_("the table's axis") if axis == TABLE else axis,
-        frequency=plus_minus(mean.frequency, mean.frequency_sigma),
+        frequency=_frequency(mean.frequency, mean.frequency_sigma),
         rate=significant(_sampling_rate(turns, mean.manoeuvres), 3),
         amplitude=plus_minus(degrees(mean.amplitude), degrees(mean.amplitude_sigma)),
         arc=degrees(mean.amplitude / (2 * pi * mean.frequency)) * 3600,
@@ -130,6 +135,11 @@ def of_oscillation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str
         + _coupling(oscillation.coupled)
         + _other_explanation(oscillation)
     )
+
+
+def _frequency(value: float, sigma: float) -> str:
+    """A frequency, Hz, by the clock of the logs, with no more digits than that is good for."""
+    return plus_minus(value, max(sigma, MIN_CLOCK_SHARE * value))
 
 
 def _sampling_rate(turns: Sequence[SteadyTurn], names: Sequence[str]) -> float:
@@ -270,8 +280,9 @@ def _at_rates(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTu
 def _multiples(oscillation: Oscillation) -> str:
     """Further lines of the same cause."""
     numbers = [part.number(oscillation.effects[0]) for part in oscillation.multiples]
-    unit = " Hz" if oscillation.effects[0] == IN_TIME else _(" per revolution")
-    each = [plus_minus(*number) + unit for number in numbers if number]
+    in_time = oscillation.effects[0] == IN_TIME
+    unit, written = (" Hz", _frequency) if in_time else (_(" per revolution"), plus_minus)
+    each = [written(*number) + unit for number in numbers if number]
     return MULTIPLES.format(each=", ".join(each)) if each else ""
 
 
@@ -295,15 +306,37 @@ def _coupling(coupled: Sequence[Coupled]) -> str:
     """The oscillation in the other axes by coupling."""
     if not coupled:
         return COUPLED_UNKNOWN
-    return COUPLED.format(each="; ".join(_coupled(axis) for axis in coupled))
+    alike = len(coupled) > 1 and len({_excess(axis) for axis in coupled}) == 1
+    return COUPLED.format(
+        each="; ".join(_coupled(axis, "" if alike else _more(axis)) for axis in coupled),
+        more=_more(coupled[0], COUPLED_MORE_EACH) if alike else "",
+    )
 
 
-def _coupled(axis: Coupled) -> str:
-    hidden = axis.read < MIN_EXCESS_SIGMA * axis.residual_sigma
-    excess, tipping = (significant(degrees(of), 2) for of in (axis.residual, axis.tipping))
-    return (COUPLED_HIDDEN if hidden else COUPLED_READ).format(
+def _coupled(axis: Coupled, more: str) -> str:
+    return (COUPLED_HIDDEN if _hidden(axis) else COUPLED_READ).format(
         axis=axis.axis,
         expected=significant(degrees(axis.expected), 2),
         read=significant(degrees(axis.read), 2),
-        more=COUPLED_MORE.format(excess=excess, tipping=tipping) if axis.exceeds else "",
+        more=more,
     )
+
+
+def _hidden(axis: Coupled) -> bool:
+    """Whether its noise is too large for it to be read in this axis."""
+    return axis.read < MIN_EXCESS_SIGMA * axis.residual_sigma
+
+
+def _excess(axis: Coupled) -> tuple[str, str] | None:
+    """What is left beyond coupling and what the case's tipping leads to, °/s; None: nothing."""
+    if _hidden(axis) or not axis.exceeds:
+        return None
+    return significant(degrees(axis.residual), 2), significant(degrees(axis.tipping), 2)
+
+
+def _more(axis: Coupled, template: str = COUPLED_MORE) -> str:
+    """The same in words."""
+    if (both := _excess(axis)) is None:
+        return ""
+    excess, tipping = both
+    return template.format(excess=excess, tipping=tipping)

@@ -171,7 +171,9 @@ class Cause:
         size = sizes.get(main.id, Size(main.row["size"], None, main.row["unit"]))
         count = sum(int(member.cause.row["count"]) for member in self.members)
         sentence = sentences.get(main.id, main.row["sentence"])
-        if len(self.members) > 1:
+        if len(self.members) > 1 and int(main.row["count"]) > 1:  # its sentence says which it is
+            sentence += " " + _("In all there are {count} of them.", count=count)
+        elif len(self.members) > 1:
             sentence += " " + plural(
                 "There is {count} of them; the largest is described.",
                 "There are {count} of them; the largest is described.",

@@ -215,6 +215,21 @@ def final_results(tables: Tables) -> list[Estimate]:
     return sorted(final, key=lambda result: list(SENSOR_OF_STAGE).index(result.stage))
 
 
+@once
+def withheld(tables: Tables) -> frozenset[tuple[str, str]]:
+    """The sensors, by stage and mount, whose result a cause spoils, so that it has no values.
+
+    The reason of each of its parameters is the verdict then.
+    """
+    verdicts = {(row["sensor"], row["mount"]): row["sentence"] for row in tables.rows("verdict")}
+    spoilt = {
+        (row["sensor"], row["mount"])
+        for row in tables.rows("result")
+        if row["value"] is None and row["reason"] == verdicts.get((row["sensor"], row["mount"]))
+    }
+    return frozenset((STAGES[sensor], mount) for sensor, mount in spoilt)
+
+
 @dataclass(frozen=True)
 class Shift:
     """A parameter by the extended and by the joint fit."""

@@ -121,7 +121,8 @@ def _chapters(
     sections: Sequence[Section], numbers: Iterator[str], tables: Tables
 ) -> Iterator[Chapter]:
     """The sections that have something to show."""
-    for section in sections:
+    for each in sections:
+        section = certificate.section(tables) if each is certificate.SECTION else each
         if parts := list(section.parts(tables)):
             yield Chapter(next(numbers), section, parts)
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from inertial.tables import BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
+from inertial.text.parameters import STAGES
 from inertial.text.statements import (
     IN_FULL_ONLY,
     NOT_STATED,
@@ -47,6 +49,7 @@ from stages.report.results import (
     kind_of,
     quantity_of,
     symbol,
+    withheld,
 )
 from stages.report.sections import basis
 from stages.report.sections.axes_of_case import axes_of_case
@@ -88,9 +91,19 @@ def certificate_number(tables: Tables) -> str:
     return str(_stated(tables).get("number") or tables.row("campaign")["campaign"])
 
 
+def _certifies(tables: Tables) -> bool:
+    """Whether a laboratory is stated that stands by the result."""
+    return "laboratory.name" in _stated(tables)
+
+
+def section(tables: Tables) -> Section:
+    """The section, under the name that it has in this report."""
+    return SECTION if _certifies(tables) else replace(SECTION, title=_("Result"))
+
+
 def title_of(tables: Tables, number: str) -> str:
     """A certificate has a laboratory that stands by it; without one it is a report."""
-    if "laboratory.name" in _stated(tables):
+    if _certifies(tables):
         return _("Calibration certificate {number}", number=number)
     return _("Calibration report {number}", number=number)
 
@@ -129,14 +142,37 @@ def parts(tables: Tables) -> Iterator[Part]:
     )
     yield Heading(_("Results"), breaks=True)
     earlier = _earlier(tables)
-    for mount in dict.fromkeys(result.mount for result in final_results(tables)):
-        own = [result for result in final_results(tables) if result.mount == mount]
+    shown = [result for result in final_results(tables) if result.place not in withheld(tables)]
+    for mount in dict.fromkeys(result.mount for result in shown):
+        own = [result for result in shown if result.mount == mount]
         yield _values(own, mount, earlier)
         if effects := [row for result in own for row in result.effects]:
             yield _effects(effects)
+    yield from _not_for_use(tables)
+    yield from _conformity(tables)
+    yield Sentences(tuple(_statements(tables, earlier)))
+    if _certifies(tables):
+        yield Signatures(
+            tuple(_signatures(tables)), _("End of the certificate. What follows is its evidence.")
+        )
+
+
+def _not_for_use(tables: Tables) -> Iterator[Paragraph]:
+    """Of each sensor that is not usable, whether its values are withheld, or mere evidence."""
+    given = {result.place for result in final_results(tables) if result.determined}
     for row in tables.rows("verdict"):
-        if row["verdict"] == NOT_USABLE:
-            sensor = capital(with_mount(SENSORS[row["sensor"]], row["mount"]))
+        place = STAGES[row["sensor"]], row["mount"]
+        sensor = capital(with_mount(SENSORS[row["sensor"]], row["mount"]))
+        if place in withheld(tables):
+            yield Paragraph(
+                _(
+                    "{sensor}: the result is withheld, for the verdict above; nothing is assessed "
+                    "or exported. The values by method in “Parameters” are evidence, not for use.",
+                    sensor=sensor,
+                ),
+                "poor",
+            )
+        elif row["verdict"] == NOT_USABLE and place in given:
             yield Paragraph(
                 _(
                     "{sensor}: not usable. The values above are evidence, not for use; none is "
@@ -145,11 +181,6 @@ def parts(tables: Tables) -> Iterator[Part]:
                 ),
                 "poor",
             )
-    yield from _conformity(tables)
-    yield Sentences(tuple(_statements(tables, earlier)))
-    yield Signatures(
-        tuple(_signatures(tables)), _("End of the certificate. What follows is its evidence.")
-    )
 
 
 # ---- Who, what, how.
@@ -235,7 +266,10 @@ def _standards(tables: Tables) -> Table:
         rows.append(table_row(_("Angle, rotation rate"), table, NOT_STATED, NOT_STATED))
     rows += [table_row(*cells, "–") for cells in _known(tables)]
     return Table(
-        _("Standards used, and quantities taken as known."),
+        _(
+            "Standards used, and quantities taken as known. U: expanded uncertainty, k = 2, about "
+            "95 %."
+        ),
         columns("text", _("Quantity"), _("Standard or value"), _("Certificate or origin"))
         + columns("name", _("valid until")),
         rows,
@@ -500,7 +534,8 @@ def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
         )
     yield stated.get("traceability", TRACEABILITY)
     yield THIS_ITEM_ONLY
-    yield IN_FULL_ONLY
+    if _certifies(tables):
+        yield IN_FULL_ONLY
     if "opinions" in stated:
         yield _("Opinion, not a result: {opinions}", opinions=stated["opinions"])
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
+from math import inf, pi
 
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.typography import capital
+from inertial.text.units import PER_CENT
 from stages.report import outline
 from stages.report.results import (
     KIND,
@@ -29,6 +31,12 @@ MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"
 DEAD_BAND = "gyro_dead_band"  # how the names of such effects begin
 Effect = tuple[str, str]  # its name in the catalogue, and the mount
+# Effects that are there or not: 1 if they are, and no other size is possible.
+THERE_OR_NOT = frozenset({"latitude_sign", "earth_rate_omitted"})
+NOTICED, NOT_NOTICED = _("would be noticed"), _("would not be noticed")
+NOT_DETECTABLE = _("not detectable here")
+LARGEST_ANGLE, LARGEST_SHARE = pi, 1.0  # rad; no error is larger
+MIN_CLOCK_SHARE = 1e-6  # of a frequency: no clock of a log is known to less
 TESTS = {
     "time": _("time"),
     "angle": _("the angle of the table"),
@@ -44,6 +52,7 @@ TESTS = {
 def parameters(caption: str, rows: Sequence[Record]) -> outline.Table:
     """Those beyond 3 σ; how many others there are."""
     clear = [row for row in rows if _clear(row)]
+    known = [_by_clock(row) for row in clear]
     others = sum(row["value"] is not None and bool(row["sigma"]) for row in rows) - len(clear)
     gaps = sum(row["value"] is None for row in rows)
     notes = [
@@ -58,7 +67,7 @@ def parameters(caption: str, rows: Sequence[Record]) -> outline.Table:
             outline.Column(_("in σ"), "number"),
             outline.Column(_("Meaning"), "note"),
         ),
-        [_parameter(row, cells) for row, cells in zip(clear, written(clear), strict=True)],
+        [_parameter(*both) for both in zip(known, written(known), strict=True)],
         _("None individually: the parameters are significant only together."),
         capital("; ".join(notes) + ".") if notes else "",
     )
@@ -67,6 +76,13 @@ def parameters(caption: str, rows: Sequence[Record]) -> outline.Table:
 def _clear(row: Record) -> bool:
     value, sigma = row["value"], row["sigma"]
     return value is not None and bool(sigma) and bool(abs(value) > MIN_SIGMAS * sigma)
+
+
+def _by_clock(row: Record) -> Record:
+    """A frequency with a sigma no smaller than a clock's; any other parameter as it is."""
+    if row["unit"] != "Hz":
+        return row
+    return row | {"sigma": max(row["sigma"], MIN_CLOCK_SHARE * abs(row["value"]))}
 
 
 def _parameter(row: Record, cells: Sequence[str]) -> outline.Row:
@@ -217,19 +233,38 @@ def _effect(row: Record) -> Effect:
 
 def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
     rows = sorted(rows, key=lambda row: -(row["largest"] or row["limit"]))
-    first, unit = rows[0], quantity_of(rows[0]).shown
-    worst = numbers.significant(unit.of(max(first["limit"], first["largest"] or 0.0)), 2)
-    best = min(min(row["limit"], row["smallest"] or row["limit"]) for row in rows)
-    least = numbers.significant(unit.of(best), 2)
+    first = rows[0]
     return outline.table_row(
         capital(tested.name),
-        worst,
-        symbol(first["parameter"]),
-        least if least != worst else "",
-        unit.name,
+        *(_noticed(first) if tested.effect in THERE_OR_NOT else _sizes(rows)),
         numbers.probability(tested.score["p_value"]),
         anchor="/".join(("limit", *filter(None, _effect(first)), first["parameter"])),
     )
+
+
+def _noticed(row: Record) -> tuple[str, str, str, str]:
+    """Of what is there or not, whether it would be detected."""
+    return NOTICED if row["limit"] <= LARGEST_SHARE else NOT_NOTICED, "", "", ""
+
+
+def _sizes(rows: Sequence[Record]) -> tuple[str, str, str, str]:
+    """The limit of the worst axis, which is first, its parameter, that of the best, the unit."""
+    first, unit = rows[0], quantity_of(rows[0]).shown
+    best = min(min(row["limit"], row["smallest"] or row["limit"]) for row in rows)
+    if best > _largest(first):
+        return NOT_DETECTABLE, "", "", ""
+    worst = max(first["limit"], first["largest"] or 0.0)
+    least, most = (numbers.significant(unit.of(size), 2) for size in (best, worst))
+    if worst > _largest(first):
+        most = NOT_DETECTABLE
+    return most, symbol(first["parameter"]), least if least != most else "", unit.name
+
+
+def _largest(row: Record) -> float:
+    """The largest size that is possible of a share or an angle, in the unit of the row."""
+    if quantity_of(row).shown == PER_CENT:
+        return LARGEST_SHARE
+    return LARGEST_ANGLE if row["unit"] == "rad" else inf
 
 
 def _hidden(rows: Sequence[Record], every: Sequence[Record]) -> Iterator[outline.Row]:

@@ -13,6 +13,7 @@ from inertial.campaign.records import labels, omissions
 from inertial.tables import AXES
 from inertial.text import units
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import aligned, counted, fixed, plus_minus, shortened, significant, whole
 from inertial.text.typography import capital
@@ -35,7 +36,6 @@ from stages.report.outline import (
     value_and_sigma,
 )
 from stages.report.results import (
-    ESTIMATE_TABLES,
     KIND,
     METHOD,
     RESULT_TABLES,
@@ -46,6 +46,7 @@ from stages.report.results import (
     kind_of,
     quantity_of,
     symbol,
+    withheld,
     written,
 )
 from stages.report.sections.effect_tables import extended
@@ -77,11 +78,14 @@ def parts(tables: Tables) -> Iterator[Part]:
         return
     for result in final_results(tables):
         yield Heading(_("Result: {name}", name=result.name))
-        yield from _result(result)
+        if result.place in withheld(tables):
+            yield Paragraph(_("Withheld: the sensor is not usable, as page one says."), "poor")
+        else:
+            yield from _result(result)
     yield Heading(_("By method"))
     yield Paragraph(BY_METHOD)
     yield _fits(estimates(tables))
-    counted_ones = {result.method for result in final_results(tables)}
+    counted_ones = {result.method for result in final_results(tables) if result.determined}
     for _place, own in groupby(estimates(tables), lambda estimate: estimate.place):
         methods = [estimate for estimate in own if estimate.determined]
         if len(methods) == 1 and methods[0].method in counted_ones:
@@ -117,6 +121,9 @@ def _result(estimate: Estimate) -> Iterator[Part]:
         yield Paragraph(*_fit(estimate, estimate.fit))
     every = (*estimate.determined, *estimate.effects)
     long = any(len(row["id"]) > MAX_LETTERS for row in every)
+    if not estimate.determined:
+        yield Paragraph(_reason(estimate), "poor")
+        return
     yield Table(
         _("{name}: value and sigma of each parameter.", name=estimate.name),
         (
@@ -126,7 +133,6 @@ def _result(estimate: Estimate) -> Iterator[Part]:
             Column(_("Identifier"), "code" if long else "identifier"),
         ),
         [*_rows(estimate.determined), *_effects(estimate)],
-        _reason(estimate),
     )
     if matrices := _matrices(estimate):
         yield matrices
@@ -312,6 +318,7 @@ def undetermined_parts(tables: Tables) -> Iterator[Part]:
         ),
         [line for estimate in estimates(tables) for line in _undetermined(estimate)],
         _("None: every parameter of every method has a value."),
+        _withheld_all_the_same(tables),
     )
     yield Table(
         _("Manoeuvres by fit."),
@@ -341,9 +348,20 @@ UNDETERMINED = Section(
         "A parameter that is not determined has no value anywhere in this report; it is "
         "not zero. Each reason names the manoeuvre that would help."
     ),
-    ESTIMATE_TABLES,
+    RESULT_TABLES,
     undetermined_parts,
 )
+
+
+def _withheld_all_the_same(tables: Tables) -> str:
+    """That a result is withheld although methods determine it; nothing where none is."""
+    places = withheld(tables)
+    sensors = [result.sensor for result in final_results(tables) if result.place in places]
+    if not sensors:
+        return ""
+    return _(
+        "Of each method; the result that counts is withheld: {sensors}.", sensors=listed(sensors)
+    )
 
 
 def _undetermined(estimate: Estimate) -> Iterator[Row]:

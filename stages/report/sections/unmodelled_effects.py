@@ -39,6 +39,7 @@ from stages.report.words import count_in_words
 POSITION = "table_position_error"  # what an effect of the accelerometers may look like
 LINES = {"oscillation", "table_ripple", "table_eccentricity"}  # periodic in turns, all of them
 MIN_SPLIT_SIGMA = 3.3  # at which the likelier member is right in 95 of 100 campaigns
+MIN_WORTH_NAMING = 0.1  # sigma; below, which manoeuvre is the best says nothing
 IDENTIFIED = frozenset({"found", "class", "law"})
 
 
@@ -307,6 +308,8 @@ def _split(row: Record) -> str:
     manoeuvre = shortened(row["split_manoeuvre"], 400)
     if row["split_snr"] is None:
         return f"{capital(manoeuvre)}."
+    if row["split_snr"] < MIN_WORTH_NAMING:
+        return _("No manoeuvre considered would.")
     clear = f"{significant(row['split_snr'], 2)} σ"
     if row["split_snr"] < MIN_SPLIT_SIGMA:
         return _(

@@ -107,17 +107,25 @@ def verdict_sentences(tables: Tables) -> Iterator[str]:
 
 
 def _card(tables: Tables, row: Record) -> outline.Finding:
-    facts = [(_("times"), whole(row["count"]))] if row["count"] > 1 else []
     return outline.Finding(
         anchor=f"cause/{row['id']}",
         title=title_of(tables, row),
         grade=_grade(row),
-        sentence=shortened(row["sentence"], 900),
+        sentence=shortened(_below_title(row), 900),
         answers=tuple(_answers(tables, row)),
-        facts=(*facts, (_("identifier"), row["id"])),
+        facts=((_("identifier"), row["id"]),),
         links=tuple(_links(tables, row)),
         tone="poor" if spoils(tables, row) else "" if harmless(row) else "fair",
     )
+
+
+def _below_title(row: Record) -> str:
+    """Its sentence, without the name that the title above it states."""
+    detected = _("Detected: {effect}{place}: {cause}. {numbers}.")  # as criticism writes it
+    start, _cause, rest = detected.partition("{cause}")
+    named = start.format(effect=in_words(row["cause"]), place="")
+    own = str(row["sentence"])
+    return capital(own.removeprefix(named)) if rest and own.startswith(named) else own
 
 
 def _grade(row: Record) -> str:
@@ -281,7 +289,7 @@ def as_text(tables: Tables) -> str:
     for row in causes(tables):
         title = f"{title_of(tables, row)} ({_grade(row)})"
         lines += ["", *wrapped(typeset(title), 80)]
-        lines += _indented(row["sentence"])
+        lines += _indented(_below_title(row))
         for name, text in _answers(tables, row):
             lines += _indented(f"{name}: {text}")
     lines.append("")
