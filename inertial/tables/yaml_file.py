@@ -26,8 +26,10 @@ MAX_VALUES, MAX_DEPTH = (
     100_000,
     40,
 )  # values, and levels of them: a few lines of aliases make billions
+MOST_KEYS = 8  # that a refusal lists; of more those near to the unknown one and those required
 MAX_NUMBER = 1e15  # nothing that a laboratory writes down is larger, in whichever unit
 FOLDER = Path(__file__).parent
+QUOTES = "'\""
 
 
 class _DatesAreText(VersionedResolver):
@@ -54,13 +56,25 @@ class YamlFile:
         self.content = self._plain(self._load(), ())
 
     def place(self, key: Key) -> str:
-        """Line and key, as an error names them: `line 12, plan[3].up`."""
+        """Line and key, as an error names them: `line 12, plan[3].up (id x-down)`."""
         known = tuple(key)
         while known and known not in self._lines:
             known = known[:-1]
         name = "".join(f"[{k}]" if isinstance(k, int) else f".{k}" for k in key).lstrip(".")
         line = f"line {self._lines[known]}" if known else ""
-        return ", ".join(part for part in (line, name) if part)
+        return ", ".join(part for part in (line, name) if part) + self._id_of(key)
+
+    def _id_of(self, key: Key) -> str:
+        """The id of the item of a list that a key is in, in brackets; nothing where it has none."""
+        part, found = getattr(self, "content", None), ""
+        for step in key:
+            try:
+                part = part[step]
+            except (KeyError, IndexError, TypeError):
+                break
+            if isinstance(step, int) and isinstance(part, dict) and "id" in part:
+                found = f" (id {shown(part['id']).strip(QUOTES)})"
+        return found
 
     def refuse(self, key: Key, found: object, expected: str, cure: str) -> Refusal:
         """The error that names this file and `key`."""
@@ -97,9 +111,8 @@ class YamlFile:
             if isinstance(unknown, int):  # 48,35 within braces is 48 and a key 35
                 cure = _("write decimals with a point: 48.35, not 48,35")
             found = _("the key {unknown}", unknown=shown(unknown))
-            return self.refuse_text(
-                [*key, unknown], found, _("one of {allowed}", allowed=", ".join(allowed)), cure
-            )
+            expected = _keys_near(str(unknown), allowed, rule.get("required", ()))
+            return self.refuse_text([*key, unknown], found, expected, cure)
         if error.validator == "required":
             required: Any = error.validator_value
             instance: Any = error.instance
@@ -217,6 +230,22 @@ class YamlFile:
         if node is None:
             return None
         raise self.refuse(key, str(node), "text or a number", _("put it in quotes"))
+
+
+def _keys_near(unknown: str, allowed: Sequence[str], required: Sequence[str]) -> str:
+    """The keys that may be meant: of many the near ones, and those that must be there."""
+    near = difflib.get_close_matches(unknown, allowed, n=3)
+    if len(allowed) <= MOST_KEYS or not (near or required):
+        return _("one of {allowed}", allowed=", ".join(allowed))
+    if not near:
+        return _("other keys; required: {required}", required=", ".join(required))
+    if not required:
+        return _("near to it: {near}", near=", ".join(near))
+    return _(
+        "near to it: {near}; required: {required}",
+        near=", ".join(near),
+        required=", ".join(required),
+    )
 
 
 @cache
