@@ -119,6 +119,11 @@ MISTAKES = {
         ["'mg'", "unit: g and counts_per_unit: 1000"],
     ),
     "key of another manoeuvre": ("seconds: 300", "degrees: 3", ["plan[0].degrees", "for do: rest"]),
+    "unknown key": (
+        "rate_deg_s: 10",
+        "rate_degs: 10",
+        ["plan[1].rate_degs (id x-forward)", "near to it: rate_deg_s", "required: id, do"],
+    ),
     "same id twice": ("id: x-forward", "id: x-up", ["line 10, plan[1].id", "rename one"]),
     "a path as log": ("session.asc", "../session.asc", ["log", "plain file name"]),
     "no gravity at all": (

@@ -66,7 +66,8 @@ class YamlFile:
 
     def _id_of(self, key: Key) -> str:
         """The id of the item of a list that a key is in, in brackets; nothing where it has none."""
-        part, found = getattr(self, "content", None), ""
+        part: Any = getattr(self, "content", None)
+        found = ""
         for step in key:
             try:
                 part = part[step]

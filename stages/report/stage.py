@@ -36,6 +36,7 @@ from stages.report.sections import (
     residuals,
     studies,
     temperature,
+    terms,
     uncertainty_budget,
     unmodelled_effects,
     verdict,
@@ -108,13 +109,20 @@ def _report(tables: Tables, language: str) -> dict[str, str]:
         running=f"{number} · {instrument}" + (_(" · simulated") if about["simulated"] else ""),
         simulated=bool(about["simulated"]),
         language=language,
-        chapters=[
-            *_chapters(EVIDENCE, map(str, count(1)), tables),
-            *_chapters(ANNEXES, iter(ascii_uppercase), tables),
-        ],
+        chapters=_every_chapter(tables),
         origins={key: [*map(typeset, said)] for key, said in origins(tables).items()},
     )
     return {"html": page(outline), "txt": verdict.as_text(tables)}
+
+
+def _every_chapter(tables: Tables) -> list[Chapter]:
+    """The evidence, the annexes, and behind these the terms that all of them use."""
+    letters = iter(ascii_uppercase)
+    annexes = list(_chapters(ANNEXES, letters, tables))
+    chapters = [*_chapters(EVIDENCE, map(str, count(1)), tables), *annexes]
+    if annexes and (used := list(terms.used(chapters))):
+        chapters.append(Chapter(next(letters), terms.SECTION, used))
+    return chapters
 
 
 def _chapters(

@@ -15,6 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
+from inertial.tables import CERTIFICATE
 from stages.report import origins
 from stages.report.outline import Heading, Paragraph, Part, Section, Table
 from stages.report.sections import certificate, ideal_triad, uncertainty_budget
@@ -22,10 +23,10 @@ from stages.report.sections.parameters import PARAMETERS
 from stages.report.stage import ANNEXES, EVIDENCE, STAGE, report
 from tests.report import synthetic, synthetic_faults, synthetic_unmodelled
 from tests.report.synthetic_diagnosis import diagnosed
-from tests.report.synthetic_values import Held
+from tests.report.synthetic_values import Held, rows_as
 
 TITLES = [
-    "Certificate",
+    "Result",
     "What is wrong, and what was done",
     "Noise",
     "Residuals",
@@ -54,6 +55,7 @@ TITLES = [
     "Ideal readings at the site",
     "Data accounting",
     "Provenance",
+    "Terms",
 ]
 UNITS = {  # by their definitions
     "µg": 9.80665e-6,
@@ -195,14 +197,51 @@ def test_the_result_that_counts_stands_first_and_once() -> None:
     assert page.text.index("Result: Gyroscope") < page.text.index("By method")
 
 
-def test_a_result_that_is_spoilt_has_its_reason_in_place_of_numbers() -> None:
-    made = synthetic.brief()
+def spoilt() -> dict[str, Any]:
+    """The result of the gyros withheld, for their verdict."""
+    made, why = synthetic.brief(), "Gyros: saturation. Not usable."
     own = made["result"]["sensor"] == "gyro"
     made["result"].loc[own, ["value", "sigma"]] = np.nan
-    made["result"].loc[own, "reason"] = "Gyros: saturation. Not usable."
-    tables = [part for part in parameters_of(made) if isinstance(part, Table)]
-    assert tables[1].empty == "Gyros: saturation. Not usable."
-    assert not tables[1].rows
+    made["result"].loc[own, "reason"] = why
+    made["verdict"].loc[made["verdict"]["sensor"] == "gyro", ["verdict", "sentence"]] = (
+        "not_usable",
+        why,
+    )
+    return made
+
+
+def test_a_result_that_is_withheld_is_said_to_be_and_why_once() -> None:
+    made = spoilt()
+    page = Page(synthetic.report_on(made)["html"])
+    assert page.text.count("Gyros: saturation. Not usable.") == 1
+    assert "Gyros: the result is withheld" in page.text
+    assert "values above are evidence" not in page.text
+    assert "Withheld: the sensor is not usable, as page one says." in page.text
+    assert "the result that counts is withheld: Gyroscope." in page.text
+    captions = [part.caption for part in parameters_of(made) if isinstance(part, Table)]
+    assert [text for text in captions if "value and sigma of each" in text] == [
+        "Accelerometer, joint fit of all manoeuvres: value and sigma of each parameter."
+    ]
+    assert any(text.startswith("Gyroscope by") for text in captions)  # as evidence
+
+
+def test_terms_are_those_that_the_report_uses() -> None:
+    made = synthetic.documents()["html"]
+    listed = made[made.index('<section id="terms">') :]
+    assert "<dt>held-out</dt>" in listed and "<dt>joint fit</dt>" in listed
+    little = synthetic.report_on(synthetic.poor())["html"]
+    assert "<dt>SNR</dt>" not in little[little.index('<section id="terms">') :]
+
+
+def test_without_a_laboratory_it_is_no_certificate() -> None:
+    made = synthetic.brief()
+    assert "Released by" not in synthetic.section_on(made, certificate.SECTION)
+    stated = made["certificate"]
+    row = {"item": "laboratory.name", "text": "A laboratory", "unit": ""}
+    made["certificate"] = pd.concat([stated, rows_as(CERTIFICATE, [row])])
+    shown = synthetic.section_on(made, certificate.SECTION)
+    for words in ("Certificate</h2>", "Released by", "End of the certificate"):
+        assert words in shown
 
 
 def test_effects_of_the_result_stand_below_its_parameters() -> None:

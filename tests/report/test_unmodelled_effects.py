@@ -197,6 +197,10 @@ def test_a_manoeuvre_that_would_not_split_a_class_is_not_recommended() -> None:
     made = synthetic_unmodelled.of_a_class()
     made["criticism_findings"]["split_snr"] = 0.0013
     html = blocks(on(made))["criticism/accel_quadratic"]
+    assert "No manoeuvre considered would." in html
+    assert "rest also with two axes" not in html
+    made["criticism_findings"]["split_snr"] = 1.3
+    html = blocks(on(made))["criticism/accel_quadratic"]
     assert "No manoeuvre considered would; the best, rest also with two axes" in html
     assert "expected to distinguish" not in html
 

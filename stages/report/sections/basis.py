@@ -58,7 +58,7 @@ RECORDED = Section(
     _("Every manoeuvre of the plan, and what its log contains of it."),
     _(
         "✓ recorded from rest to rest as planned; ◐ incomplete; ✗ not found. Angle and "
-        "rate are about the axis of the turn, right-hand rule. The angle is a sum of "
+        "rate are about the axis of the turn, right-hand rule; the angle is a sum of "
         "increments."
     ),
     ("manoeuvres", "performed"),

@@ -84,10 +84,9 @@ SECTION = outline.Section(
         "angle of every turn."
     ),
     _(
-        "Before and after are differences from the known value. In σ is the remaining "
-        "difference over its own σ; beyond 3 the result does not describe all errors, "
-        "and the causes in section 2 may say why. In the figures grey is before, "
-        "colour after."
+        "Before (grey in the figures) and after (in colour) are differences from the known value. "
+        "In σ is the remaining difference over its own σ; beyond 3 the result does not describe "
+        "all errors, and the causes in section 2 may say why."
     ),
     (
         *("checks", "traces", "compensated_traces", "compensation_findings"),

@@ -83,13 +83,11 @@ SECTION = Section(
     _("Residuals"),
     _("Measured readings less those that the final result predicts, effects included."),
     _(
-        "Left: fifths of each static position and whole steady rotations, with σ of white noise; "
-        "the band is ±3 σ. Right: the residuals over their σ, blocks of static positions and "
-        "seconds of steady rotation, with the normal distribution. Noise alone gives a ratio of "
-        "1.00 and leaves 0.3 % beyond 3 σ. A vibration averages out within a second, and drift of "
-        "the bias stays in. Where the table's heading is not known, the azimuth of each static "
-        "position is estimated with the result, so one direction of the gyros' residuals at rest "
-        "is fitted away."
+        "Left, fifths of each static position and whole steady rotations, with ±3 σ of white "
+        "noise; right, the residuals of blocks and of seconds of rotation over their σ, of which "
+        "noise alone leaves 0.3 % beyond 3. Where the table's heading is not known, the azimuth of "
+        "each static position is estimated with the result, so one direction of the gyros' "
+        "residuals at rest is fitted away."
     ),
     ("residuals", "manoeuvres"),
     parts,

@@ -189,7 +189,7 @@ SECTION = Section(
     _("The pictures and the findings behind each cause of section 2."),
     _(
         "Left, the whole log, where a wedge marks the place; right, the samples there. p is the "
-        "probability of such a size if nothing is wrong. What concerns the model alone stands "
+        "probability of such a size if nothing is wrong; what concerns the model alone stands "
         "in “What shows each effect”."
     ),
     (

@@ -66,10 +66,10 @@ SECTION = outline.Section(
     _("Noise"),
     _("The noise of each channel at rest, as averaging time grows, and the terms it consists of."),
     _(
-        "Left to right: quantisation falls with slope −1, white noise (random walk of angle or "
-        "velocity) with −½; bias instability is flat, a random walk of the bias rises with +½, "
-        "a ramp with +1. Points are the data with their 1-σ interval, lines the sum of the fitted "
-        "terms. Every σ of this report rests on white noise as each manoeuvre has it, on bias "
+        "Points are the data with their 1-σ interval, lines the sum of the fitted terms; from left "
+        "to right quantisation falls with slope −1, white noise (random walk of angle or velocity) "
+        "with −½, bias instability is flat, a random walk of the bias rises with +½, a ramp with "
+        "+1. Every σ of this report rests on white noise as each manoeuvre has it, on bias "
         "instability and random walk where they are certain (p < 0.1 %), and on the rounding of "
         "counts that are coarse beside it; the data sheet, dashed, is used nowhere."
     ),

@@ -103,13 +103,11 @@ PARAMETERS = Section(
         "method that the plan allows."
     ),
     _(
-        "Each value stands with its standard deviation σ. Specific force: the axis that points up "
-        "reads +g. Rotations follow the right-hand rule. The result is the one on the "
-        "certificate, in the archive, in the exports and in “Residuals”, “Compensation”, "
-        "“Navigation performance” and “Uncertainty budget”; sections that use another fit say so. "
-        "It is valid as far as the verdict on page one says. Bias, "
-        "scale errors and cross-axis terms are estimated; mounting rotation and non-orthogonality "
-        "are derived from them."
+        "Each value stands with its standard deviation σ; mounting rotation and non-orthogonality "
+        "are derived from the cross-axis terms and scale errors. The result is that of section 1, "
+        "valid as far as the verdict says, in the archive, in the exports and in “Residuals”, "
+        "“Compensation”, “Navigation performance” and “Uncertainty budget”; sections that use "
+        "another fit say so."
     ),
     RESULT_TABLES,
     parts,

@@ -179,7 +179,7 @@ SECTION = Section(
     _("Gyroscope and accelerometer of every log, as recorded."),
     _(
         "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
-        "lost. Logs at rest are drawn relative to the median, so that deviations show. Behind the "
+        "lost; logs at rest are drawn relative to the median. Behind the "
         "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn "
         "blue; hatched: not recorded, close up among the findings."
     ),

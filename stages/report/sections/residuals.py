@@ -92,11 +92,10 @@ SECTION = Section(
         "the motion of the table."
     ),
     _(
-        "Left: the gyro along the axis of rotation, measured (band) and simulated "
-        "(line). Right: the residuals, x orange, y green, z blue, from the smallest to "
-        "the largest sample. In the table noise alone gives a ratio of 1.0 with a scatter of "
-        "1/√(2n) of n values; {mark} marks ratios beyond that (4 σ, and above {least}). Turns are "
-        "evaluated by samples, static positions by the means of blocks.",
+        "Left, the gyro along the axis of rotation, measured (band) and simulated (line); right, "
+        "the residuals, x orange, y green, z blue, from the smallest to the largest sample. In the "
+        "table noise alone gives a ratio of 1.0 with a scatter of 1/√(2n) of n values; {mark} "
+        "marks ratios beyond that (4 σ, and above {least}).",
         mark=MARK,
         least=MIN_EXCESS_RATIO,
     ),

@@ -177,15 +177,12 @@ EFFECTS = outline.Section(
     _("What shows each effect"),
     _("The unmodelled effects one by one: how certain each is, what it does and what to do."),
     _(
-        "The clearest comes first. Identified: significant, and no other effect of the "
-        "catalogue has the same signature. One of a class: others have the same "
-        "signature in these data. Consistent: the name is not certain. The reduction of "
-        "χ² is stated for the data that were fitted and for held-out data, where each "
-        "manoeuvre is predicted from the others with and without the effects; an effect "
-        "that only fits noise reduces nothing there. The attainable reduction is that "
-        "of exactly known effects. Sizes are least-squares estimates, corrected for selection (an "
-        "effect is reported only if significant, so its estimate is too large on average); above "
-        "10 σ the correction is zero."
+        "The clearest comes first: identified, where no other effect of the catalogue has the same "
+        "signature; one of a class, where others have it in these data; consistent, where the name "
+        "is not certain. The reduction of χ² on held-out data is nothing where an effect only fits "
+        "noise; the attainable one is that of exactly known effects. Sizes are least-squares "
+        "estimates, corrected for selection (an effect is reported only if significant, so its "
+        "estimate is too large on average); above 10 σ the correction is zero."
     ),
     (
         *RESULT_TABLES,
