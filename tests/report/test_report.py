@@ -237,7 +237,8 @@ def test_without_a_laboratory_it_is_no_certificate() -> None:
     made = synthetic.brief()
     assert "Released by" not in synthetic.section_on(made, certificate.SECTION)
     stated = made["certificate"]
-    row = {"item": "laboratory.name", "text": "A laboratory", "unit": ""}
+    row = {"item": "laboratory.name", "text": "A laboratory", "unit": "", "file": ""}
+    row |= {"required": True}
     made["certificate"] = pd.concat([stated, rows_as(CERTIFICATE, [row])])
     shown = synthetic.section_on(made, certificate.SECTION)
     for words in ("Certificate</h2>", "Released by", "End of the certificate"):

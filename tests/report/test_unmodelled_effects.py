@@ -8,9 +8,13 @@ from functools import cache
 from typing import Any
 
 import pandas as pd
+import pytest
 
 from inertial import tables
+from inertial.effects import CATALOGUE
 from stages.report.sections import unmodelled_effects
+from stages.report.sections.effect_sentences import Tested
+from stages.report.sections.effect_tables import THERE_OR_NOT, detection_limits
 from tests.report import synthetic, synthetic_unmodelled
 from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import Held, rows_as
@@ -234,3 +238,27 @@ def test_a_walk_that_may_be_an_effect_is_one_of_a_class() -> None:
     assert ">one of a class<" in html
     said = "follow a random walk or gyro bias ramp, which this campaign cannot distinguish."
     assert said in section(page)
+
+
+@pytest.mark.parametrize(
+    ("effect", "unit", "limit", "shown"),
+    [
+        ("earth_rate_omitted", "1", 0.8, ("would be noticed", "", "", "")),
+        ("latitude_sign", "1", 1.2, ("would not be noticed", "", "", "")),
+        ("gyro_dead_band_x", "1", 0.019, ("1.9", "s", "", "%")),
+        ("gyro_dead_band_x", "1", 1.7, ("not detectable here", "", "", "")),
+        ("heading_error", "rad", 3.5, ("not detectable here", "", "", "")),
+    ],
+)
+def test_a_limit_is_no_number_beyond_what_is_possible(effect, unit, limit, shown) -> None:
+    score = {"effect": effect, "p_value": 1.0, "sentence": "", "finding": None}
+    row = {"effect": effect, "mount": "", "parameter": "s", "unit": unit, "reason": "visible"}
+    row |= {"limit": limit, "smallest": limit, "largest": limit, "remark": None}
+    table, *_others = detection_limits([row], [Tested(score, (), "")])
+    assert table.rows[0].cells[1:5] == shown
+
+
+def test_effects_that_are_there_or_not_have_no_other_size() -> None:
+    """All that have one value alone, and what can be left out as a whole."""
+    single = {name for name, effect in CATALOGUE.items() if effect.only is not None}
+    assert THERE_OR_NOT == single | {"earth_rate_omitted"}
