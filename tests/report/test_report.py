@@ -241,7 +241,8 @@ def test_without_a_laboratory_it_is_no_certificate() -> None:
     row |= {"required": True}
     made["certificate"] = pd.concat([stated, rows_as(CERTIFICATE, [row])])
     shown = synthetic.section_on(made, certificate.SECTION)
-    for words in ("Certificate</h2>", "Released by", "End of the certificate"):
+    signed = "<span>Calibrated by</span> not stated"
+    for words in ("Certificate</h2>", signed, "Released by", "End of the certificate"):
         assert words in shown
 
 

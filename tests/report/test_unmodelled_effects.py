@@ -261,4 +261,4 @@ def test_a_limit_is_no_number_beyond_what_is_possible(effect, unit, limit, shown
 def test_effects_that_are_there_or_not_have_no_other_size() -> None:
     """All that have one value alone, and what can be left out as a whole."""
     single = {name for name, effect in CATALOGUE.items() if effect.only is not None}
-    assert THERE_OR_NOT == single | {"earth_rate_omitted"}
+    assert single | {"earth_rate_omitted"} == THERE_OR_NOT
