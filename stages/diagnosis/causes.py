@@ -267,6 +267,7 @@ class Evidence:
                 continue  # no mean of theirs is of a turn
             of_both = cause.sensor is None or MOUNTING_SHIFT in cause.causes
             of_both = of_both or sensor in {rival["sensor"] for rival in cause.rivals}
+            of_both = of_both or any(name.startswith(sensor) for name in cause.causes & {*PER_RUN})
             if of_both or cause.sensor == sensor or cause.causes & result.effects.keys():
                 yield result
 
