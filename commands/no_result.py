@@ -12,6 +12,7 @@ from inertial.campaign.noise_levels import only_noise
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
 from inertial.text.numbers import counted
+from inertial.text.parameters import SENSOR_OF
 
 TWELVE = linear_names()
 MIN_NEW_POSITION_DEG = 5.0  # degrees: less than this from the rest before is no new position
@@ -39,26 +40,26 @@ def no_results(derived: Path) -> Iterator[NoResult]:
         where one of them is missing, damaged, or of another version
     """
     blocks = tables.BLOCKS.read(derived / "segment/blocks.parquet")
-    sensors = {"accelerometer": "accel", "gyroscope": "gyro"}
     recorded = {
-        s: bool(_readings(blocks, channel).notna().any(axis=None)) for s, channel in sensors.items()
+        s: bool(_readings(blocks, channel).notna().any(axis=None))
+        for s, channel in SENSOR_OF.items()
     }
     plan = tables.MANOEUVRES.read(derived / "plan/manoeuvres.parquet")
     if only_noise(plan, tables.NOISE_TERMS.read(derived / "noise/terms.parquet")):
         return
     verdicts = _not_usable(derived / "diagnosis/verdict.parquet")
     curves = _with_curves(derived / "diagnosis/temperature_curves.parquet")
-    for stage in sensors:
+    for stage in SENSOR_OF:
         if recorded[stage] or not any(recorded.values()):
             subject = _("gyros") if stage == "gyroscope" else _("accelerometers")
             parameters = tables.PARAMETERS.read(derived / f"{stage}/parameters.parquet")
             nothing = parameters["value"].isna().all()
             found = list(_undetermined(subject, parameters))
-            if nothing and sensors[stage] in curves and sensors[stage] not in verdicts:
+            if nothing and SENSOR_OF[stage] in curves and SENSOR_OF[stage] not in verdicts:
                 continue  # of use for what changes with the temperature, and that is all it is for
-            if not found and (sentence := verdicts.get(sensors[stage])) is not None:
+            if not found and (sentence := verdicts.get(SENSOR_OF[stage])) is not None:
                 found = [NoResult(subject, sentence, SEE_REPORT)]
-            yield from (replace(each, sensor=sensors[stage]) for each in found)
+            yield from (replace(each, sensor=SENSOR_OF[stage]) for each in found)
     yield from _split_rests(plan, blocks)
 
 

@@ -19,7 +19,7 @@ from commands.design.turntable import Turntable
 from commands.design.visits import Item, Visit, items_of, plan_of, visit_seconds
 from inertial.campaign.campaign_data import CampaignData, CampaignTables, campaigns_of
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import SENSORS, Campaign
+from inertial.campaign.equations import Campaign
 from inertial.campaign.foreseen import by_position, extended
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import rows_of
@@ -28,6 +28,7 @@ from inertial.estimation.random_walk import NO_DRIFT
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.splitting import MIN_SEPARATION, Rivals
 from inertial.physics.effect import Effect
+from inertial.sensors import SENSORS
 from inertial.tables.campaign_inputs import FITTED, RECORDED
 from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal

@@ -12,12 +12,12 @@ from commands.design.from_nothing import Designed
 from commands.design.wanted import NAMES, Reached
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import SENSORS
 from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.estimation.random_walk import NO_DRIFT
 from inertial.model_selection.detection_limits import VISIBLE, Visible, visible
 from inertial.model_selection.evidence import searched_effect
+from inertial.sensors import SENSORS
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import significant

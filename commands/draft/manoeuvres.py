@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from commands.draft.sensors import Kind, Part, are_means
 from commands.draft.series import MIN_REST_S, Divided, Still
 from inertial.text.messages import _, plural
+from inertial.text.parameters import AXES
 
 Array = NDArray[np.float64]
 
@@ -258,7 +259,6 @@ def _rows(part: Part, own: Divided, first: int, after: int) -> tuple[int, int]:
 
 # ---- What is missing.
 
-AXES = "xyz"
 MIN_ATTITUDES = 9  # of unknown attitude, for the nine parameters of accelerometers
 FACES = [sign + axis for axis in AXES for sign in "+-"]
 

@@ -16,6 +16,7 @@ from inertial.formats.columns.text_lines import BYTE_ORDER_MARK, names_in, witho
 from inertial.formats.file_type import FileType, file_type_of
 from inertial.formats.gps_time import NANOSECONDS
 from inertial.formats.novatel import novatel_reader
+from inertial.sensors import CHANNELS
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
@@ -168,7 +169,6 @@ def _names(line: str, delimiter: str | None, length: int) -> list[str]:
 Array = NDArray[np.float64]
 Name = str | int
 MAX_WORDS = 50  # different ones in a column that labels rows
-SENSORS = ("accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z")
 SENT = (2, 1, 0, 5, 4, 3)  # a receiver sends z, −y, x
 SENT_SIGNS = (1, -1, 1, 1, -1, 1)
 
@@ -262,7 +262,7 @@ def _receiver_log(path: Path) -> RawLog | None:
         return None
     body = np.concatenate(counts)[:, SENT] * np.array(SENT_SIGNS)
     columns: dict[Name, Array] = {"time": np.concatenate(stamps)}
-    columns |= {name: body[:, i].astype(np.float64) for i, name in enumerate(SENSORS)}
+    columns |= {name: body[:, i].astype(np.float64) for i, name in enumerate(CHANNELS)}
     return RawLog(path, {"kind": "rawimus"}, columns)
 
 
@@ -273,7 +273,7 @@ def _vectornav_log(path: Path) -> RawLog:
     units = ["m/s2"] * 3 + ["rad/s"] * 3
     columns: dict[Name, Array] = {
         f"{name} [{unit}]": own
-        for name, unit, own in zip(SENSORS, units, values.values(), strict=True)
+        for name, unit, own in zip(CHANNELS, units, values.values(), strict=True)
     }
     return RawLog(path, {"kind": "vectornav"}, columns)
 

@@ -9,12 +9,13 @@ import pandas as pd
 from inertial import tables
 from inertial.campaign.records import Row, with_mount
 from inertial.estimation.consistency import holm_rejections, normal_p_value
+from inertial.sensors import SINGULAR
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, p_is, plus_minus
 from inertial.text.parameters import PARTS, SENSOR_OF
 from inertial.text.units import quantity
 
-SENSORS = {"accelerometer": (_("accelerometer"), _("force")), "gyroscope": (_("gyro"), _("rate"))}
+INPUTS = {"accel": _("force"), "gyro": _("rate")}
 FORMS = {
     "cubic": _("what all gyros read beyond a straight line, with the cube of the rate"),
     "asymmetry": _("what all gyros read beyond a straight line, with the size of the rate"),
@@ -125,17 +126,17 @@ def named(stage: str, name: str) -> str:
     if name in FORMS:
         return FORMS[name]
     kind, axes = PARTS[name]
-    sensor, input_ = SENSORS[stage]
+    sensor = SENSOR_OF[stage]
     if kind == "cross":
         return _(
             "response of the {axes} {sensor} to {input} along {axes_2}",
             axes=axes[0],
-            sensor=sensor,
-            input=input_,
+            sensor=SINGULAR[sensor],
+            input=INPUTS[sensor],
             axes_2=axes[1],
         )
     what = {"bias": _("bias"), "scale": _("scale factor")}[kind]
-    return _("{what} of the {axes} {sensor}", what=what, axes=axes, sensor=sensor)
+    return _("{what} of the {axes} {sensor}", what=what, axes=axes, sensor=SINGULAR[sensor])
 
 
 def table_of(differences: Sequence[Difference], level: float) -> pd.DataFrame:

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.equations import SENSORS, Campaign
+from inertial.campaign.equations import Campaign
 from inertial.campaign.shared_tilts import shared_tilts
 from inertial.estimation.least_squares import EffectInformation, System
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect
+from inertial.sensors import SENSORS
 
 Array = NDArray[np.float64]
 

@@ -33,6 +33,7 @@ from inertial.estimation.switch_ons import SwitchOns
 from inertial.physics.effect import Array, Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined
+from inertial.sensors import SENSORS
 from inertial.text.messages import _
 
 PRIOR_SIZE = 10.0  # prior sigma of an effect, in its typical sizes
@@ -41,7 +42,6 @@ NO_GYROS = _(
     "it changes no reading of the accelerometers, and the gyros are not simulated, for the joint "
     "estimate does not determine all of their parameters"
 )
-SENSORS = ("gyro", "accel")
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
 NOTHING_SHARED: Mapping[str, Sequence[Name]] = {}
 MAX_KEPT = 4  # equations with different effects

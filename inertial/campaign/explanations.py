@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from inertial.campaign.hypotheses import LAW, MAX_CARRYING, MODEL, POSITIONS, Hypothesis
+from inertial.sensors import SENSORS
 
 Where = Callable[[Hypothesis, Hypothesis], bool]
 
@@ -69,13 +70,9 @@ _KIND = {
         "periodic": ("oscillation", "table_ripple", "table_eccentricity", "table_wobble"),
         "temperature": (
             "temperature_drift",
-            *(
-                f"{s}_{what}"
-                for s in ("gyro", "accel")
-                for what in ("warm_up", "bias_ramp", "scale_ramp")
-            ),
-            *(f"{s}_temperature" for s in ("gyro", "accel")),
-            *(f"{s}_{what}_temperature" for s in ("gyro", "accel") for what in ("bias", "scale")),
+            *(f"{s}_{what}" for s in SENSORS for what in ("warm_up", "bias_ramp", "scale_ramp")),
+            *(f"{s}_temperature" for s in SENSORS),
+            *(f"{s}_{what}_temperature" for s in SENSORS for what in ("bias", "scale")),
         ),
         "saturation": ("saturation", "gyro_saturation", "accel_saturation"),
         "scale of counts": ("wrong_scale_factor", "wrong_scale_of_turns", "wrong_imu_type"),

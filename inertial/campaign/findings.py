@@ -13,9 +13,10 @@ import pandas as pd
 from inertial import tables
 from inertial.campaign.detection import Events
 from inertial.campaign.masked_samples import RecordIndex, rows_between
-from inertial.signal.detector import CHANNELS, UNITS, Detector, Event, Log
+from inertial.sensors import CHANNELS, UNITS
+from inertial.signal.detector import Detector, Event, Log
 from inertial.signal.plan_detector import PlanDetector
-from inertial.tables import FINDINGS, MASKS
+from inertial.tables import CHANNEL_PARTS, FINDINGS, MASKS
 from inertial.tables.parquet import Stream
 
 MAX_SINGLE_EVENTS = 8  # of a kind in one place; more of them are one finding with a count
@@ -133,7 +134,8 @@ def _channel(channel: int | None) -> dict[str, str | None]:
     """Sensor and axis of a channel."""
     if channel is None:
         return {"sensor": None, "axis": None}
-    return {"sensor": "accel" if channel < 3 else "gyro", "axis": "xyz"[channel % 3]}
+    sensor, axis = CHANNEL_PARTS[CHANNELS[channel]]
+    return {"sensor": sensor, "axis": axis}
 
 
 def _finding(
@@ -141,7 +143,7 @@ def _finding(
 ) -> Finding:
     description = detector.describe(event, name)
     channel = _channel(event.channel)
-    unit = detector.unit or ("1" if event.channel is None else UNITS[event.channel])
+    unit = detector.unit or (UNITS[channel["sensor"]] if channel["sensor"] else "1")
     return Finding(
         id=identifier,
         cause=detector.name,

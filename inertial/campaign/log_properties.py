@@ -13,12 +13,11 @@ from inertial.campaign.sums import SumsOver
 from inertial.physics.site import normal_gravity
 from inertial.signal.detector import Booleans, Given, Log, Windows
 from inertial.signal.scatter import MAD_TO_SIGMA, MIN_RELATIVE_STEP, median
-from inertial.tables import AXES, CHANNEL_STATISTICS, CHANNELS
+from inertial.tables import CHANNEL_PARTS, CHANNEL_STATISTICS, CHANNELS
 
 MAX_READINGS = 1 << 16  # of a batch, from which its noise and smallest step are taken
 WINDOW = 1.0  # s
 MIN_COMMON_LOGS = 3  # logs that can have an interval in common
-SENSORS = ("accel",) * 3 + ("gyro",) * 3
 HELD_WINDOW = 256  # records
 MIN_HELD_SHARE = 0.1  # of the records of nine in ten windows
 MAX_EQUAL_ALONE = 0.3  # share of an axis of other records: its counts are not coarse
@@ -132,8 +131,8 @@ class ChannelStatistics:
             pd.DataFrame(
                 {
                     "log": log,
-                    "sensor": SENSORS,
-                    "axis": AXES * 2,
+                    "sensor": [sensor for sensor, _axis in CHANNEL_PARTS.values()],
+                    "axis": [axis for _sensor, axis in CHANNEL_PARTS.values()],
                     "resolution": channels.resolution,
                     "noise": channels.median_noise(),
                     "unchanged_share": channels.unchanged / np.maximum(channels.pairs, 1),
@@ -263,14 +262,11 @@ def logs(
     clock = clocks_of(clocks)
     in_all = statistics.assign(reach=statistics[["smallest", "largest"]].abs().max(axis=1))
     in_all = in_all.groupby(["sensor", "axis"]).agg({"reach": "max", "noise": "median"})
-    in_all = in_all.loc[[*zip(SENSORS, AXES * 2, strict=True)]]
+    in_all = in_all.loc[[*CHANNEL_PARTS.values()]]
     made = {}
     for name, own in statistics.groupby("log", sort=False):
         log = str(name)
-        channels = [
-            stated.get((log, sensor, axis), {})
-            for sensor, axis in zip(SENSORS, AXES * 2, strict=True)
-        ]
+        channels = [stated.get((log, sensor, axis), {}) for sensor, axis in CHANNEL_PARTS.values()]
         made[log] = Log(
             name=log,
             given=given,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.equations import SENSORS, Campaign
+from inertial.campaign.equations import Campaign
 from inertial.campaign.equations_by_hand import ByHand, motion_of
 from inertial.campaign.motions import CampaignMotions, Merged, mean_motions, positions_of
 from inertial.campaign.records import Manoeuvre
@@ -16,6 +16,7 @@ from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
 from inertial.physics.motion import Motion, is_vertical, level_axes, mean_turned
+from inertial.sensors import SENSORS
 from inertial.tables import ACCEL
 
 Array = NDArray[np.float64]

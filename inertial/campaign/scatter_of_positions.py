@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.equations import SENSORS, Campaign
+from inertial.campaign.equations import Campaign
 from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.gyroscope_observations import RateSegment, StaticRate
@@ -23,6 +23,7 @@ from inertial.estimation.variance_components import (
     with_scatter,
 )
 from inertial.physics.effect import Effect
+from inertial.sensors import SENSORS
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import CHANNELS, Description, Detector, Event, Log, Piece, read_in
+from inertial.sensors import CHANNELS
+from inertial.signal.detector import Description, Detector, Event, Log, Piece, read_in
 from inertial.signal.static_tilt import Jump, Resting, jumps
 from inertial.signal.steps import Step
 from inertial.text.messages import _

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtr
 
-from inertial.signal.detector import SENSORS, Array, Description, Detector, Event, Log
+from inertial.sensors import COLUMNS
+from inertial.signal.detector import Array, Description, Detector, Event, Log
 from inertial.text.messages import _
 from inertial.text.numbers import counted, p_is, significant
 
@@ -43,7 +44,7 @@ class BiasRemoved(Detector):
 
     def detect_between_logs(self, logs: Mapping[str, Log]) -> Iterator[Event]:
         timed = [log for log in logs.values() if np.isfinite(log.step) and len(log.windows.time)]
-        for sensor, axes in SENSORS.items():
+        for sensor, axes in COLUMNS.items():
             own = [log for log in timed if np.isfinite(log.windows.mean[:, axes]).all()]
             if not own:
                 continue
@@ -51,7 +52,7 @@ class BiasRemoved(Detector):
             lengths: list[int | None] = [None, *range(1, min(shortest, MAX_BEGINNING) + 1)]
             chances = [_chance(own, axes, length) for length in lengths]
             best = int(np.argmin(chances))
-            chance = len(lengths) * len(SENSORS) * chances[best]
+            chance = len(lengths) * len(COLUMNS) * chances[best]
             if chance < MAX_CHANCE:
                 facts = _Facts(len(own), lengths[best])
                 size = float(len(own))

@@ -5,15 +5,8 @@ from itertools import combinations
 
 import numpy as np
 
-from inertial.signal.detector import (
-    SENSORS,
-    Description,
-    Detector,
-    Event,
-    Log,
-    Piece,
-    channel_name,
-)
+from inertial.sensors import COLUMNS
+from inertial.signal.detector import Description, Detector, Event, Log, Piece, channel_name
 from inertial.text.messages import _
 from inertial.text.numbers import whole
 
@@ -39,7 +32,7 @@ class CopiedChannel(Detector):
     alike = "sensor"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        for axes in SENSORS.values():
+        for axes in COLUMNS.values():
             for pair in combinations(range(axes.start, axes.stop), 2):
                 first = np.abs(piece.values[:FIRST, pair])
                 if not np.array_equal(first[:, 0], first[:, 1], equal_nan=True):

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf
 
+from inertial.sensors import COLUMNS
 from inertial.signal.detector import (
-    SENSORS,
     Array,
     Booleans,
     Description,
@@ -148,7 +148,7 @@ class DeadAxis(Detector):
         channels = [_Channel.of(*_readings(piece, log, i)) for i in range(6)]
         noise = [channel.noise for channel in channels]
         loudest = max(np.nan_to_num(noise))
-        for sensor, axes in SENSORS.items():
+        for sensor, axes in COLUMNS.items():
             changing = [own for own in channels[axes] if np.isfinite(own.noise)]
             for i in range(axes.start, axes.stop):
                 own = channels[i]
@@ -297,7 +297,7 @@ def _turned(piece: Piece, axis: int, gyros: Sequence[_Channel]) -> FreeRotation:
     counts = np.array([gyro.count for gyro in gyros])
     noise = counts * np.array([gyro.noise for gyro in gyros])
     count = float(counts[np.isfinite(counts)].max())
-    return FreeRotation.beside(axis, piece.values[:, SENSORS["gyro"]], noise, count)
+    return FreeRotation.beside(axis, piece.values[:, COLUMNS["gyro"]], noise, count)
 
 
 def _chance(length: Integers, rough: float) -> Array:

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.axis_permutations import AXES
 from inertial.signal.detector import Array, Description
 from inertial.signal.plan_detector import (
     Deviation,
@@ -16,6 +15,7 @@ from inertial.signal.plan_detector import (
 )
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
+from inertial.text.parameters import AXES
 
 SAME_REST_COSINE = float(np.cos(np.radians(1)))  # of two rests with no move between
 MIN_SAME_COSINE = float(np.cos(np.radians(25)))  # directions that are the same

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inertial.sensors import COLUMNS
 from inertial.signal.detector import (
-    SENSORS,
     Description,
     Detector,
     Event,
@@ -55,7 +55,7 @@ class PeriodicGlitch(Detector):
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for glitch in log.glitches:
-            own = range(6)[SENSORS[glitch.sensor]] if glitch.channel is None else [glitch.channel]
+            own = range(6)[COLUMNS[glitch.sensor]] if glitch.channel is None else [glitch.channel]
             places = np.flatnonzero(glitch.falls_on(piece.time))
             for start, end in joined(places, 0):
                 for i in own:

@@ -5,16 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.signal.detector import (
-    CHANNELS,
-    Array,
-    Description,
-    Detector,
-    Event,
-    Log,
-    Piece,
-    read_in,
-)
+from inertial.sensors import CHANNELS
+from inertial.signal.detector import Array, Description, Detector, Event, Log, Piece, read_in
 from inertial.signal.scatter import (
     BLOCK,
     in_blocks,

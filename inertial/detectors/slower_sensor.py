@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import SENSORS, Description, Detector, Event, Log
+from inertial.sensors import COLUMNS, PLURAL
+from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
@@ -38,10 +39,10 @@ class SlowerSensor(Detector):
     alike = "sensor"
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
-        slower = [name for name, share in zip(SENSORS, log.held, strict=True) if share]
+        slower = [name for name, share in zip(COLUMNS, log.held, strict=True) if share]
         together = len(slower) == 2 and abs(np.diff(log.held)[0]) < SAME_SHARE
         for sensors in [slower] if together else [[name] for name in slower]:
-            share = float(log.held[list(SENSORS).index(sensors[0])])
+            share = float(log.held[list(COLUMNS).index(sensors[0])])
             yield log.event(
                 1 / (1 - share),
                 sensor=None if together else sensors[0],
@@ -49,7 +50,6 @@ class SlowerSensor(Detector):
             )
 
     def describe(self, event: Event, name: str) -> Description:
-        told = {"accel": _("accelerometers"), "gyro": _("gyros")}
         known = np.isfinite(event.facts.step)
         rate = 1 / event.facts.step if known else np.nan
         at = _(
@@ -61,7 +61,7 @@ class SlowerSensor(Detector):
             _(
                 "{name}: each reading of the {sensors} is there {times} times{at}.",
                 name=name,
-                sensors=listed([told[sensor] for sensor in event.facts.sensors]),
+                sensors=listed([PLURAL[sensor] for sensor in event.facts.sensors]),
                 times=significant(event.size, 3),
                 at=at if known else "",
             ),

@@ -7,7 +7,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import stdtr
 
-from inertial.signal.detector import SENSORS, Array, Description, Detector, Event, Log, Piece
+from inertial.sensors import COLUMNS
+from inertial.signal.detector import Array, Description, Detector, Event, Log, Piece
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.signal.static_tilt import (
     CAMPAIGN_RESTS,
@@ -313,7 +314,7 @@ def _turned(resting: Resting, own: list[Jump], tilt: Array, length: int) -> Agre
     size = float(np.sum(uneven**2))
     level = resting.level(rotation)
     wander = float(np.sum((rotation @ resting.up) ** 2))
-    white = float(np.max(resting.noise[SENSORS["gyro"]])) * resting.interval
+    white = float(np.max(resting.noise[COLUMNS["gyro"]])) * resting.interval
     wander = max(wander, k / 15 * white**2 * k * length)
     if size <= 0:
         return UNCONFIRMED

@@ -8,12 +8,14 @@ from typing import Self
 import numpy as np
 
 from inertial.physics.effect import Array, Constant, Effect, Parameter, Reading, Truth, by_grade
-from inertial.physics.laws import AXES, LAWS, OWN, functions, unknown
+from inertial.physics.laws import LAWS, OWN, functions, unknown
 from inertial.physics.motion import Motion
+from inertial.sensors import SENSORS
 from inertial.text.messages import _
+from inertial.text.parameters import AXES
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
-SENSORS = {"gyro": ("rad/s", DEGREE_PER_HOUR), "accel": ("m/s²", 1e-5 * STANDARD_GRAVITY)}
+SIZES = {"gyro": ("rad/s", DEGREE_PER_HOUR), "accel": ("m/s²", 1e-5 * STANDARD_GRAVITY)}
 WIDE = 1e3  # of the usual size, which of a shape that is far from 1 says nothing
 ALL = "all"  # axes, each with a size of its own
 
@@ -35,7 +37,7 @@ class Law(Effect):
         self.sensor, self.axis, self.family, self.state = sensor, axis, family, state
         self.shape = tuple(shape)
         self.name = law_name(sensor, axis, family, state)  # type: ignore[misc]
-        unit, size = SENSORS[sensor]
+        unit, size = SIZES[sensor]
         self.sizes = by_grade(size, 0.1, 1, 10, 100)  # type: ignore[misc]
         self.parameters = tuple(  # type: ignore[misc]
             Parameter(
@@ -46,9 +48,9 @@ class Law(Effect):
         )
 
     @property
-    def axes(self) -> str:
+    def axes(self) -> tuple[str, ...]:
         """Those that have it."""
-        return AXES if self.axis == ALL else self.axis
+        return AXES if self.axis == ALL else (self.axis,)
 
     @property
     def _terms(self) -> Sequence[str]:

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.physics.drift import without_clock, without_temperature
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
 from inertial.physics.motion import Motion
+from inertial.sensors import PLURAL
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
@@ -14,7 +15,6 @@ WIDTHS = (1.0, 2.0, 4.0, 8.0)  # K
 MIN_RETURN = 5.0  # K, by which the temperature must go back on its way
 ONE_WAY = _("The temperature goes one way only, so warming cannot be compared with cooling.")
 UNITS = {"accel": ("m/s²", 1e-5 * STANDARD_GRAVITY), "gyro": ("rad/s", 0.1 * DEGREE_PER_HOUR)}
-SENSORS = {"accel": _("accelerometers"), "gyro": _("gyros")}
 
 
 class ThermalHysteresis(Effect):
@@ -35,7 +35,7 @@ class ThermalHysteresis(Effect):
         self.name = hysteresis_name(sensor)  # type: ignore[misc]
         self.cause = _(  # type: ignore[misc]
             "the biases of the {sensors} are others after warming and after cooling",
-            sensors=SENSORS[sensor],
+            sensors=PLURAL[sensor],
         )
         self.sizes = dict.fromkeys(("fog", "tactical", "mti", "consumer"), size)  # type: ignore[misc]
         self.parameters = tuple(  # type: ignore[misc]

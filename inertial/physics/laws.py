@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from inertial.physics.drift import without_clock, without_temperature
 from inertial.physics.motion import Motion
+from inertial.text.parameters import AXES
 from inertial.text.units import DEGREE, HOUR
 
 Array = NDArray[np.float64]
@@ -17,7 +18,6 @@ NODES, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(5))  # of
 RATE = 10 * DEGREE  # rad/s
 MINUTE = 60.0  # s
 SLOPE_SECONDS = 20.0  # s, over which the rate of a temperature is taken
-AXES = "xyz"
 MAX_CYCLES, RAMPS, STEPS = 20.0, 24, 360  # of a campaign
 OF_FORCE = ("power", "odd_power", "polynomial", "hysteresis")
 OF_STATE = {

@@ -8,9 +8,8 @@ from itertools import permutations, product
 import numpy as np
 
 from inertial.physics.motion import cross
+from inertial.sensors import COLUMNS, SINGULAR
 from inertial.signal.detector import (
-    SENSOR_NAMES,
-    SENSORS,
     Array,
     Description,
     Event,
@@ -22,8 +21,8 @@ from inertial.signal.detector import (
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
+from inertial.text.parameters import AXES
 
-AXES = "xyz"
 SIDE_READINGS = 5  # readings on each side that are compared: the shortest exchange
 SCATTER_READINGS = 32  # readings on each side by which their scatter is had
 # Times the largest change among those: what no motion does from reading to reading
@@ -131,8 +130,8 @@ class Exchange:
 def describe_exchange(event: Event, name: str, sensor: str) -> Description:
     """An exchange in words."""
     exchange: Exchange = event.facts
-    what = SENSOR_NAMES[sensor]
-    scale, unit = read_in(SENSORS[sensor].start)
+    what = SINGULAR[sensor]
+    scale, unit = read_in(COLUMNS[sensor].start)
     other = (
         _(" So do those of the gyros: {in_words}.", in_words=exchange.with_it.in_words)
         if exchange.with_it
@@ -192,12 +191,12 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Sequence[Exchange]:
     """
     found: list[Exchange] = []
     others = 0  # jumps that no exchange explains
-    triad = piece.values[:, SENSORS[sensor]]
+    triad = piece.values[:, COLUMNS[sensor]]
     places = np.flatnonzero(np.isfinite(triad).all(axis=1))
     values = triad[places]
     if len(values) < 2 * SIDE_READINGS:
         return found
-    smallest = np.nan_to_num(log.quantum[SENSORS[sensor]])
+    smallest = np.nan_to_num(log.quantum[COLUMNS[sensor]])
     open_: tuple[int, Array, Array, list[Permutation]] | None = None
     for k in _sudden(values, smallest):
         if _broken(piece, log, places, k):
@@ -281,12 +280,12 @@ def _struck(piece: Piece, log: Log, place: int, other: str) -> bool:
     Where its axes are exchanged at the same record, that jump is none.
     """
     first = max(place - SCATTER_READINGS, 0)
-    values = piece.values[first : place + SCATTER_READINGS, SENSORS[other]]
+    values = piece.values[first : place + SCATTER_READINGS, COLUMNS[other]]
     there = np.flatnonzero(np.isfinite(values).all(axis=1))
     values, at = values[there], int(np.searchsorted(there, place - first))
     if min(at, len(values) - at) < SIDE_READINGS:
         return False
-    smallest = np.nan_to_num(log.quantum[SENSORS[other]])
+    smallest = np.nan_to_num(log.quantum[COLUMNS[other]])
     changes = np.abs(np.diff(values, axis=0))
     scatter = np.maximum(MAD_TO_SIGMA * np.median(changes, axis=0), smallest)
     jumps = np.asarray((changes > MIN_JUMP_SIGMA * scatter).any(axis=1))
@@ -298,7 +297,7 @@ def _struck(piece: Piece, log: Log, place: int, other: str) -> bool:
 def _turned(piece: Piece, log: Log, places: Integers, k: int, before: Array, after: Array) -> bool:
     """Whether a turn of the IMU explains part of the change: df/dt = −ω × f, by the gyros."""
     rates = piece.values[
-        places[k - SIDE_READINGS] : places[k + SIDE_READINGS - 1] + 1, SENSORS["gyro"]
+        places[k - SIDE_READINGS] : places[k + SIDE_READINGS - 1] + 1, COLUMNS["gyro"]
     ]
     known = rates[np.isfinite(rates).all(axis=1)]
     if not len(known) or not np.isfinite(log.interval):

@@ -8,33 +8,28 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.sensors import CHANNELS, COLUMNS, SINGULAR, UNITS
 from inertial.text.messages import _
 from inertial.text.units import in_degrees
 
 if TYPE_CHECKING:
     from inertial.signal.phase_folding import Glitch
 
-SENSOR_NAMES = {"accel": _("accelerometer"), "gyro": _("gyro")}
-
 
 def channel_name(channel: int) -> str:
     """Its sensor and axis: accelerometer x, gyro z."""
     sensor, _underscore, axis = CHANNELS[channel].partition("_")
-    return _("{sensor} {axis}", sensor=SENSOR_NAMES[sensor], axis=axis)
+    return _("{sensor} {axis}", sensor=SINGULAR[sensor], axis=axis)
 
 
 def read_in(channel: int) -> tuple[float, str]:
     """What a person reads it in, °/s or m/s²: how many of these are one SI unit, and its name."""
-    return in_degrees(1.0, UNITS[channel])
+    return in_degrees(1.0, UNITS[CHANNELS[channel].partition("_")[0]])
 
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Booleans = NDArray[np.bool_]
-
-CHANNELS = ("accel_x", "accel_y", "accel_z", "gyro_x", "gyro_y", "gyro_z")
-UNITS = ("m/s²",) * 3 + ("rad/s",) * 3
-SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 
 
 @dataclass(frozen=True)
@@ -214,7 +209,7 @@ class Event:
         """The channels that it concerns; none where it is the whole record."""
         if self.channel is not None:
             return (self.channel,)
-        own = SENSORS.get(self.sensor or "", slice(0, 0))
+        own = COLUMNS.get(self.sensor or "", slice(0, 0))
         return range(own.start, own.stop)
 
 

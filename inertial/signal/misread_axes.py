@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from inertial.signal.axis_permutations import AXES, Permutation
+from inertial.sensors import PLURAL
+from inertial.signal.axis_permutations import Permutation
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import (
     Deviation,
@@ -13,8 +14,8 @@ from inertial.signal.plan_detector import (
 )
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
+from inertial.text.parameters import AXES
 
-SENSOR_NAMES = {"accel": "accelerometers", "gyro": "gyros"}
 MAX_NAMES = 6  # in a sentence
 
 
@@ -70,7 +71,7 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
 
 def _sentence(misread: Misread, recorded: Recorded) -> str:
     """Which axes are others, and what shows it."""
-    sensor = SENSOR_NAMES[misread.sensor]
+    sensor = PLURAL[misread.sensor]
     where = _("in {log}", log=misread.log) if misread.log else "in all logs"
     if misread.spans:
         return _(
@@ -99,7 +100,7 @@ def _sentence(misread: Misread, recorded: Recorded) -> str:
 
 
 def _consequence_in_all_logs(misread: Misread) -> str:
-    sensor, axes = SENSOR_NAMES[misread.sensor], _in_the_matrix(misread.axes)
+    sensor, axes = PLURAL[misread.sensor], _in_the_matrix(misread.axes)
     if misread.undone:
         return _(
             "Taken as they are named, the {sensor} would give {axes}; the biases would be "

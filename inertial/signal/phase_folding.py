@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
-from inertial.signal.detector import CHANNELS, SENSORS, Array, Booleans, Integers
+from inertial.sensors import CHANNELS, COLUMNS
+from inertial.signal.detector import Array, Booleans, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA, median
 
 PERIODS = (60.0, 30.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)  # s, each divides the first
@@ -32,7 +33,7 @@ LIKELIER = 9.0  # chi-squared by which a period must be better, for another to b
 # What may be off: a channel by a constant, or all of a sensor by a share of what they read.
 SIGNATURES: tuple[tuple[str, int | None], ...] = (
     *((channel.partition("_")[0], i) for i, channel in enumerate(CHANNELS)),
-    *((sensor, None) for sensor in SENSORS),
+    *((sensor, None) for sensor in COLUMNS),
 )
 
 
@@ -116,7 +117,7 @@ class Folded:
             there = known[i].astype(np.float64)
             counted = np.clip(y[i], -MAX_OFF_SIGMA, MAX_OFF_SIGMA)
             self._take(i, phase, counted, there, there, off[i], there)
-        for number, own in enumerate(SENSORS.values(), len(CHANNELS)):
+        for number, own in enumerate(COLUMNS.values(), len(CHANNELS)):
             s = np.where(known[own], level[own], 0.0) / sigma[own]
             s[np.abs(s) < MIN_LEVEL_SIGMA] = 0.0
             square, w2 = s**2, np.sum(np.abs(s), axis=0)

@@ -6,7 +6,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from inertial.physics.motion import cross
-from inertial.signal.detector import CHANNELS, SENSORS, Array, Booleans, Integers, Log, Piece
+from inertial.sensors import CHANNELS, COLUMNS
+from inertial.signal.detector import Array, Booleans, Integers, Log, Piece
 from inertial.signal.scatter import MAD_TO_SIGMA, median
 from inertial.signal.steps import MAX_SIDE_S, Step, steps
 
@@ -64,17 +65,17 @@ class Resting:
 
     def recorded(self, sensor: str) -> bool:
         """Whether all three axes of a sensor are there."""
-        return bool(np.isfinite(self.noise[SENSORS[sensor]]).all())
+        return bool(np.isfinite(self.noise[COLUMNS[sensor]]).all())
 
     @cached_property
     def force(self) -> Array:
         """Specific force, (n, 3), m/s²."""
-        return self.values[:, SENSORS["accel"]]
+        return self.values[:, COLUMNS["accel"]]
 
     @cached_property
     def rate(self) -> Array:
         """Angular rate, (n, 3), rad/s."""
-        return self.values[:, SENSORS["gyro"]]
+        return self.values[:, COLUMNS["gyro"]]
 
     @cached_property
     def up(self) -> Array:
@@ -149,7 +150,7 @@ class Resting:
         k = len(self) // length
         both = np.ones(k, bool)
         for sensor in ("accel", "gyro"):
-            own = np.flatnonzero(np.isfinite(self.noise[SENSORS[sensor]])) + SENSORS[sensor].start
+            own = np.flatnonzero(np.isfinite(self.noise[COLUMNS[sensor]])) + COLUMNS[sensor].start
             change = np.abs(np.diff(self.values[: k * length, own], axis=0))
             change = np.concatenate([change, change[-1:]]).reshape(k, length, len(own))
             usual = self.noise[own] * np.sqrt(2) / MAD_TO_SIGMA

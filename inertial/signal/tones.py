@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.fft import rfft
 
-from inertial.signal.detector import SENSORS, Array, Integers, Log, Piece
+from inertial.sensors import COLUMNS
+from inertial.signal.detector import Array, Integers, Log, Piece
 from inertial.signal.spectral_lines import (
     HOP,
     PART_BINS,
@@ -112,7 +113,7 @@ class AxisLine:
 def tones(piece: Piece, log: Log) -> Iterator[Tone]:
     """The oscillations of a piece, each with the channel in which it is largest."""
     triads = [
-        triad for axes in SENSORS.values() for triad in _triads(piece, log.interval, axes.start)
+        triad for axes in COLUMNS.values() for triad in _triads(piece, log.interval, axes.start)
     ]
     remaining = [
         line for triad in triads for axis in range(3) for line in _axis_lines(triad, axis, log)

@@ -1,5 +1,6 @@
 """The tables that pass between stages, each column with its unit, frame and meaning."""
 
+from inertial.sensors import CHANNELS, UNITS
 from inertial.tables.calibrated import (
     ARCHIVED,
     CALIBRATION,
@@ -88,17 +89,7 @@ from inertial.tables.recorded import (
     SEGMENTS,
     TRACES,
 )
-from inertial.tables.shared import (
-    ACCEL,
-    AXES,
-    BODY,
-    CHANNEL_PARTS,
-    CHANNELS,
-    GYRO,
-    OF_TRIAD,
-    STATIC_PHASES,
-    UNITS,
-)
+from inertial.tables.shared import ACCEL, BODY, CHANNEL_PARTS, GYRO, OF_TRIAD, STATIC_PHASES
 from inertial.tables.studied import (
     BANDWIDTHS,
     ENCODER,
@@ -127,3 +118,4 @@ from inertial.tables.unmodelled import (
     STRUCTURE_POINTS,
     STRUCTURES,
 )
+from inertial.text.parameters import AXES

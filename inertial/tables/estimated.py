@@ -1,7 +1,8 @@
 """Noise, parameters, covariance, fits and comparisons."""
 
-from inertial.tables.shared import AXES, BODY, METHOD, MOUNT, QUANTITY, SENSOR
+from inertial.tables.shared import BODY, METHOD, MOUNT, QUANTITY, SENSOR
 from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.text.parameters import AXES
 
 # --- Noise, parameters, covariance, fits and positions ---
 

@@ -1,17 +1,8 @@
 """What was recorded: samples, clocks, findings, masks, segments, blocks."""
 
-from inertial.tables.shared import (
-    AS_CHANNEL,
-    AXES,
-    AXIS,
-    BODY,
-    LOG,
-    PHASES,
-    RECORDS,
-    SENSOR,
-    channels,
-)
+from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, PHASES, RECORDS, SENSOR, channels
 from inertial.tables.table import DOUBLE, INTEGER, LABEL, SENTENCE, TEXT, TRUTH, WORD, Column, Table
+from inertial.text.parameters import AXES
 
 SAMPLES = Table(
     "samples",

@@ -1,12 +1,11 @@
 """What many tables share: types, axes, channels, and columns that come together."""
 
+from inertial.sensors import CHANNELS, UNITS
 from inertial.tables.table import DOUBLE, INTEGER, TEXT, Column
+from inertial.text.parameters import AXES
 
-AXES = ("x", "y", "z")
 # Lists, for pandas takes a tuple as one name.
 ACCEL, GYRO = ([f"{sensor}_{axis}" for axis in AXES] for sensor in ("accel", "gyro"))
-CHANNELS = (*ACCEL, *GYRO)
-UNITS = {"accel": "m/s²", "gyro": "rad/s"}
 STATIC_PHASES = ["rest", "rest-before", "rest-after"]  # in which the table is at rest
 PHASES = (
     "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning;"

@@ -13,8 +13,8 @@ from inertial.estimation.sharing import LEVELS, shares
 from inertial.estimation.type_population import of_new_imu, type_population
 from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
 from inertial.model_selection.fleet_search import Finding, FleetSearch, fleet_law
+from inertial.sensors import UNITS
 from inertial.tables.fleet import FLEET
-from inertial.tables.shared import UNITS
 from overviews.fleet.members import (
     PARAMETERS,
     Member,

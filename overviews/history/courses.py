@@ -8,6 +8,7 @@ from datetime import date, timedelta
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from inertial.sensors import UNITS
 from inertial.text.messages import _
 from inertial.text.parameters import AXES, BIAS, CROSS, PARTS, SCALE
 from inertial.text.typography import capital
@@ -79,7 +80,7 @@ def figures(imu: Imu) -> Iterator[outline.Figure]:
 
 
 def _bias_unit(sensor: str) -> str:
-    return {"accel": "m/s²", "gyro": "rad/s"}[sensor]
+    return UNITS[sensor]
 
 
 def _dated(values: Sequence[Observed]) -> list[Observed]:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from inertial.sensors import UNITS
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.units import quantity
@@ -194,7 +195,7 @@ def _rows(imu: Imu, sensor: str) -> Iterator[outline.Row]:
     for (of, parameter), values in imu.series.items():
         if of != sensor:
             continue
-        unit = quantity(parameter, {"accel": "m/s²", "gyro": "rad/s"}[sensor]).laboratory
+        unit = quantity(parameter, UNITS[sensor]).laboratory
         decimals = numbers.common_decimals(value.sigma / unit.size for value in values)
         yield outline.head(parameter.replace("_", " "))
         before: Observed | None = None

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
+from inertial.sensors import UNITS
 from inertial.text import numbers
 from inertial.text.messages import _, plural
 from inertial.text.parameters import PARTS
@@ -25,7 +26,6 @@ from stages.report.words import SENSOR
 SCRIPT = Path(__file__).with_name("sorted_tables.js")
 MOST_CAUSES = 2
 KINDS = {"bias": _("bias"), "scale": _("scale"), "cross": _("cross")}
-BIAS_UNITS = {"accel": "m/s²", "gyro": "rad/s"}
 
 
 @dataclass(frozen=True)
@@ -207,7 +207,7 @@ def _causes(tables: Tables) -> str:
 
 def _unit(sensor: str, kind: str) -> Unit:
     parameter = next(name for name, parts in PARTS.items() if parts.kind == kind)
-    return quantity(parameter, BIAS_UNITS[sensor] if kind == "bias" else "1").laboratory
+    return quantity(parameter, UNITS[sensor] if kind == "bias" else "1").laboratory
 
 
 def _worst_sigma(tables: Tables, sensor: str, kind: str) -> float | None:

@@ -31,6 +31,7 @@ from inertial.estimation.input_output import (
     threshold,
 )
 from inertial.physics.motion import stretches, turned
+from inertial.sensors import UNITS
 from inertial.signal.scatter import noise_before_rounding
 from inertial.tables import AXES
 from inertial.text.messages import _
@@ -55,7 +56,6 @@ OF_INPUT = {
     *("gyro_dead_band_x", "gyro_dead_band_y", "gyro_dead_band_z", "gyro_hysteresis"),
 }
 OF_FORCE = {"gyro_g_sensitivity", "gyro_g2_sensitivity"}
-UNIT = {"accel": "m/s²", "gyro": "rad/s"}
 FIGURES = {  # of input and output, and their unit where it is not that of the sensor
     "composite_error": "1",
     "linearity_error": "1",
@@ -142,12 +142,14 @@ def _of_axis(
         }
     shared: dict[str, Any] = {
         "largest_input": largest or None,
-        "input_unit": UNIT[sensor],
+        "input_unit": UNITS[sensor],
         "points": len(points),
     }
     for quantity, figure in figures.items():
         yield (
-            _row(sensor, axis, quantity, FIGURES[quantity] or UNIT[sensor], mount) | shared | figure
+            _row(sensor, axis, quantity, FIGURES[quantity] or UNITS[sensor], mount)
+            | shared
+            | figure
         )
 
 

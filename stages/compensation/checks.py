@@ -21,6 +21,7 @@ from inertial.estimation.gyroscope_observations import Earth, Position
 from inertial.physics.drift import THERMOMETER_ERROR
 from inertial.physics.forward import Triad
 from inertial.physics.motion import Motion, stretches
+from inertial.sensors import FILE_KEYS
 from inertial.tables import GYRO
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
@@ -38,7 +39,6 @@ UNITS = {
     "angle": (_("the angle"), DEGREES, SECONDS_OF_ARC),
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
-SENSORS = {"accel": "accelerometer", "gyro": "gyro"}
 NO_SCATTER = (np.zeros(3), np.zeros(3))
 ICE_POINT = 273.15  # K
 MAX_EXPECTED_SIGMAS = 3.0  # sigmas, above which the parameters do not explain the check
@@ -126,7 +126,7 @@ def checks(
 
 def not_compensated(result: SensorResult, mount: str) -> Iterator[Row]:
     """Why the three sensors of one kind are not compensated, or which effects stay in them."""
-    sensor = SENSORS[result.sensor]
+    sensor = FILE_KEYS[result.sensor]
     if result.triad is None:
         yield _row(sensor, sensor, mount, _not_determined(result, sensor))
         return

@@ -14,11 +14,10 @@ from inertial.model_selection.walk_odds import Equations, walk
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
+from inertial.sensors import SENSORS
 from inertial.text.messages import _
 
 # ---- Random walk of the biases of a sensor given the named effects.
-
-SENSORS = ("gyro", "accel")
 
 
 def likely_random_walks(campaign: Campaign, effects: Sequence[Effect]) -> tuple[float, float]:

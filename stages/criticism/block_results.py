@@ -20,6 +20,7 @@ from inertial.model_selection.cause import (
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
 from inertial.physics.effect import Array, Effect
+from inertial.sensors import PLURAL, UNITS
 from inertial.tables import AXES
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
@@ -28,14 +29,7 @@ from inertial.text.units import quantity
 from stages.criticism import block_sentences as sentences
 from stages.criticism.bias_drift import Walk, drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
-from stages.criticism.finding_rows import (
-    SENSORS,
-    Row,
-    TableRow,
-    finding_id,
-    member_rows,
-    parameter_row,
-)
+from stages.criticism.finding_rows import Row, TableRow, finding_id, member_rows, parameter_row
 from stages.criticism.law_sentences import law_action
 from stages.criticism.selection import Selection
 from stages.criticism.without_law import WithoutLaw
@@ -44,7 +38,6 @@ NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
 WALK = "gyro_random_walk"
 MAX_SCATTERED = 2  # manoeuvres of a run, each with a bias of its own by their scatter
-BIAS_UNITS = {"gyro": "rad/s", "accel": "m/s²"}
 WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 # Effects by the beginning of their names that change the readings of a sensor though not its own.
 SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
@@ -199,8 +192,8 @@ class BlockResults:
         sensor = self.selection.sensor(cause)
         if cause.effect == per_log_name(sensor):
             difference = self._between_runs(cause)
-            sentence = sentences.per_log_sentence(cause, difference, BIAS_UNITS[sensor])
-            size = (difference, BIAS_UNITS[sensor]) if self._long_runs() else (cause.snr, "sigma")
+            sentence = sentences.per_log_sentence(cause, difference, UNITS[sensor])
+            size = (difference, UNITS[sensor]) if self._long_runs() else (cause.snr, "sigma")
         else:
             names = [name for name, _ in positions]
             sentence = sentences.cause_sentence(cause, effect, parameters, names)
@@ -374,7 +367,7 @@ def random_walk_rows(
     if lawless.owner[sensor] == cause:
         others = list(dict.fromkeys([*others, *lawless.members[sensor]]))
     sentence = (WALK_OR if others else WALK_ALONE).format(
-        sensors=SENSORS[sensor],
+        sensors=PLURAL[sensor],
         size=_walk_size(sensor, walk),
         others=_(" or ").join(in_words(name) for name in others),
     )
@@ -402,7 +395,7 @@ def walk_at_rest_rows(
     cause, unit = f"{sensor}_random_walk", WALK_UNITS[sensor]
     identifier = finding_id(cause, mount)
     size = float(np.max(sizes))  # of the worst axis
-    sentence = WALK_AT_REST.format(sensors=SENSORS[sensor], sizes=_sizes(sizes, unit))
+    sentence = WALK_AT_REST.format(sensors=PLURAL[sensor], sizes=_sizes(sizes, unit))
     yield "findings", _walk_finding(sensor, mount, size, lawless.structured.get(sensor), sentence)
     others = lawless.members[sensor] if lawless.owner[sensor] == cause else ()
     yield from member_rows(identifier, mount, list(dict.fromkeys([cause, *others])))
@@ -463,7 +456,7 @@ def unexplained_rows(
         if sensor in lawless.owner:
             continue
         rest, degrees, p_value = selection.evidence.residual(reduced, chosen)
-        if p_value * len(SENSORS) >= level or rest <= MIN_EXCESS * degrees:
+        if p_value * len(PLURAL) >= level or rest <= MIN_EXCESS * degrees:
             continue
         ratio = float(np.sqrt(rest / degrees))
         yield (
@@ -478,7 +471,7 @@ def unexplained_rows(
                 "unit": "sigma",
                 "p_value": p_value,
                 "severity": 2,
-                "sentence": UNEXPLAINED.format(sensors=SENSORS[sensor], ratio=ratio),
+                "sentence": UNEXPLAINED.format(sensors=PLURAL[sensor], ratio=ratio),
                 "consequence": SCATTER,
                 "action": INSPECT,
             },

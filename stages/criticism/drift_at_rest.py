@@ -14,9 +14,10 @@ import numpy as np
 
 from inertial.campaign.equations import Campaign
 from inertial.effects.law import Law
+from inertial.sensors import SENSORS
 from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.rivals import MAX_LOG_ODDS, members_of
-from stages.criticism.selection import SENSORS, Selection
+from stages.criticism.selection import Selection
 from stages.criticism.temperature_selection import log_evidence
 
 

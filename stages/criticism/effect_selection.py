@@ -20,6 +20,7 @@ from inertial.model_selection.naming import causes, law_of, with_given
 from inertial.model_selection.scatter_tests import ScatterTests, named_share, scatter_tests
 from inertial.model_selection.search import finer, to_refine
 from inertial.physics.effect import Effect
+from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import (
     biases_of_runs,
     drift_name,
@@ -35,7 +36,7 @@ from stages.criticism.rivals import (
     with_further_jumps,
     with_rival_walks,
 )
-from stages.criticism.selection import SENSORS, Selection
+from stages.criticism.selection import Selection
 
 FINER_STEPS = 4  # of the second search in each interval of the first
 MIN_THIRD_SEARCH_SNR = 20.0  # from which a third search is finer still

@@ -12,7 +12,6 @@ from inertial.text.messages import _
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a row of it
 
-SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
 ONLY_CONSISTENT = _("The data are no more than consistent with {effects}.")
 
 

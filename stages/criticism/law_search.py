@@ -27,12 +27,13 @@ from inertial.model_selection.law_evidence import (
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics import laws
 from inertial.physics.effect import Array, Effect
+from inertial.sensors import SENSORS
+from inertial.text.parameters import AXES
 from stages.criticism.bias_drift import WALK_WAVES, half_waves
 from stages.criticism.residual_structure import MIN_INFORMATION, PRIOR_SIGMA, Functions
 from stages.criticism.rivals import MAX_LOG_ODDS
-from stages.criticism.selection import SENSORS, Selection, walk_name
+from stages.criticism.selection import Selection, walk_name
 
-AXES = "xyz"
 TELEGRAPH = ("telegraph", "time")
 FINER = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of the step of a grid
 UNMOVED = FINER.index(0.0)

@@ -10,11 +10,12 @@ from inertial.effects import TEMPERATURE_MODELS
 from inertial.effects.law import Law
 from inertial.model_selection.cause import LAW, ONE_OF_CLASS, Cause
 from inertial.physics.effect import Effect
+from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import drift_name
 from stages.criticism.effect_selection import select_with_scatter
 from stages.criticism.law_search import FoundLaw, find_law
 from stages.criticism.residual_structure import Tested, structure_tests
-from stages.criticism.selection import SENSORS, Selection
+from stages.criticism.selection import Selection
 
 OF_CLASS = ("members", "member_values", "weights", "captured", "p_value")  # fields of a cause
 

@@ -7,11 +7,11 @@ import numpy as np
 from inertial.campaign.effect_sentences import Estimated
 from inertial.effects.law import ALL, Law
 from inertial.model_selection.cause import ONE_OF_CLASS, Cause
+from inertial.sensors import PLURAL
 from inertial.text.cause_names import STATES, in_words
 from inertial.text.messages import _
 from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import DEGREE, HOUR, quantity
-from stages.criticism.finding_rows import SENSORS
 
 LAW = _("{subject}: {form}, {numbers}; no effect of the catalogue does this.")
 LAW_OR_WALK = _(
@@ -48,7 +48,7 @@ MIN_SIGMAS = 3.0  # of a size that is written
 
 def law_sentence(cause: Cause, law: Law, parameters: Sequence[Estimated]) -> str:
     """The law with its numbers."""
-    subject = SENSORS[law.sensor] if law.axis == ALL else ONE[law.sensor].format(axis=law.axis)
+    subject = PLURAL[law.sensor] if law.axis == ALL else ONE[law.sensor].format(axis=law.axis)
     values = {
         "subject": subject,
         "form": form_of(law),

@@ -16,12 +16,13 @@ from scipy.optimize import minimize_scalar
 
 from inertial.campaign.equations import Campaign
 from inertial.campaign.shared_tilts import deviance, deviances
+from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import ARC_SECOND
-from stages.criticism.finding_rows import SENSORS, TableRow, finding_id, member_rows
+from stages.criticism.finding_rows import TableRow, finding_id, member_rows
 from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.rivals import MAX_LOG_ODDS, members_of
 from stages.criticism.selection import Selection
@@ -75,7 +76,7 @@ class PositionScatter:
             sigma=significant(self.sigma / ARC_SECOND, 2),
             ratio=significant(self.value / self.stated, 2),
             stated=significant(self.stated / ARC_SECOND, 2),
-            sensors=listed([SENSORS[sensor] for sensor in sensors]),
+            sensors=listed([PLURAL[sensor] for sensor in sensors]),
         )
         if self.rivals:
             names = listed([in_words(rival) for rival in self.rivals], "or")
@@ -112,7 +113,7 @@ def select_beside_scatter(
     """
     stated = select(measured)
     scatter = likely_scatter(stated[2], measured)
-    if scatter is None or any(carrying(stated[1], sensor) for sensor in SENSORS):
+    if scatter is None or any(carrying(stated[1], sensor) for sensor in PLURAL):
         return stated, None
     wider = select(scatter.campaign)
     causes = len(wider[0].named.causes) + 1 - len(stated[0].named.causes)

@@ -23,24 +23,17 @@ from inertial.model_selection.structure_tests import (
 )
 from inertial.physics.effect import Array, Effect, Parameter, Reading
 from inertial.physics.motion import Motion
+from inertial.sensors import FILE_KEYS, PLURAL, UNITS
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant
-from stages.criticism.finding_rows import (
-    ONLY_CONSISTENT,
-    SENSORS,
-    TableRow,
-    finding_id,
-    member_rows,
-    snr_of,
-)
+from inertial.text.parameters import AXES
+from stages.criticism.finding_rows import ONLY_CONSISTENT, TableRow, finding_id, member_rows, snr_of
 
 Integers = NDArray[np.int64]
 
 PRIOR_SIGMA = 1e4  # of a named effect's parameters, in their typical sizes
-SOLVED = {"gyro": "gyro", "accel": "accelerometer"}  # of a sensor in the joint result
-AXES = "xyz"
 BINS = 60  # of a figure
 MIN_INFORMATION = 1e-6  # of that of a function alone; with less the function counts as absorbed
 
@@ -61,7 +54,7 @@ class Functions(Effect):
         )
 
     def signature(self, motion: Motion) -> Reading:
-        traces = {name: np.zeros((len(motion.rate), 3, len(self.parameters))) for name in SOLVED}
+        traces = {name: np.zeros((len(motion.rate), 3, len(self.parameters))) for name in FILE_KEYS}
         traces[self.sensor][:, self.axis] = self.functions
         return Reading(**traces)
 
@@ -121,7 +114,7 @@ def structure_tests(
 def _tests(fitted: Fitted, noise_degrees: float, level: float) -> Tested:
     equations = [
         equation
-        for sensor in SOLVED
+        for sensor in FILE_KEYS
         for axis in range(3)
         for degrees in [fitted.campaign.noise_degrees(sensor, noise_degrees)]
         for equation in _equations(fitted, sensor, axis, degrees)
@@ -221,7 +214,7 @@ def _equations(
     fitted: Fitted, sensor: str, axis: int, noise_degrees: float
 ) -> Iterator[ScoreEquations]:
     campaign = fitted.campaign
-    if getattr(campaign.solution, SOLVED[sensor]) is None:
+    if getattr(campaign.solution, FILE_KEYS[sensor]) is None:
         return
     if fitted.only is not None and fitted.only.isdisjoint(campaign.manoeuvres_of(sensor)):
         return
@@ -279,7 +272,6 @@ def conditions_of(motion: Motion, part: slice, sensor: str, axis: int) -> Condit
 # ---- Rows: the tests, the residuals in bins, and findings.
 
 CAUSE = "unknown_structure"
-UNITS = {"gyro": "rad/s", "accel": "m/s²"}
 X_UNITS = {
     "time": "s",
     "change": "s",
@@ -344,7 +336,7 @@ def structure_rows(
         shared |= {"x_unit": X_UNITS[test.kind], "unit": UNITS[test.sensor]}
         for point in points(tested, test):
             yield "structure_points", shared | asdict(point)
-    for sensor in SENSORS:
+    for sensor in PLURAL:
         if sensor in reported:
             yield from _finding(tested, sensor, reported[sensor], mount)
 
@@ -355,7 +347,7 @@ def _finding(
     tests, carried = tested.of(sensor), carrying(tested, sensor)
     best, described = tests[0], _description(tests[0])
     sentence = [
-        NOT_NOISE.format(sensors=SENSORS[sensor], description=described, p_value=p_is(best.p_value))
+        NOT_NOISE.format(sensors=PLURAL[sensor], description=described, p_value=p_is(best.p_value))
     ]
     if others := [_name(test) for test in tests[1:]]:
         sentence.append(ALSO.format(others=_(" and in ").join(others)))

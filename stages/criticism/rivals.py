@@ -15,8 +15,9 @@ from inertial.campaign.equations import Campaign
 from inertial.effects import CATALOGUE, TEMPERATURE_MODELS
 from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause
+from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import drift_name, likely_random_walk, walk_evidence
-from stages.criticism.selection import SENSORS, Selection, walk_name
+from stages.criticism.selection import Selection, walk_name
 
 MAX_LOG_ODDS = 3.0  # of two explanations that are as likely
 MIN_SURE_LOG_ODDS = 5.3  # of an effect against a walk that is then in no class with it: 1/0.005

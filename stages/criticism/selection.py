@@ -11,9 +11,8 @@ from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause, Named
 from inertial.model_selection.detection_limits import Visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.physics.effect import Array, Effect
+from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import biases_of_runs, drift_name, per_log_name
-
-SENSORS = ("gyro", "accel")
 
 
 @dataclass(frozen=True)

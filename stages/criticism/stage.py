@@ -12,6 +12,7 @@ from inertial.campaign.observations import campaign_of
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
 from inertial.estimation.random_walk import NO_DRIFT
+from inertial.sensors import SENSORS
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.criticism.bias_drift import random_walks_with_sigmas
@@ -33,7 +34,7 @@ from stages.criticism.oscillation_search import find_oscillations, shifts, witho
 from stages.criticism.pooled_evidence import pooled_evidence_rows
 from stages.criticism.position_scatter import select_beside_scatter
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
-from stages.criticism.selection import SENSORS, Selection
+from stages.criticism.selection import Selection
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_selection import select_with_temperature
 from stages.criticism.without_law import without_law

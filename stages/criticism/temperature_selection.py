@@ -22,9 +22,10 @@ from inertial.effects.temperature_model import TemperatureModel
 from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause
 from inertial.physics.effect import Effect
+from inertial.sensors import SENSORS
 from stages.criticism.effect_selection import select_with_scatter
 from stages.criticism.rivals import MAX_LOG_ODDS
-from stages.criticism.selection import SENSORS, Selection, walk_name
+from stages.criticism.selection import Selection, walk_name
 from stages.criticism.temperature_functions import functions_of
 
 STRAIGHT_LINES = ("bias_temperature", "scale_temperature")  # ends of names in the catalogue

@@ -10,11 +10,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause
+from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import drift_name
 from stages.criticism.finding_rows import finding_id
 from stages.criticism.residual_structure import CAUSE as STRUCTURE
 from stages.criticism.residual_structure import Tested, carrying
-from stages.criticism.selection import SENSORS, Selection, walk_name
+from stages.criticism.selection import Selection, walk_name
 
 OF_WALKS = ("time", "change")  # structures that a bias without a law has, whatever its course
 

@@ -25,6 +25,7 @@ from typing import Any
 import numpy as np
 
 from inertial.formats.account import DECODED, NOT_SELECTED, Account, Integers, RefusedLine
+from inertial.sensors import FILE_KEYS
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
@@ -83,7 +84,7 @@ class _Readings:
 def of_both_sensors(layout: Mapping[str, Any], file: str) -> dict[str, Any] | None:
     """The layout of a log whose rows hold either sensor, as of a log of each; None of others."""
     timed = (layout.get("time") or {}).get("column") is not None
-    if not (timed and all("rows" in layout.get(key, {}) for key in ("accelerometer", "gyro"))):
+    if not (timed and all("rows" in layout.get(key, {}) for key in FILE_KEYS.values())):
         return None
     own = {key: value for key, value in layout.items() if key != "gyro"}
     gyro = {key: value for key, value in layout.items() if key not in ("accelerometer", "label")}

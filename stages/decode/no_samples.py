@@ -14,11 +14,11 @@ from inertial.formats.account import (
     Account,
     RefusedLine,
 )
+from inertial.sensors import FILE_KEYS
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened
 
-_SENSORS = ("accelerometer", "gyro")
 MIN_FIELDS = 3  # of a row, the last not counted
 _NUMBER = {
     decimal: re.compile(rf" *[+-]?\d+(?:[{decimal}]\d*)?(?:[eE][+-]?\d+)? *") for decimal in ".,"
@@ -69,7 +69,8 @@ def no_samples(
     if first is not None:
         return _all_refused(file, layout, count[REFUSED], first)
     if names or count[NOT_SELECTED]:
-        rows = {key: layout[key]["rows"] for key in _SENSORS if layout.get(key, {}).get("rows")}
+        stated = {key: layout.get(key, {}).get("rows") for key in FILE_KEYS.values()}
+        rows = {key: rows for key, rows in stated.items() if rows}
         return Refusal(
             file,
             "",
@@ -138,10 +139,10 @@ def _described(layout: Mapping[str, Any]) -> str:
         "labelled",
         "message",
         "time",
-        *_SENSORS,
+        *FILE_KEYS.values(),
     )
     stated = {key: layout[key] for key in keys if key in layout}
-    for sensor in _SENSORS:
+    for sensor in FILE_KEYS.values():
         if sensor in stated:
             stated[sensor] = stated[sensor]["columns"]
     return shortened(", ".join(f"{key} {_plain(value)}" for key, value in stated.items()), 300)

@@ -18,11 +18,11 @@ from inertial.campaign.hypotheses import (
     Hypothesis,
 )
 from inertial.campaign.records import Performed, Row
+from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
-from stages.diagnosis.decision import SENSORS
 from stages.diagnosis.sensor_results import SensorResult
 
 REPAIRED, MODELLED, CURVE, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
@@ -212,7 +212,7 @@ def _of_rival(repair: Row) -> str:
     """A repair of which others explain as much, in a few words."""
     name = in_words(repair["repair"])
     sensor = repair["sensor"]
-    return _("{name} of the {sensors}", name=name, sensors=SENSORS[sensor]) if sensor else name
+    return _("{name} of the {sensors}", name=name, sensors=PLURAL[sensor]) if sensor else name
 
 
 @dataclass(frozen=True)
@@ -253,7 +253,7 @@ class Evidence:
         elif freed:
             done = OWN_ERROR.format(manoeuvre=freed)
         elif cure == NONE and modelled:
-            done = ONLY_MODELLED.format(sensors=_(" and ").join(SENSORS[s] for s in modelled))
+            done = ONLY_MODELLED.format(sensors=_(" and ").join(PLURAL[s] for s in modelled))
         sensors = tuple(dict.fromkeys(result.sensor for result in own))
         gain, turns = _gain(main, drop), {} if freed else _turns(main, own)
         return Cause(members, sensors, cure, done, moves, drop, gain, modelled, freed, turns)

@@ -10,13 +10,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from inertial.campaign.records import Row
+from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.parameters import JOINT
 
-SENSORS = {"gyro": "gyros", "accel": "accelerometers"}
 UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
@@ -104,7 +104,7 @@ def decided(
     alarms : findings that no named effect explains
     determined : whether the joint fit determines any parameter
     """
-    sensors = SENSORS[candidates[0]["sensor"]]
+    sensors = PLURAL[candidates[0]["sensor"]]
     causes = _listed([alarm["cause"] for alarm in alarms])
     if not determined:
         return Decision(JOINT, NO_JOINT.format(sensors=sensors))

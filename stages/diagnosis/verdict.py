@@ -27,7 +27,7 @@ USABLE, WITHIN_LIMITS, ON_CONDITION, NOT_USABLE = (
     "on_condition",
     "not_usable",
 )
-SENSORS = {"gyro": _("Gyros"), "accel": _("Accelerometers")}
+HEADINGS = {"gyro": _("Gyros"), "accel": _("Accelerometers")}
 LIMITS = {
     REPAIRED: _("set right"),
     MODELLED: _("in the model"),
@@ -69,7 +69,7 @@ def verdict(
     `only_noise`: whether the campaign is a recording of the noise in one attitude.
     """
     own = [cause.of(result.sensor) for cause in causes if result.sensor in cause.sensors]
-    sensors = SENSORS[result.sensor]
+    sensors = HEADINGS[result.sensor]
     spoiling = [cause for cause in own if cause.spoils]
     if spoiling:
         sentence = _(

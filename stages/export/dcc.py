@@ -13,7 +13,9 @@ from xml.etree.ElementTree import Element, indent, tostring
 import pandas as pd
 
 from inertial.campaign.records import Row, rows_of
+from inertial.sensors import PLURAL
 from inertial.text.messages import _
+from inertial.text.parameters import SENSOR_OF
 from inertial.text.statements import (
     IN_FULL_ONLY,
     NOT_STATED,
@@ -38,7 +40,7 @@ LANGUAGE = "en"
 UNKNOWN_COUNTRY = "ZZ"
 UNKNOWN_DAY = "0001-01-01"
 NAMESPACES = {"xmlns:dcc": "https://ptb.de/dcc", "xmlns:si": "https://ptb.de/si"}
-SENSORS = {"accelerometer": _("accelerometers"), "gyroscope": _("gyros")}
+TRIADS = {stage: PLURAL[sensor] for stage, sensor in SENSOR_OF.items()}
 CONDITIONS = {
     "conditions.temperature": _("air temperature"),
     "conditions.humidity": _("relative humidity"),
@@ -219,7 +221,7 @@ def _statements(parent: Element, content: Row, stated: Stated) -> None:
 
 
 def _triads(content: Row) -> list[tuple[str, Row]]:
-    return [(kind, mount[kind]) for mount in content["mounts"] for kind in SENSORS]
+    return [(kind, mount[kind]) for mount in content["mounts"] for kind in TRIADS]
 
 
 # ---- the measurement results
@@ -233,11 +235,11 @@ def _measurements(parent: Element, content: Row, stated: Stated) -> None:
         result = add(parent, "dcc:measurementResult")
         add_text(result, "dcc:name", name if several else _("Errors of the sensors"))
         add_rich(result, "dcc:description", *content["equation"].values())
-        _method(result, [mount[kind] for kind in SENSORS], stated)
+        _method(result, [mount[kind] for kind in TRIADS], stated)
         _equipment(result, content, stated)
         _conditions(result, content, stated)
         results = add(result, "dcc:results")
-        for kind, sensors in SENSORS.items():
+        for kind, sensors in TRIADS.items():
             add_result(results, f"{kind}-{number}", sensors, mount[kind])
         own = [row for row in stated.conformity if not several or row["mount"] == mount["mount"]]
         add_conformity(result, own, mount, number)
@@ -261,7 +263,7 @@ def _method(parent: Element, triads: Sequence[Row], stated: Stated) -> None:
     deviations = stated.text("procedure.deviations") or NOT_STATED
     estimated = [
         f"{sensors}: {triad['method']} ({triad['why_this_method']})"
-        for sensors, triad in zip(SENSORS.values(), triads, strict=True)
+        for sensors, triad in zip(TRIADS.values(), triads, strict=True)
         if triad["method"]
     ]
     add_rich(

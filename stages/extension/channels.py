@@ -24,6 +24,7 @@ from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, me
 from inertial.physics.effect import Effect, Truth
 from inertial.physics.forward import Triad, signatures, truth_of
 from inertial.physics.motion import Motion, cross, turned_all
+from inertial.sensors import SENSORS
 
 # ---- The means of each channel over static positions and over turns.
 #
@@ -86,7 +87,7 @@ class Channels:
         responses = signatures(campaign.motion, campaign.solution.site, gyro, accel, self.effects)
         traces = [
             np.concatenate([getattr(response, s) for response in responses], axis=2)
-            for s in ("gyro", "accel")
+            for s in SENSORS
         ]
         stretches, start = [], 0
         for motion in motions:

@@ -25,7 +25,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
-from stages.extension.models import SENSORS, Models, SensorEvidence
+from inertial.sensors import SENSORS
+from stages.extension.models import Models, SensorEvidence
 
 Array = NDArray[np.float64]
 

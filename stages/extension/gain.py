@@ -13,10 +13,11 @@ from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.least_squares import EffectInformation, System
 from inertial.estimation.periodic_in_time import without_line
 from inertial.estimation.random_walk import MeasuredDrift
+from inertial.sensors import SENSORS
 from inertial.tables import AXES
 from stages.extension.channels import Channels, Mean, system_of
 from stages.extension.cross_validation import CrossValidation, Fold, drop_of, fold_of, snr_squared
-from stages.extension.models import SENSORS, Models, with_columns
+from stages.extension.models import Models, with_columns
 
 Array = NDArray[np.float64]
 Row = Mapping[str, Any]

@@ -20,7 +20,6 @@ from inertial.physics.effect import Effect
 Array = NDArray[np.float64]
 
 PRIOR_SIGMA = 1e4  # of an effect's parameters, in their typical sizes
-SENSORS = ("gyro", "accel")
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from inertial.estimation.triad import UNKNOWNS, linear_names
 from inertial.physics.effect import GOOD, POOR, USUAL, Effect
 from inertial.physics.forward import Triad, signatures, truth_of
 from inertial.physics.motion import Motion, cross, turned_all
+from inertial.sensors import SENSORS
 from stages.extension.estimates import Solved
 
 # ---- How errors of the sensors grow in free inertial navigation over a minute.
@@ -112,7 +113,7 @@ def worth(
     known = {"gyro": truth.rate, "accel": truth.force}
     slopes = {
         sensor: _slopes(motion, known[sensor], change, traces, number)
-        for number, sensor in enumerate(("gyro", "accel"))
+        for number, sensor in enumerate(SENSORS)
         if (change := changes.get(sensor)) is not None
     }
     rotating = np.abs(motion.rate) > MIN_TURN_RATE

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from inertial.effects.law import SENSORS, Law
-from inertial.physics.laws import AXES
+from inertial.effects.law import SIZES, Law
 from inertial.text.cause_names import in_words
+from inertial.text.parameters import AXES
 from stages.extension.named_effects import NamedClass
 
 TEMPLATE = '''"""{title}: a law that a calibration found, whose physical cause is not known.
@@ -75,7 +75,7 @@ def text_of(law: Law) -> str:
         state=law.state,
         shape=tuple(float(value) for value in law.shape),
         parameters=parameters,
-        size=float(SENSORS[law.sensor][1]),
+        size=float(SIZES[law.sensor][1]),
         axes=axes,
         count=len(axes),
         sensor=law.sensor,

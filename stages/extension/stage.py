@@ -19,6 +19,7 @@ from inertial.estimation.least_squares import System
 from inertial.estimation.switch_ons import SwitchOns
 from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Effect
+from inertial.sensors import SENSORS
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import EXTENDED, FREE, JOINT
@@ -34,14 +35,7 @@ from stages.extension.cross_validation import CrossValidation, Trainings, cross_
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved, unseen_components
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
-from stages.extension.models import (
-    PRIOR_SIGMA,
-    SENSORS,
-    Models,
-    given,
-    models_of,
-    with_columns,
-)
+from stages.extension.models import PRIOR_SIGMA, Models, given, models_of, with_columns
 from stages.extension.named_effects import Named, named_of
 from stages.extension.navigation_error import change_of, worth
 from stages.extension.proposed import proposed_rows

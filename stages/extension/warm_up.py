@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import Motion
+from inertial.sensors import SINGULAR, UNITS
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import plus_minus, significant
@@ -25,8 +26,6 @@ Row = Mapping[str, Any]
 MAX_COOLING = 1.0  # K below the warmest so far, in a campaign that warms up
 MAX_SHARE = 0.9  # of the campaign: a bias that leaves the band later has not settled in it
 OF_WARMING = ("warm_up", "temperature")  # ends of the names of effects
-SENSORS = {"gyro": _("gyro"), "accel": _("accelerometer")}
-UNITS = {"gyro": "rad/s", "accel": "m/s²"}
 SETTLED = _("The bias of the {axis} {sensor} stays within {band} of its last value from {time} on.")
 UNSETTLED = _("The bias of the {axis} {sensor} does not settle to {band} in this campaign.")
 
@@ -46,7 +45,7 @@ def warm_up_rows(
     for i, axis in enumerate(AXES):
         change = away[:, i] @ values
         outside = np.flatnonzero(np.abs(change) > band)
-        words = {"axis": axis, "sensor": SENSORS[solution.sensor]}
+        words = {"axis": axis, "sensor": SINGULAR[solution.sensor]}
         words |= {"band": f"{significant(band / unit.size, 2)} {unit.name}"}
         own = {"mount": solution.mount, "sensor": solution.sensor, "axis": axis, "band": band}
         own |= {"unit": UNITS[solution.sensor]}

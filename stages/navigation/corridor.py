@@ -26,6 +26,7 @@ from inertial.physics.error_growth import (
 )
 from inertial.physics.motion import stretches
 from inertial.physics.strapdown import Start
+from inertial.sensors import SENSORS
 from inertial.tables import ACCEL, GYRO
 from inertial.text.parameters import BIAS, PARTS
 
@@ -236,7 +237,7 @@ def corridor(
     angle[:, ATTITUDE, 0] = stretch.angle_error
     responses = np.concatenate([responses, angle], axis=-1)
     others = np.eye(responses.shape[-1] - len(result.sources))
-    drifts = [data.noise.drift(sensor) for sensor in ("gyro", "accel")]
+    drifts = [data.noise.drift(sensor) for sensor in SENSORS]
     instability, walks = (
         np.concatenate([getattr(d, name) for d in drifts]) for name in ("instability", "walk")
     )

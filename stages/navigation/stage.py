@@ -122,7 +122,7 @@ def published_triads(rows: Sequence[Row]) -> dict[str, Triad]:
 # ---- What a calibration that leaves parameters open says about navigation, and why it is not tried
 
 SECONDS = 60.0
-SENSORS = {"gyro": _("the gyros"), "accel": _("the accelerometers")}
+THE_SENSORS = {"gyro": _("the gyros"), "accel": _("the accelerometers")}
 MOST_NAMED = 6
 
 
@@ -137,7 +137,7 @@ def why_not(rows: Sequence[Row], gravity: float) -> str:
     rows : the result of one mount; `gravity`: m/s²
     """
     parts = []
-    for sensor, name in SENSORS.items():
+    for sensor, name in THE_SENSORS.items():
         own = {row["parameter"]: row for row in rows if row["sensor"] == sensor}
         values = {key: (own.get(key) or {}).get("value") for key in linear_names()}
         missing = [key for key, value in values.items() if value is None]
@@ -165,7 +165,7 @@ def _by_biases(rows: Sequence[Row], gravity: float) -> str:
             for row in rows
             if row["sensor"] == sensor and row["parameter"] in BIAS and row["sigma"] is not None
         ]
-        for sensor in SENSORS
+        for sensor in THE_SENSORS
     }
     said = []
     if sigma["gyro"]:

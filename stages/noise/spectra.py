@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from inertial import tables
 from inertial.estimation.spectrum import NoiseShape, in_band, level_of_pieces, shape_of
+from inertial.sensors import COLUMNS
 from inertial.signal.scatter import smallest_step
-from stages.noise.static_stretches import SENSORS
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class Spectra:
 
     def add(self, values: Array, rate: float, band: tuple[float, float]) -> None:
         """Take an unbroken piece, (n, 6), sampled at `rate`, Hz, in; `band`: Hz, of the levels."""
-        for sensor, columns in SENSORS.items():
+        for sensor, columns in COLUMNS.items():
             part = values[:, columns]
             part = part[np.isfinite(part).any(axis=1)]
             if len(part) >= MIN_SAMPLES:
@@ -64,7 +64,7 @@ class Spectra:
             white, sigma = flat * slow, flat_sigma * slow
             for i, axis in enumerate(tables.AXES):
                 if white[i] > 0:
-                    square = self.squares[SENSORS[sensor]][i]
+                    square = self.squares[COLUMNS[sensor]][i]
                     yield {
                         "manoeuvre": manoeuvre,
                         "phase": phase,
@@ -83,7 +83,7 @@ def shapes_of(spectra: Mapping[tuple[str, str], Spectra]) -> dict[str, list[Nois
     means are uncertain by is at its lower end.
     """
     shapes = {}
-    for sensor in SENSORS:
+    for sensor in COLUMNS:
         seen = {key: one for key, one in spectra.items() if sensor in one.levels}
         resting = [one for (_manoeuvre, phase), one in seen.items() if phase == "rest"]
         own = resting or [*seen.values()]

@@ -11,11 +11,12 @@ from inertial import tables
 from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
+from inertial.sensors import COLUMNS
 from inertial.signal.scatter import noise_before_rounding, rounded_mean
 from inertial.tables.stage import Stage, Tables
 from stages.noise.declared import DECLARED
 from stages.noise.spectra import Spectra, shapes_of
-from stages.noise.static_stretches import SENSORS, StaticStretches
+from stages.noise.static_stretches import StaticStretches
 
 Array = NDArray[np.float64]
 
@@ -60,7 +61,7 @@ def noise(
             collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), Spectra())
             for start in range(0, len(chosen), MAX_SAMPLES):
                 collected.add(chosen[start : start + MAX_SAMPLES], 1 / step, (from_hz, to_hz))
-            collected.carried |= {sensor for sensor in SENSORS if (log, sensor) in carried}
+            collected.carried |= {sensor for sensor in COLUMNS if (log, sensor) in carried}
             if row["phase"] != "steady" and len(chosen):
                 static.add((row["manoeuvre"], row["phase"], number), chosen, step)
     shapes = shapes_of(spectra)

@@ -20,13 +20,13 @@ from inertial.estimation.multiresolution import MIN_WHOLE, Powers
 from inertial.estimation.noise_model import TERMS, NoiseModel
 from inertial.estimation.noise_terms import NoiseTerms, noise_terms
 from inertial.estimation.welch import Spectrum, WelchSums, segment_for
+from inertial.sensors import COLUMNS
 from inertial.tables import AXES
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 Stretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
 
-SENSORS = {"accel": slice(0, 3), "gyro": slice(3, 6)}
 SAME_INTERVAL = 1e-3  # relative difference of sampling intervals that are alike
 SAME_SCATTER = 1.5  # ratio of scatters that are alike
 PER_DECADE = 6  # averaging times
@@ -115,7 +115,7 @@ class StaticStretches:
 
     def add(self, stretch: Stretch, values: Array, interval: float) -> None:
         """The next samples (n, 6) of a stretch; NaN where a channel, or a sensor, is not there."""
-        for sensor, columns in SENSORS.items():
+        for sensor, columns in COLUMNS.items():
             part = values[:, columns]
             there = np.isfinite(part)
             if not there.all():
@@ -150,7 +150,7 @@ class StaticStretches:
 
     def noises(self) -> Iterator["SensorNoise"]:
         """The noise of each sensor, where there is a stretch that is long enough."""
-        for sensor in SENSORS:
+        for sensor in COLUMNS:
             own = [pool for pool in self._pools if pool.sensor == sensor]
             for pool in sorted(own, key=lambda pool: -pool.samples * pool.interval)[:1]:
                 pool.end()

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from inertial.sensors import FILE_KEYS
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
@@ -49,7 +50,6 @@ STANDARD = ("name", "identification", "certificate", "issued_by", "valid_until")
 # What the campaign states outside its certificate, too.
 ELSEWHERE = {"laboratory.name": "laboratory", "calibrated_by": "operator", "calibrated": "date"}
 UNKNOWN = "unknown"
-SENSORS = (("accelerometer", "accel"), ("gyro", "gyro"))  # as a file and as tables call them
 LIMITS = {  # by their key: parameter's kind, one unit in SI, and the SI unit
     "bias_micro_g": ("bias", STANDARD_GRAVITY * 1e-6, "m/s²"),
     "bias_deg_h": ("bias", DEGREE / 3600, "rad/s"),
@@ -127,7 +127,7 @@ class Statements:
     def tolerances(self) -> Iterator[Row]:
         """The limits of the parameters of each sensor, in SI."""
         rule, _file = self._stated("tolerances.decision_rule")
-        for key, sensor in SENSORS:
+        for sensor, key in FILE_KEYS.items():
             for name, (kind, size, unit) in LIMITS.items():
                 limit, _file = self._stated(f"tolerances.{key}.{name}")
                 if limit is not None:
@@ -143,7 +143,7 @@ class Statements:
 def allowed_changes(campaign: YamlFile) -> Iterator[Row]:
     """The changes that a campaign file allows under `may_change`, in SI."""
     stated = campaign.content.get("may_change", {})
-    for key, sensor in SENSORS:
+    for sensor, key in FILE_KEYS.items():
         for name, limit in stated.get(key, {}).items():
             kind, size, unit = LIMITS[name]
             yield {"sensor": sensor, "kind": kind, "limit": limit * size, "unit": unit}

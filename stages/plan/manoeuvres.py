@@ -13,7 +13,7 @@ from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE, ICE_POINT, in_si
 from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 
-AXES = np.eye(3)
+DIRECTIONS = np.eye(3)
 MAX_BELOW_RATE = 0.01  # by which a turn may stay below its rate
 Row = dict[str, Any]
 
@@ -130,7 +130,7 @@ def _direction(file: YamlFile, key: Key, item: dict[str, Any]) -> Array | None:
         return None
     if isinstance(stated, str):
         sign = -1.0 if stated[0] == "-" else 1.0
-        return np.asarray(sign * AXES["xyz".index(stated[1])], dtype=np.float64)
+        return np.asarray(sign * DIRECTIONS["xyz".index(stated[1])], dtype=np.float64)
     vector = np.array(stated, dtype=np.float64)
     length = float(np.linalg.norm(vector))
     if length == 0:

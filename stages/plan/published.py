@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 from typing import Any
 
+from inertial.sensors import FILE_KEYS
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.parameters import PARTS, SCALE
 from inertial.text.units import ARC_SECOND, DEGREE, STANDARD_GRAVITY
 
 Row = dict[str, Any]
 
-SENSORS = {"accelerometer": "accel", "gyro": "gyro"}
 SI = {("accelerometer", "bias"): "m/s²", ("gyro", "bias"): "rad/s"}  # all others are ratios
 SIZES = {
     "m/s2": 1.0,
@@ -42,7 +42,7 @@ def published_values(file: YamlFile) -> Iterator[Row]:
     """
     file.check("published")
     window = file.content.get("gyro_window")
-    for key, sensor in SENSORS.items():
+    for sensor, key in FILE_KEYS.items():
         for name, entry in file.content.get(key, {}).items():
             size = SIZES[entry["unit"]] if "unit" in entry else 1.0
             by_time = window if sensor == "gyro" and name in SCALE else None

@@ -9,6 +9,7 @@ import numpy as np
 
 from inertial import tables
 from inertial.formats.columns import vectornav_lines
+from inertial.sensors import FILE_KEYS
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from inertial.text.units import (
@@ -52,7 +53,7 @@ def encoder(file: YamlFile) -> dict[str, Any] | None:
     _check_text(file, ["formats", stated["format"]], layout)
     return {
         "file": stated["log"],
-        "layout": {key: layout[key] for key in layout if key not in ("gyro", "accelerometer")},
+        "layout": {key: layout[key] for key in layout if key not in FILE_KEYS.values()},
         "gps_week": stated.get("gps_week"),
         "offset": stated.get("offset_s", 0.0),
     }
@@ -172,8 +173,7 @@ def _stated_axes(entry: dict[str, Any], sensor: str) -> list[str] | None:
 def _axes(entry: dict[str, Any]) -> dict[str, list[str]]:
     """Body axis and sign of the three fields of each sensor, such as z, -y, x."""
     axes = {
-        name: _stated_axes(entry, sensor) or list(tables.AXES)
-        for name, sensor in (("accel", "accelerometer"), ("gyro", "gyro"))
+        name: _stated_axes(entry, sensor) or list(tables.AXES) for name, sensor in FILE_KEYS.items()
     }
     if entry.get("accelerometer", {}).get("reads") == "gravity":
         axes["accel"] = [f[1:] if f.startswith("-") else f"-{f}" for f in axes["accel"]]

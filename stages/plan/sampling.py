@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from inertial.sensors import FILE_KEYS
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from inertial.text.units import CHANNEL_UNITS
@@ -132,7 +133,7 @@ def refuse_without_time(
     file: YamlFile, key: Key, item: Mapping[str, Any], layout: Mapping[str, Any]
 ) -> None:
     """Refuse what rows without time cannot show, and a sigma of rows that are no means."""
-    for sensor in ("accelerometer", "gyro"):
+    for sensor in FILE_KEYS.values():
         triad = layout.get(sensor, {})
         stated = [name for name in ("sigma", "sigma_columns") if name in triad]
         if stated and not are_means(layout):

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre, Row
+from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import Permutation, composed
 from inertial.signal.detector import Given
-from inertial.signal.misread_axes import SENSOR_NAMES, determinant
+from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import Misread, Rescaled, Reversed, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
@@ -178,7 +179,7 @@ class _Campaign:
             before, after, seen = scale.fitting
             condition = _(
                 "the {sensor} read {ratio} times what they should, {where}: {why}",
-                sensor=SENSOR_NAMES[scale.sensor],
+                sensor=PLURAL[scale.sensor],
                 ratio=significant(scale.factor, 6),
                 where=where(scale.log),
                 why=scale.why,

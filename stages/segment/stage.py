@@ -12,7 +12,8 @@ from inertial.campaign.log_properties import Stated, records_of, stated_by
 from inertial.campaign.masked_samples import Masks, RecordIndex, Repairs, read_once
 from inertial.campaign.records import Manoeuvre, Performed, Row, clocks_of, manoeuvres_of, rows_of
 from inertial.detectors import OF_PLAN, OF_RESTS
-from inertial.signal.detector import SENSORS, Log
+from inertial.sensors import COLUMNS
+from inertial.signal.detector import Log
 from inertial.tables import CHANNEL_REPAIRS, STATIC_PHASES
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
@@ -264,7 +265,7 @@ def _counts(logs: Mapping[str, Log]) -> dict[str, dict[str, float]]:
             for name, log in logs.items()
             if log.increments and np.isfinite(log.count[channels]).any()
         }
-        for sensor, channels in SENSORS.items()
+        for sensor, channels in COLUMNS.items()
     }
 
 

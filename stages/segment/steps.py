@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.campaign.records import Manoeuvre
+from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import Permutation
-from inertial.signal.misread_axes import SENSOR_NAMES, reads_in_words
+from inertial.signal.misread_axes import reads_in_words
 from inertial.signal.plan_detector import Misread, Swapped
 from inertial.tables import AXES
 from inertial.text.messages import _
@@ -99,7 +100,7 @@ def axes_in_words(misread: Misread) -> str:
     """That a sensor reads other axes than those it is named by."""
     words = _(
         "of the {sensor}, {where}, {axes}",
-        sensor=SENSOR_NAMES[misread.sensor],
+        sensor=PLURAL[misread.sensor],
         where=where(misread.log),
         axes=reads_in_words(misread.axes),
     )

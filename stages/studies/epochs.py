@@ -14,6 +14,7 @@ from inertial.campaign.records import Manoeuvre, Performed, rows_of, with_mount
 from inertial.campaign.sample_stretches import Samples, Stretch
 from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.triad import errors_of, linear_names
+from inertial.sensors import COLUMNS
 from inertial.tables import AXES, CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
@@ -33,7 +34,6 @@ NEEDED = {
     "accelerometer": _("four or more attitudes, of about the same length, that span all axes"),
     "gyroscope": _("an axis that points up and down, for about the same time"),
 }
-SENSORS = {"accelerometer": 0, "gyroscope": 3}  # place of their x among the channels
 
 
 @dataclass(frozen=True)
@@ -117,14 +117,14 @@ def studied(
         return rows
     ups = np.array([m.up for m, _unused in there.values()])
     found = formulas(ups, data.gravity.number)
-    for stage in SENSORS:
+    for stage in SENSOR_OF:
         if stage not in [named.stage for named in found]:
             needed = NEEDED[stage]
             rows["not_studied"].append(
                 _not_studied(data.mount, data.named(stage), _("it needs {needed}", needed=needed))
             )
     for named in found:
-        place = SENSORS[named.stage]
+        place = COLUMNS[SENSOR_OF[named.stage]].start
         channels = CHANNELS[place : place + 3]
         values = [samples[name].values[:length, place : place + 3] for name in there]
         density = np.concatenate([data.noise.of(name, "rest", channels) for name in there])

@@ -7,7 +7,8 @@ from scipy.signal import lfilter
 
 from inertial.detectors.bias_jump import BiasJump
 from inertial.detectors.table_moving import TableMoving
-from inertial.signal.detector import CHANNELS, Event
+from inertial.sensors import CHANNELS
+from inertial.signal.detector import Event
 
 ARC_SECOND = np.radians(1 / 3600)
 N = 3000  # records: half a minute

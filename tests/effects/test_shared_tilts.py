@@ -7,10 +7,10 @@ from hidden_plans import PLANS
 
 import laboratory
 from inertial.campaign.effect_evidence import evidence
-from inertial.campaign.equations import SENSORS
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.shared_tilts import shared_tilts
 from inertial.effects import CATALOGUE
+from inertial.sensors import SENSORS
 
 TILT = 120.0  # arcsec, sixty times what the gyros resolve
 

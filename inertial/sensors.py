@@ -1,0 +1,13 @@
+"""The two sensors of an IMU: their names in tables and in files, channels, units and words."""
+
+from inertial.text.messages import _
+from inertial.text.parameters import AXES
+
+SENSORS = ("gyro", "accel")  # as columns call them
+FILE_KEYS = {"accel": "accelerometer", "gyro": "gyro"}  # as campaign files call them
+UNITS = {"accel": "m/s²", "gyro": "rad/s"}  # of a reading
+CHANNELS = tuple(f"{sensor}_{axis}" for sensor in UNITS for axis in AXES)
+COLUMNS = {"accel": slice(0, 3), "gyro": slice(3, 6)}  # of a sensor among the channels
+
+SINGULAR = {"accel": _("accelerometer"), "gyro": _("gyro")}
+PLURAL = {"accel": _("accelerometers"), "gyro": _("gyros")}
