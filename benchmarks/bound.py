@@ -26,8 +26,7 @@ from benchmarks.campaign import (
     TURNS,
     document,
 )
-
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 EARTH_RATE = 7.292115e-5  # rad/s, WGS 84
 DRAWS = 20000

@@ -21,8 +21,7 @@ from numpy.typing import NDArray
 
 import laboratory
 from benchmarks.tables import Table
-
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 DRAWS, FROM_BYTES, CORES = 150, 3, 2
 KINDS = {"bias": "b", "scale": "s", "cross": "N"}

@@ -18,8 +18,6 @@ from laboratory.recording import LogTruth, Recording
 
 PIECE = 200_000  # samples that are drawn and written at a time
 
-Counts = NDArray[np.int64]
-
 
 def record(folder: Path, samples: int, rate: float = RATE) -> tuple[int, int]:
     """A campaign of at least so many samples into its folder; its samples and the logs' bytes.

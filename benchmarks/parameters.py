@@ -6,12 +6,9 @@ M by rows, then the bias: (12,), no unit and m/s² or rad/s.
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from benchmarks.campaign import document
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
+from inertial.arrays import Array, Booleans
 
 PPM = 1e-6
 MICRO_G = 9.80665e-6  # m/s²

@@ -9,14 +9,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from benchmarks.campaign import RATE, RESTS, TURNS, log_of
+from inertial.arrays import Array
 from laboratory import Recording
 from laboratory.recording import LogTruth
-
-Array = NDArray[np.float64]
 
 FORCE = [f"accel_{axis}" for axis in "xyz"]
 TURN = [f"gyro_{axis}" for axis in "xyz"]

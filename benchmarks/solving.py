@@ -7,14 +7,11 @@ from typing import Any
 
 import chain  # of the tests: the stages one after another in this process
 import numpy as np
-from numpy.typing import NDArray
 
 import laboratory
 from benchmarks.parameters import NAMES, SENSORS
 from benchmarks.timing import Seconds, timed
-
-Array = NDArray[np.float64]
-
+from inertial.arrays import Array
 
 SEVERITY = {3: "invalidates a result", 2: "weakens it", 1: "information"}
 

@@ -11,13 +11,11 @@ from typing import Any
 
 import chain  # of the tests: the stages one after another in this process
 import numpy as np
-from numpy.typing import NDArray
 from temperature_draws import ICE_POINT, document_of
 
 import laboratory
 from benchmarks.tables import Table, digits
-
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 CAMPAIGNS = 3
 POINTS = 41

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from commands.no_result import NoResult, no_results
 from inertial import tables
-from inertial.campaign.explanations import Explained, compete
+from inertial.campaign.explanations import ExplainedFindings, compete
 from inertial.campaign.hypotheses import Findings, hypotheses
 from inertial.campaign.records import Performed, performed_of, rows_of
 from inertial.tables.declared import read_declared
@@ -52,7 +52,7 @@ class Recording:
     """
 
     without: Sequence[NoResult]
-    causes: Sequence[Explained]
+    causes: Sequence[ExplainedFindings]
     performed: Sequence[Performed]
     refused: dict[str, int]
 
@@ -112,7 +112,9 @@ def _severities(diagnosed: Path) -> dict[tuple[str, str], int]:
     }
 
 
-def _as_diagnosed(each: Explained, severities: Mapping[tuple[str, str], int]) -> Explained:
+def _as_diagnosed(
+    each: ExplainedFindings, severities: Mapping[tuple[str, str], int]
+) -> ExplainedFindings:
     """The same, as grave as it is by the diagnosis: nothing spoils of which no record is used."""
     row = each.cause.row
     severity = severities.get((row["cause"], row["sensor"]))
@@ -121,14 +123,14 @@ def _as_diagnosed(each: Explained, severities: Mapping[tuple[str, str], int]) ->
     return replace(each, cause=replace(each.cause, row={**row, "severity": severity}))
 
 
-def _worst_first(each: Explained) -> tuple[int, float, int, str]:
+def _worst_first(each: ExplainedFindings) -> tuple[int, float, int, str]:
     """By grade, then the least likely by chance, then by count."""
     row = each.cause.row
     p_value = 1.0 if row["p_value"] is None else row["p_value"]
     return _grade(each), p_value, -row["count"], row["id"]
 
 
-def _grade(each: Explained) -> int:
+def _grade(each: ExplainedFindings) -> int:
     """How grave a cause is; what a repair undoes spoils nothing."""
     repair, severity = each.cause.repair, each.cause.row["severity"]
     if repair is not None and repair["state"] in APPLIED:
@@ -176,7 +178,7 @@ def _recorded(recording: Recording, campaign: str) -> str:
     return "\n".join(_wrapped(shortened(sentence, 300)) for sentence in sentences)
 
 
-def _without(each: NoResult, causes: Sequence[Explained]) -> str:
+def _without(each: NoResult, causes: Sequence[ExplainedFindings]) -> str:
     """Whose result is missing, why, and what to do: set right first what spoils it, if anything."""
     spoiling = dict.fromkeys(
         in_words(one.cause.cause)
@@ -191,7 +193,7 @@ def _without(each: NoResult, causes: Sequence[Explained]) -> str:
     return "\n".join([title, *(_wrapped(shortened(text, 600), INDENT) for text in answers)])
 
 
-def _cause(each: Explained) -> str:
+def _cause(each: ExplainedFindings) -> str:
     """Grade, cause and place, the sentence, and what page one of the report answers as well."""
     row = each.cause.row
     one, _many = GRADES[_grade(each)]
@@ -203,7 +205,7 @@ def _cause(each: Explained) -> str:
     return "\n".join([*paragraphs, *(_wrapped(answer, INDENT) for answer in answers)])
 
 
-def _answers(each: Explained) -> Iterator[tuple[str, str]]:
+def _answers(each: ExplainedFindings) -> Iterator[tuple[str, str]]:
     row, repair = each.cause.row, each.cause.repair
     yield _("What it does"), row["consequence"]
     if repair is not None:

@@ -12,8 +12,8 @@ import test_history as archive
 
 from inertial import tables
 from inertial.campaign.records import rows_of
+from inertial.estimation.calibration_components import components
 from inertial.estimation.history_of_values import History, drift, jump, predicted
-from inertial.estimation.repeatability import components
 from inertial.estimation.switch_ons import between
 from inertial.tables.parquet import write_once
 from inertial.tables.yaml_file import YamlFile

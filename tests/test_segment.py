@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from inertial.campaign.records import Manoeuvre
-from inertial.signal.rests_and_motions import Stretch
+from inertial.signal.rests_and_motions import BinStretch
 from stages.segment import windows
 from stages.segment.matching import Observation, match, rest_part
 
@@ -234,5 +234,5 @@ def test_a_rest_keeps_clear_of_motion_however_long_the_bins_are(bin_seconds, mar
     one = windows.Binned(
         window, np.arange(121), nothing, nothing, np.full(120, bin_seconds), time, time
     )
-    part = rest_part(one, Stretch(moves=False, first=30, after=90), "rest", margin)
+    part = rest_part(one, BinStretch(moves=False, first=30, after=90), "rest", margin)
     assert (part.first, part.after) == (first, after)

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from commands.design.turntable import Turntable
 from commands.design.visits import Item, Visit, items_of, plan_of, visit_seconds
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData, CampaignTables, campaigns_of
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
@@ -33,8 +33,6 @@ from inertial.tables.campaign_inputs import FITTED, RECORDED
 from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
-
-Array = NDArray[np.float64]
 
 RIGHT = 0.95  # share of campaigns in which the likeliest member is to be the right one
 FORESEEN_RIGHT = 0.975  # by the sizes that were estimated: half of the allowance is left to these

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from itertools import zip_longest
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.design.turntable import Instrument, Turntable
 from commands.design.visits import Item, Visit, items_of, plan_of, possible, visit_seconds
+from inertial.arrays import Array, Integers
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.foreseen import (
     extended,
@@ -23,8 +23,6 @@ from inertial.campaign.rotating_positions import LEVER_ARM
 from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.optimal_design import Candidates, Plan, best_plan
 from inertial.estimation.triad import UNKNOWNS
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -95,7 +93,7 @@ def best(
     return Designed(made.items, made.seconds, made.data, made.sigmas, search)
 
 
-def in_order(visits: Sequence[Visit], counts: NDArray[np.int64]) -> list[Visit]:
+def in_order(visits: Sequence[Visit], counts: Integers) -> list[Visit]:
     """The chosen visits, in turn through all attitudes.
 
     So a position is left before its attitude is set again, and repetitions are far apart in time,

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.design.for_campaign import RIGHT, Addition
 from commands.design.from_nothing import Designed
 from commands.design.wanted import NAMES, Reached
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.observations import campaign_of
@@ -23,7 +23,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import quantity
 
-Array = NDArray[np.float64]
 Limits = Mapping[tuple[str, str], Visible]
 
 LINE_WIDTH = 100

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.foreseen import Pace, stated_noise
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Known
@@ -20,7 +20,6 @@ from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE, DEGREE_PER_HOUR, MICRO_G, PER_ROOT_HOUR, in_si
 
-Array = NDArray[np.float64]
 Entry = dict[str, Any]
 
 LATITUDE_SIGMA = radians(0.01)

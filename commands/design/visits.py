@@ -9,15 +9,14 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.design.turntable import Turntable, direction
+from inertial.arrays import Array
 from inertial.campaign.foreseen import Pace, session_seconds
 from inertial.campaign.records import Manoeuvre
 from inertial.physics.motion import Profile, level_axes
 from inertial.text.units import DEGREE
 
-Array = NDArray[np.float64]
 Item = dict[str, Any]
 
 RESTS = (30.0, 90.0, 180.0, 300.0)  # s

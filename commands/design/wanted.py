@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.design.from_nothing import candidates_of, in_order, prior_information
 from commands.design.turntable import Turntable
 from commands.design.visits import Item, Visit, items_of, plan_of
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.foreseen import (
     extended,
@@ -21,8 +21,6 @@ from inertial.estimation.triad import linear_names
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.parameters import STAGES
-
-Array = NDArray[np.float64]
 
 NAMES = [f"{STAGES[s]}/{name}" for s in ("accel", "gyro") for name in linear_names()]
 LONGEST = 4 * 3600.0  # s, at the table

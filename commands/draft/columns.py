@@ -16,15 +16,14 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.draft.raw_log import Name, RawLog
 from commands.draft.scales import sphere
+from inertial.arrays import Array
 from inertial.signal.signed_counts import bits_without_sign, signed
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
-Array = NDArray[np.float64]
 BIN_ROWS = 10  # of a short mean
 MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
 MIN_EXPLAINED = 0.3  # share of the change of each axis of a direction that the gyros must explain

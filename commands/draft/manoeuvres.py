@@ -7,14 +7,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.draft.sensors import Kind, Part, are_means
 from commands.draft.series import MIN_REST_S, Divided, Still
+from inertial.arrays import Array
 from inertial.text.messages import _, plural
 from inertial.text.parameters import AXES
-
-Array = NDArray[np.float64]
 
 MAX_FACE_ANGLE = np.radians(15)  # of gravity to an axis, that is meant to be a face
 MAX_AXIS_ANGLE = np.radians(25)  # of a turn to an axis, that is meant to be about it

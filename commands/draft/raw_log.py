@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.formats.columns import column_reader, vectornav_lines
 from inertial.formats.columns.text_lines import BYTE_ORDER_MARK, names_in, without_names
 from inertial.formats.file_type import FileType, file_type_of
@@ -166,7 +167,6 @@ def _names(line: str, delimiter: str | None, length: int) -> list[str]:
 
 # ---- The log.
 
-Array = NDArray[np.float64]
 Name = str | int
 MAX_WORDS = 50  # different ones in a column that labels rows
 SENT = (2, 1, 0, 5, 4, 3)  # a receiver sends z, −y, x

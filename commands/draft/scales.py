@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.draft.series import Divided, Still
+from inertial.arrays import Array
 from inertial.estimation.attitude import integrate
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.gravity_turned import turned
@@ -20,8 +20,6 @@ from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
-
-Array = NDArray[np.float64]
 
 MIN_POINTS = 4  # static positions that show a centre
 MIN_SPREAD = 0.3  # of their directions, the least one to the largest

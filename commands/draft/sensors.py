@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.draft.columns import Columns, Triad, alike, columns_of, recorded_together, runs_of
 from commands.draft.raw_log import RawLog
@@ -21,12 +20,12 @@ from commands.draft.scales import (
 )
 from commands.draft.series import Divided, Series, divided
 from commands.draft.timing import Timing, common_rate, timing_of
-from inertial.signal.rests_and_motions import Stretch, rest_level
+from inertial.arrays import Array
+from inertial.signal.rests_and_motions import BinStretch, rest_level
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
 
-Array = NDArray[np.float64]
 MIN_ROWS = 100  # of logs of one kind, to be samples
 MAX_MEAN_SCATTER = 0.1  # of the length of means about their centre
 MIN_SPREAD = 0.2  # of their directions
@@ -167,7 +166,7 @@ def _kind_of_means(columns: Columns, timing: Timing, group: Sequence[Sequence[Ra
         values = [t.of(together) if t else np.empty((0, 3)) for t in (columns.accel, columns.gyro)]
         series = Series(values[0], values[1], 1.0, 1.0)
         parts.append(Part(together, None, (0, together[0].rows), series))
-        rows = [Stretch(False, row, row + 1) for row in range(len(values[0]))]
+        rows = [BinStretch(False, row, row + 1) for row in range(len(values[0]))]
         forces, rates = series.means(values[0]), series.means(values[1])
         own.append(Divided(series, forces, rates, np.full(3, np.nan), rows))
     accel = accel_scale(own)

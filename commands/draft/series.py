@@ -5,19 +5,17 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.signal.rests_and_motions import (
     MIN_HAND_RATE,
     MIN_MOTION_SIGMA,
-    Stretch,
+    BinStretch,
     moving,
     rest_level,
     stretches,
     with_slow_ends,
 )
-
-Array = NDArray[np.float64]
 
 BIN_S, MIN_BINS = 0.1, 20  # s; of a short recording shorter ones
 MIN_REST_S = 1.0  # s, of a static position
@@ -61,7 +59,7 @@ class Series:
         sums = np.add.reduceat(values, np.minimum(edges[:-1], len(values) - 1))
         return np.asarray(sums / counts)
 
-    def edges(self, values: Array) -> NDArray[np.int64]:
+    def edges(self, values: Array) -> Integers:
         """The rows of a sensor at which the bins begin and end, (k + 1,)."""
         return np.round(np.linspace(0, len(values), self.bins + 1)).astype(np.int64)
 
@@ -85,7 +83,7 @@ class Divided:
     forces: Array
     rates: Array
     level: Array
-    stretches: Sequence[Stretch]
+    stretches: Sequence[BinStretch]
 
     @property
     def rests(self) -> list[Still]:
@@ -107,7 +105,7 @@ class Divided:
                 self.rates[first:after].mean(axis=0),
             )
 
-    def inside(self, rest: "Stretch | Still") -> tuple[int, int]:
+    def inside(self, rest: "BinStretch | Still") -> tuple[int, int]:
         """The bins of a rest without half a second beside a motion, which still moves."""
         room = min(round(MARGIN_S / self.series.bin_seconds()), (rest.after - rest.first) // 4)
         first = rest.first + (room if rest.first else 0)

@@ -5,14 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from commands.draft.columns import CLOCK_PARTS
 from commands.draft.raw_log import Name, RawLog
+from inertial.arrays import Array
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-
-Array = NDArray[np.float64]
 
 UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, "iso8601": 1.0}  # ticks in a second
 USUAL_RATE = 100.0  # Hz: of the units that a time may have, that with the rate nearest to it

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.attitudes_by_hand import Handled, with_attitudes
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.rate_segments import GyroInputs, gyro_inputs
@@ -31,8 +31,6 @@ from inertial.campaign.static_positions import StaticPosition, static_positions
 from inertial.estimation.accelerometers import Reference
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.random_walk import MeasuredDrift
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,9 @@ from itertools import chain, pairwise
 
 import numpy as np
 
-from inertial.campaign.masked_samples import Array, Batch, Columns, Masks
+from inertial.arrays import Array
+from inertial.campaign.log_lines import RecordRange
+from inertial.campaign.masked_samples import Batch, Columns, Masks
 from inertial.signal.detector import Detector, Event, Given, Log, Piece
 from inertial.tables import CHANNELS
 
@@ -14,7 +16,6 @@ PIECE_RECORDS = 1 << 17  # of a piece, which bound the memory
 SHARED_RECORDS = 1 << 12  # on each side, that a piece shares with its neighbours
 COLUMNS = ("line", "time", "status", "temperature", *CHANNELS)
 
-Stretch = tuple[str, int, int]  # log, first record, record after the last
 Subject = tuple[str, str, int]  # name of what is examined, log, number or first record
 # By detector, name of what was examined (empty for the campaign as a whole) and channel.
 Events = dict[tuple[Detector, str, int | None], list[Event]]
@@ -135,7 +136,25 @@ def _append(events: list[Event], event: Event) -> None:
         events.append(event)
 
 
-class ExaminationOfLogs:
+class _Examined:
+    """What is cut into pieces, and examined piece by piece."""
+
+    def __init__(self, examination: Examination) -> None:
+        self._examination = examination
+        self._cutter = _Cutter()
+
+    def _add(self, subject: Subject, columns: Columns) -> None:
+        for name, piece in self._cutter.add(subject, columns):
+            self._examination.examine(name, piece)
+
+    def events(self) -> Events:
+        """All events, once every batch was added."""
+        for name, piece in self._cutter.rest():
+            self._examination.examine(name, piece)
+        return self._examination.events()
+
+
+class ExaminationOfLogs(_Examined):
     """Examines every log from its first record to its last.
 
     Where the label changes another stretch of recording begins; nothing is compared across.
@@ -144,8 +163,7 @@ class ExaminationOfLogs:
     columns = (*COLUMNS, "label")
 
     def __init__(self, examination: Examination) -> None:
-        self._examination = examination
-        self._cutter = _Cutter()
+        super().__init__(examination)
         self._label: str | None = None
         self._stretch = 0
 
@@ -158,17 +176,10 @@ class ExaminationOfLogs:
             self._label = labels[start]
             subject = (batch.log, batch.log, self._stretch)
             columns = _columns_of(batch, slice(start, end), batch.readings)
-            for name, piece in self._cutter.add(subject, columns):
-                self._examination.examine(name, piece)
-
-    def events(self) -> Events:
-        """All events, once every batch was added."""
-        for name, piece in self._cutter.rest():
-            self._examination.examine(name, piece)
-        return self._examination.events()
+            self._add(subject, columns)
 
 
-class ExaminationOfStretches:
+class ExaminationOfStretches(_Examined):
     """Examines stretches of logs, each by itself under its name, without what is masked.
 
     Parameters
@@ -179,16 +190,15 @@ class ExaminationOfStretches:
     columns = COLUMNS
 
     def __init__(
-        self, examination: Examination, stretches: Mapping[str, Stretch], masks: Masks
+        self, examination: Examination, stretches: Mapping[str, RecordRange], masks: Masks
     ) -> None:
-        self._examination = examination
-        self._cutter = _Cutter()
+        super().__init__(examination)
         self._masks = masks
         self._by_log: dict[str, list[tuple[int, int, str]]] = {}
-        for name, (log, first, after) in stretches.items():
-            self._by_log.setdefault(log, []).append((first, after, name))
-        for own in self._by_log.values():
-            own.sort()
+        for name, own in stretches.items():
+            self._by_log.setdefault(own.log, []).append((own.first, own.after, name))
+        for ranges in self._by_log.values():
+            ranges.sort()
 
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
@@ -206,11 +216,4 @@ class ExaminationOfStretches:
         for first, start, end, name in own:
             if end > start:
                 columns = _columns_of(batch, slice(start, end), values)
-                for named, piece in self._cutter.add((name, log, first), columns):
-                    self._examination.examine(named, piece)
-
-    def events(self) -> Events:
-        """All events, once every batch was added."""
-        for name, piece in self._cutter.rest():
-            self._examination.examine(name, piece)
-        return self._examination.events()
+                self._add((name, log, first), columns)

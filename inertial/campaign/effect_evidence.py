@@ -4,16 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.campaign.shared_tilts import shared_tilts
 from inertial.estimation.least_squares import EffectInformation, System
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
-
-Array = NDArray[np.float64]
 
 MIN_OBSERVABLE_SIGMAS = 5.0  # sigmas of an effect at its largest size; less is not observable
 

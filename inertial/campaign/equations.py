@@ -7,13 +7,14 @@ from itertools import accumulate, pairwise
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.campaign.equations_by_hand import (
     NO_TABLE,
     SWAYING,
     ByHand,
     of_a_table,
 )
-from inertial.campaign.rate_segments import GyroInputs, Recorded
+from inertial.campaign.rate_segments import GyroInputs
 from inertial.campaign.records import Known
 from inertial.campaign.solution import Solution
 from inertial.estimation import accelerometers, gyroscopes
@@ -30,7 +31,7 @@ from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_by_hand import Scatter
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.estimation.switch_ons import SwitchOns
-from inertial.physics.effect import Array, Effect, Reading
+from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined
 from inertial.sensors import SENSORS
@@ -101,24 +102,18 @@ class Campaign:
     def _gyro_names(self) -> list[str]:
         """Of the gyros' static positions, then of their rotations, then of those at a rate."""
         names = [position.manoeuvre.name for position in self.inputs.static_positions]
-        names += [recorded.plan.name for recorded in self._whole]
+        names += [recorded.plan.name for recorded in self.inputs.whole_turns]
         return [*names, *(name for name, _, _ in self.steady_rates)]
-
-    @property
-    def _whole(self) -> list[Recorded]:
-        return [r for r in self.inputs.usable if r.plan.recorded == "whole"]
 
     @cached_property
     def motion(self) -> Motion:
         """All stretches of the equations: gyros at rest, gyros in rotation, accelerometers."""
-        return joined(self._motions)
+        return joined(self.motions)
 
     @cached_property
-    def _motions(self) -> list[Motion]:
-        return [
-            *self.gyro_motions,
-            *(motion for _, _, motion in self.static_forces),
-        ]
+    def motions(self) -> list[Motion]:
+        """The same, each by itself."""
+        return [*self.gyro_motions, *(motion for _, _, motion in self.static_forces)]
 
     @cached_property
     def gyro_motions(self) -> list[Motion]:
@@ -130,7 +125,7 @@ class Campaign:
     @property
     def recorded(self) -> bool:
         """Whether there is anything to simulate."""
-        return bool(self._motions)
+        return bool(self.motions)
 
     def stretches(self, sensor: str) -> slice:
         """Which stretches of `motion` are those of a sensor, `gyro` or `accel`."""
@@ -150,7 +145,7 @@ class Campaign:
 
     def candidates(self, effects: Sequence[Effect]) -> dict[str, list[Effect]]:
         """Each effect by its name, once for every value of its scanned parameter."""
-        if not self._motions:
+        if not self.motions:
             return {effect.name: [effect] for effect in effects}
         return {
             effect.name: [effect]
@@ -179,7 +174,7 @@ class Campaign:
         """Why an effect is not observable in this campaign; empty where it may be."""
         if self.excludes(effect):
             return SWAYING if effect.of_stillness else NO_TABLE
-        return effect.blind(self.motion) if self._motions else NOT_SIMULATED
+        return effect.blind(self.motion) if self.motions else NOT_SIMULATED
 
     def with_random_walks(self, random_walks: tuple[float, float]) -> "Campaign":
         """The same with random walks of the gyro and accelerometer biases, rad/s/√s, m/s²/√s."""
@@ -437,7 +432,7 @@ class Campaign:
 
     def _responses(self, effects: Sequence[Effect]) -> list[Reading]:
         """The responses of all readings to each effect, in all stretches."""
-        if not effects or not self._motions:
+        if not effects or not self.motions:
             return []
         unit = Triad(np.eye(3), np.zeros(3))
         triads = self.solution.gyro or unit, self.solution.accelerometer or unit
@@ -458,7 +453,7 @@ class Campaign:
 
         Gyros: static positions, then rotations; accelerometers: as in `static_forces`.
         """
-        ends = [0, *accumulate(len(motion.rate) for motion in self._motions)]
+        ends = [0, *accumulate(len(motion.rate) for motion in self.motions)]
         parts = [slice(first, after) for first, after in pairwise(ends)]
         gyros = len(parts) - len(self.static_forces)
         of_sensor = parts[:gyros] if sensor == "gyro" else parts[gyros:]

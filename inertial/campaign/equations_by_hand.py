@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.attitudes_by_hand import Handled
 from inertial.campaign.passages import RecordedPassage
 from inertial.campaign.records import Known
@@ -29,8 +29,6 @@ from inertial.physics.effect import GOOD, POOR, Effect
 from inertial.physics.forward import Triad
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
-
-Array = NDArray[np.float64]
 
 NO_TABLE = _("No table takes part in a session by hand.")
 SWAYING = _("A hand that turns the IMU sways at rest too, more than this would change.")

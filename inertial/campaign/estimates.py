@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Manoeuvre, Part, Row, with_mount
 from inertial.estimation import triad
 from inertial.estimation.gyroscope_observations import EARTH_UP
 from inertial.estimation.least_squares import Estimate
+from inertial.estimation.scatter_and_random_walk import ScatterFit
 from inertial.estimation.switch_ons import SwitchOns
-from inertial.estimation.variance_components import ScatterFit
 from inertial.tables import AXES, BODY, OF_TRIAD
 from inertial.tables.campaign_inputs import ESTIMATION
 from inertial.text.messages import _
@@ -51,10 +51,6 @@ class Wanted:
             "wanted_seconds": noise / above if above > 0 else None,
         }
 
-
-Array = NDArray[np.float64]
-
-Booleans = NDArray[np.bool_]
 
 NAMES = triad.linear_names()
 SENSED = {"accelerometer": _("specific force"), "gyroscope": _("angular rate")}

@@ -323,14 +323,14 @@ def _unresolved(fault: Hypothesis) -> bool:
 
 
 @dataclass(frozen=True)
-class Explained:
+class ExplainedFindings:
     """A cause, and the findings that are its consequences, its own among them."""
 
     cause: Hypothesis
     consequences: tuple[Hypothesis, ...]
 
 
-def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
+def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[ExplainedFindings]:
     """The causes: the hypotheses that none other explains, each with what it explains.
 
     A finding that several explain is the consequence of the one that explains most.
@@ -352,7 +352,7 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[Explained]:
     for root in (h for h in hypotheses if h.id not in owner):
         own = tuple(h for h in hypotheses if _root(h.id, owner) == root.id)
         if len(own) > 1 or not _is_noise(root):
-            yield Explained(root, own)
+            yield ExplainedFindings(root, own)
 
 
 def _group(fault: Hypothesis) -> object:

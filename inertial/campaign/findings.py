@@ -106,16 +106,16 @@ def detections_of(
     return detections
 
 
-Named = tuple[str, Event]  # under the name of its log, its rest, or none: the campaign's
+NamedEvent = tuple[str, Event]  # under the name of its log, its rest, or none: the campaign's
 
 
-def _groups(events: Events) -> dict[tuple[Any, ...], list[Named]]:
+def _groups(events: Events) -> dict[tuple[Any, ...], list[NamedEvent]]:
     """Events that are one finding, by detector, sensor or channel, and by what else differs.
 
     Where events are things of their own they are told apart by their place and number, unless
     many are in one place.
     """
-    groups: dict[tuple[Any, ...], list[Named]] = {}
+    groups: dict[tuple[Any, ...], list[NamedEvent]] = {}
     for (detector, name, channel), own in events.items():
         part = "" if channel is None else CHANNELS[channel]
         single = detector.alike == "event" and len(own) <= MAX_SINGLE_EVENTS
@@ -167,7 +167,7 @@ def _number(value: float) -> float | None:
     return value if np.isfinite(value) else None
 
 
-def _of_many(finding: Finding, detector: Detector, group: Sequence[Named]) -> Finding:
+def _of_many(finding: Finding, detector: Detector, group: Sequence[NamedEvent]) -> Finding:
     """One finding for many events; it has the size of the largest, and the times within one log."""
     description = detector.describe_many(group)
     channels = {event.channel for _, event in group}

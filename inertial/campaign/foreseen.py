@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.noise_levels import COMMON, DRIFTS, LEVEL_COLUMNS, NoiseLevels
 from inertial.campaign.rate_segments import position_of
@@ -27,8 +27,6 @@ from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Site, Triad, predict
 from inertial.physics.motion import Profile, level_axes, mean_turned, turning
 from inertial.tables import ACCEL, CHANNELS, GYRO
-
-Array = NDArray[np.float64]
 
 # As the section `segment` of config.yaml divides a recording.
 REST_BLOCK, TURN_BLOCK = 5.0, 0.2  # s

@@ -10,22 +10,20 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import NAMES, Estimates, Wanted
 from inertial.campaign.rate_segments import GyroInputs, angles_about, position_of
 from inertial.estimation import gyroscopes
 from inertial.estimation.gyroscope_formulas import Solution, Upright, two_positions
 from inertial.estimation.rate_table import rate_table
+from inertial.estimation.scatter_and_random_walk import ScatterFit
 from inertial.estimation.triad import errors_of
 from inertial.estimation.turn_and_stop import CROSS_SIGMA, turn_and_stop
-from inertial.estimation.variance_components import ScatterFit
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.parameters import BIAS
-
-Array = NDArray[np.float64]
 
 NO_TURNS = _("no axis {axis} was turned about both ways over the same known angle: add such turns")
 MIN_SIGMA = 1e-15  # rad/s, in place of zero

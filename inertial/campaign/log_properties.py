@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from inertial.campaign.masked_samples import Array, Batch, regular
+from inertial.arrays import Array, Booleans
+from inertial.campaign.masked_samples import Batch, regular
 from inertial.campaign.records import Row, clocks_of, known_of, rows_of
 from inertial.campaign.sums import SumsOver
 from inertial.physics.site import normal_gravity
-from inertial.signal.detector import Booleans, Given, Log, Windows
+from inertial.signal.detector import Given, Log, Windows
 from inertial.signal.scatter import MAD_TO_SIGMA, MIN_RELATIVE_STEP, median
 from inertial.tables import CHANNEL_PARTS, CHANNEL_STATISTICS, CHANNELS
 

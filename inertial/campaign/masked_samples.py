@@ -11,12 +11,10 @@ import pandas as pd
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans, Integers
 from inertial.tables import CHANNELS
 from inertial.tables.parquet import Stream
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Booleans = NDArray[np.bool_]
 Columns = dict[str, NDArray[Any]]
 
 CENSORED = "censored "  # before the name of a channel

@@ -9,8 +9,8 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.records import Row, rows_of
 from inertial.effects import KNOWN
 from inertial.estimation.triad import linear_names
@@ -18,8 +18,6 @@ from inertial.physics.effect import Effect
 from inertial.physics.forward import Sized, Triad, force_of, rate_of
 from inertial.physics.motion import Motion
 from inertial.text.parameters import BIAS
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.rate_segments import Recorded, position_of
+from inertial.campaign.rate_segments import Rotation, position_of
 from inertial.campaign.records import Manoeuvre, runs_of
 from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate
@@ -19,7 +20,6 @@ from inertial.text.messages import _
 
 # --- One static position, a rotation block by block, a rotation sample by sample ---
 
-Array = NDArray[np.float64]
 
 EQUAL = np.ones(3)
 
@@ -130,7 +130,7 @@ def in_samples(
     m: Manoeuvre,
     increments: Array,
     step: float,
-    steady: NDArray[np.bool_],
+    steady: Booleans,
     time: Array,
 ) -> tuple[Motion, str]:
     """A rotation from rest to rest, sample by sample, and the origin of its profile.
@@ -248,13 +248,13 @@ class CampaignMotions:
             senses=senses,
         )
 
-    def turning(self, rotation: Recorded, turn: RateSegment) -> Motion:
+    def turning(self, rotation: Rotation, turn: RateSegment) -> Motion:
         """A rotation from rest to rest in its blocks."""
         blocks = rotation.blocks
         motion = in_blocks(self._data, rotation.plan, turn, blocks.phase, self._time_of(blocks))
         return self._placed(rotation.plan.name, motion, rotation.blocks, turn)
 
-    def at_rate(self, rotation: Recorded, steady: SteadyRate) -> Motion:
+    def at_rate(self, rotation: Rotation, steady: SteadyRate) -> Motion:
         """The part of a rotation at a known rate in its blocks."""
         motion = at_rate(self._data, rotation.plan, steady, self._time_of(rotation.steady))
         return self._placed(rotation.plan.name, motion, rotation.steady, steady)

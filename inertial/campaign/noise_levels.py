@@ -16,15 +16,14 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.noise_terms import NoiseTerms
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import MeasuredDrift
 
-Array = NDArray[np.float64]
 Key = tuple[str | None, str | None, str]  # manoeuvre, phase, channel
 
 MIN_SCATTER_RATIO = 1.5  # of a rate segment to static positions, from which a channel oscillates
@@ -99,7 +98,7 @@ def effective_levels(
     return pd.DataFrame(rows, columns=LEVEL_COLUMNS) if rows else tables.LEVELS.empty()
 
 
-def _differ(white: Array, level: float, degrees: Array) -> NDArray[np.bool_]:
+def _differ(white: Array, level: float, degrees: Array) -> Booleans:
     """Which levels, (n,), differ from a common one by more than chance, of all n together.
 
     A variance of ν degrees of freedom is chi-squared. In sigmas of its own a low one of few degrees

@@ -5,8 +5,8 @@ from dataclasses import replace
 from itertools import accumulate, pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.equations_by_hand import ByHand, motion_of
@@ -18,8 +18,6 @@ from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
 from inertial.physics.motion import Motion, is_vertical, level_axes, mean_turned
 from inertial.sensors import SENSORS
 from inertial.tables import ACCEL
-
-Array = NDArray[np.float64]
 
 MIN_PIECE_S = 30.0  # s, duration of a piece of a static position
 MAX_PIECES = 100  # pieces of all static positions together
@@ -44,8 +42,7 @@ def campaign_of(data: CampaignData) -> Campaign:
     for position in statics:
         force = (position.manoeuvre.name, position.force(), motions.at_rest(position))
         static_forces.append(force)
-    whole = [r for r in inputs.usable if r.plan.recorded == "whole"]
-    for recorded, turn in zip(whole, inputs.turns, strict=True):
+    for recorded, turn in zip(inputs.whole_turns, inputs.turns, strict=True):
         if solution.gyro is None:
             break
         motion = motions.turning(recorded, turn)

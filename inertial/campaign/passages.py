@@ -11,16 +11,14 @@ from itertools import pairwise
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Clock, Part
 from inertial.campaign.unknown_attitude import FreeStaticPosition
 from inertial.estimation.attitude import Passage
 from inertial.tables import GYRO
 from inertial.text.messages import _
-
-Array = NDArray[np.float64]
 
 BETWEEN = "between"  # phase of the blocks from one rest to the next
 MAX_LOST_RUN = 3  # samples in a row that are interpolated: a hand changes its rate in 50 ms

@@ -8,8 +8,8 @@ from math import cos, degrees, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.campaign.static_positions import (
@@ -50,8 +50,6 @@ if TYPE_CHECKING:
 #   recorded part may end at any phase of it;
 # - in a ramp the acceleration may change between the neighbouring blocks: the straight line is
 #   wrong by up to a quarter of the change of rate between them.
-
-Array = NDArray[np.float64]
 
 
 def gaps_of(part: Blocks) -> list[Gap]:
@@ -188,7 +186,7 @@ TURNING = ("spin-up", "steady", "spin-down", "turning")
 
 
 @dataclass(frozen=True)
-class Recorded:
+class Rotation:
     """A rotation of the plan, its record, its blocks in motion, and why it is refused.
 
     `begun`: whether the rest before it is in its record; one that is recorded in part and has
@@ -231,7 +229,7 @@ class GyroInputs:
     """The inputs of the equations of the gyros, of one mount."""
 
     static_positions: list[StaticPosition]
-    recorded: list[Recorded]
+    recorded: list[Rotation]
     turns: list[RateSegment]  # from rest to rest, with their angle known
     steady_rates: list[SteadyRate]  # at a known rate
     # As the joint estimate takes them: windows of the encoder where that gives parts of turns.
@@ -243,9 +241,14 @@ class GyroInputs:
     left_out: list[Part]
 
     @property
-    def usable(self) -> list[Recorded]:
+    def usable(self) -> list[Rotation]:
         """The turns that are not refused."""
         return [rotation for rotation in self.recorded if not rotation.refusal]
+
+    @property
+    def whole_turns(self) -> list[Rotation]:
+        """Those of them that are recorded from rest to rest."""
+        return [rotation for rotation in self.usable if rotation.plan.recorded == "whole"]
 
     @property
     def of_known_attitude(self) -> "GyroInputs":
@@ -295,7 +298,7 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
     shared = data.shared_clock
     angle_sigma = data.known["turn_angle"].scatter if "turn_angle" in data.known else 0.0
 
-    def whole(r: Recorded) -> RateSegment:
+    def whole(r: Rotation) -> RateSegment:
         return replace(rate_segment_of(r, *given), stretch=stretch_of(r.plan, r.blocks, shared))
 
     turned = [r for r in usable if r.plan.recorded == "whole"]
@@ -327,7 +330,7 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
     )
 
 
-def _recorded_turns(data: "CampaignData") -> Iterator[Recorded]:
+def _recorded_turns(data: "CampaignData") -> Iterator[Rotation]:
     """Every turn of the plan."""
     moving = by_manoeuvre(data.blocks[data.blocks["phase"].isin(TURNING)])
     begun = set(data.blocks.loc[data.blocks["phase"] == "rest-before", "manoeuvre"])
@@ -336,7 +339,7 @@ def _recorded_turns(data: "CampaignData") -> Iterator[Recorded]:
             done, part = data.performed[m.name], moving.get(m.name, NO_BLOCKS)
             clock = data.clocks.get(m.log)
             timed = 0.0 if clock is None else clock.sigma
-            yield Recorded(m, done, part, refusal_of(m, done, part), m.name in begun, timed)
+            yield Rotation(m, done, part, refusal_of(m, done, part), m.name in begun, timed)
 
 
 def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
@@ -382,7 +385,7 @@ def static_rate_of(position: StaticPosition, heading: float | None, seconds: flo
 
 
 def rate_segment_of(
-    rotation: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
+    rotation: Rotation, noise: NoiseLevels, heading: float | None, rate_sigma: float
 ) -> RateSegment:
     """A turn from rest to rest with its blocks in motion; gaps are interpolated.
 
@@ -412,7 +415,7 @@ def rate_segment_of(
 
 
 def steady_rate_of(
-    rotation: Recorded, noise: NoiseLevels, heading: float | None, rate_sigma: float
+    rotation: Rotation, noise: NoiseLevels, heading: float | None, rate_sigma: float
 ) -> SteadyRate:
     m, part = rotation.plan, rotation.steady
     assert m.rate is not None  # the plan requires a rate of such a turn
@@ -431,9 +434,8 @@ def steady_rate_of(
 
 def angles_about(data: "CampaignData", i: int) -> list[tuple[str, WholeTurn]]:
     """The complete rotations about body axis i while it is vertical, by its gyro, with names."""
-    usable = data.gyro_inputs.usable
-    recorded = [r for r in usable if r.plan.recorded == "whole" and r.done.complete]
-    whole = [r for r in recorded if _upright(r.plan, i)]
+    complete = [r for r in data.gyro_inputs.whole_turns if r.done.complete]
+    whole = [r for r in complete if _upright(r.plan, i)]
     angles = [(r.plan.name, _angle(r, i, data.noise)) for r in whole]
     return [(name, angle) for name, angle in angles if np.isfinite(angle.summed)]
 
@@ -444,7 +446,7 @@ def _upright(m: Manoeuvre, i: int) -> bool:
     return up and abs(float(m.axis[i])) > 1 - 1e-9
 
 
-def _angle(rotation: Recorded, i: int, noise: NoiseLevels) -> WholeTurn:
+def _angle(rotation: Rotation, i: int, noise: NoiseLevels) -> WholeTurn:
     m, part = rotation.plan, rotation.blocks
     assert m.up is not None and m.angle is not None and m.angle_sigma is not None  # else refused
     return WholeTurn(

@@ -6,14 +6,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.tables import AXES
 from inertial.text.messages import _
 
 MAX_NAMED = 5  # manoeuvres that are left out for the same reason
 
-Array = NDArray[np.float64]
 Row = dict[str, Any]
 
 

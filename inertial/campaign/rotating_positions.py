@@ -9,8 +9,8 @@ are enough; ramps, where the others count too, are left out.
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import gaps_of, refusal_of, weights_of
 from inertial.campaign.records import Manoeuvre, Part
@@ -19,8 +19,6 @@ from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.physics.motion import is_vertical, level_axes, mean_turned
 from inertial.tables import ACCEL, AXES, STATIC_PHASES
-
-Array = NDArray[np.float64]
 
 LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU is mounted farther off
 # How far the vertical, or in an upright turn a level axis, may turn in the case within one mean.

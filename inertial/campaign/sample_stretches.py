@@ -6,31 +6,21 @@ from math import pi
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
+from inertial.campaign.log_lines import RecordRange
 from inertial.campaign.masked_samples import Masks, Repairs, pieces
 from inertial.campaign.records import Manoeuvre
 from inertial.tables import CHANNELS, STATIC_PHASES
 from inertial.tables.parquet import Stream
 
-Array = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
-class Stretch:
-    """Records of a log, from `first` to the one before `after`."""
-
-    log: str
-    first: int
-    after: int
-
-
-def records_of(m: Manoeuvre, segments: pd.DataFrame, *, moving: bool = False) -> Stretch:
+def records_of(m: Manoeuvre, segments: pd.DataFrame, *, moving: bool = False) -> RecordRange:
     """All the records of a manoeuvre, rests before and after a turn included unless `moving`."""
     rows = segments[(segments["manoeuvre"] == m.name) & (segments["log"] == m.log)]
     if moving:
         rows = rows[~rows["phase"].isin(STATIC_PHASES)]
-    return Stretch(m.log, int(rows["from_record"].min()), int(rows["to_record"].max()))
+    return RecordRange(m.log, int(rows["from_record"].min()), int(rows["to_record"].max()))
 
 
 @dataclass(frozen=True)
@@ -48,7 +38,7 @@ class Samples:
 
 
 def samples_in(
-    samples: Stream, stretches: Mapping[str, Stretch], masks: pd.DataFrame, repairs: Repairs
+    samples: Stream, stretches: Mapping[str, RecordRange], masks: pd.DataFrame, repairs: Repairs
 ) -> dict[str, Samples]:
     """The samples of each stretch by its name; repeated records are left out."""
     known = Masks(masks, repairs)

@@ -8,16 +8,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.estimation.elimination import Name
 from inertial.estimation.gyroscope_equations import is_upright
 from inertial.estimation.least_squares import EffectInformation
 from inertial.estimation.position_tilt import OF_AXIS, OF_CASE, TILTS, case_by_both, names_of
 from inertial.sensors import SENSORS
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
 from inertial.estimation.gyroscope_observations import Earth, Position
 from inertial.estimation.switch_ons import covering
@@ -15,8 +15,6 @@ from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross, level_axes
 from inertial.tables import AXES
 from inertial.text.parameters import BIAS, FREE, JOINT
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.probability import chi2_sf
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
 
 # --- The blocks of one manoeuvre as arrays ---
-
-Array = NDArray[np.float64]
-Truths = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -51,7 +49,7 @@ class Blocks:
         return len(self.phase)
 
     @property
-    def steady(self) -> Truths:
+    def steady(self) -> Booleans:
         """The blocks at the steady rate, (k,)."""
         return np.asarray(self.phase == "steady", bool)
 

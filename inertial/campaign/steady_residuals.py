@@ -8,16 +8,14 @@ from math import ceil
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.estimation.periodic_in_angle import Course
 from inertial.estimation.periodic_in_time import Line
 from inertial.estimation.spectrum import WHITE, NoiseShape, band_levels, noise_shape, white_level
 from inertial.tables import ACCEL, AXES, GYRO
 from inertial.tables.parquet import Stream
-
-Array = NDArray[np.float64]
 
 RESIDUALS, OF_FORCE = ([f"residual_{name}" for name in names] for names in (GYRO, ACCEL))
 RESTS = ("rest-before", "rest-after")

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.campaign.masked_samples import Array, Batch, Booleans, Integers, Masks, read_once
+from inertial.arrays import Array, Booleans, Integers
+from inertial.campaign.masked_samples import Batch, Masks, read_once
 from inertial.tables import CHANNELS
 from inertial.tables.parquet import Stream
 

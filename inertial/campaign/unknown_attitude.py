@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.estimates import NAMES as LINEAR
 from inertial.campaign.estimates import Estimates
 from inertial.campaign.noise_levels import NoiseLevels
@@ -30,7 +30,7 @@ from inertial.estimation.multi_position import (
     free_positions,
     unobservable,
 )
-from inertial.estimation.variance_components import ScatterFit, with_scatter
+from inertial.estimation.scatter_and_random_walk import ScatterFit, with_scatter
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from inertial.text.parameters import CROSS, FREE, MOUNTING, PARTS, SYMMETRIC
@@ -38,7 +38,6 @@ from inertial.text.parameters import CROSS, FREE, MOUNTING, PARTS, SYMMETRIC
 if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
 
-Array = NDArray[np.float64]
 
 UNKNOWN = np.full(3, np.nan)  # an attitude
 MOUNTING_UNDETERMINED = _(

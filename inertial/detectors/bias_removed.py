@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtr
 
+from inertial.arrays import Array
 from inertial.sensors import COLUMNS
-from inertial.signal.detector import Array, Description, Detector, Event, Log
+from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.text.messages import _
 from inertial.text.numbers import counted, p_is, significant
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import Array, Description, Detector, Event, Integers, Log, Piece
+from inertial.arrays import Array, Integers
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import joined
 from inertial.signal.stamps import STAMP_DIGIT_S, stamps_of, unit_of
 from inertial.text.messages import _

@@ -6,16 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from inertial.signal.detector import (
-    Array,
-    Description,
-    Detector,
-    Event,
-    Given,
-    Integers,
-    Log,
-    Piece,
-)
+from inertial.arrays import Array, Integers
+from inertial.signal.detector import Description, Detector, Event, Given, Log, Piece
 from inertial.signal.mean_changes import changes
 from inertial.signal.scatter import in_blocks
 from inertial.signal.stamps import (

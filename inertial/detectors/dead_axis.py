@@ -6,19 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf
 
+from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import COLUMNS
-from inertial.signal.detector import (
-    Array,
-    Booleans,
-    Description,
-    Detector,
-    Event,
-    Integers,
-    Log,
-    Piece,
-    channel_name,
-    read_in,
-)
+from inertial.signal.detector import Description, Detector, Event, Log, Piece, channel_name, read_in
 from inertial.signal.rests_and_motions import MIN_HAND_RATE
 from inertial.signal.scatter import (
     BLOCK,

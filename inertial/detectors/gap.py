@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import Array, Description, Detector, Event, Log, Piece
+from inertial.arrays import Array
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.stamps import disorders, stamps_of
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed, significant

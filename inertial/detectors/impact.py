@@ -6,15 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter
 
-from inertial.signal.detector import (
-    Array,
-    Booleans,
-    Description,
-    Detector,
-    Event,
-    Log,
-    Piece,
-)
+from inertial.arrays import Array, Booleans
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import joined
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Array, Description
+from inertial.arrays import Array
+from inertial.signal.detector import Description
 from inertial.signal.plan_detector import (
     Deviation,
     PlanDetector,

@@ -5,16 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import (
-    Array,
-    Description,
-    Detector,
-    Event,
-    Log,
-    Piece,
-    channel_name,
-    read_in,
-)
+from inertial.arrays import Array
+from inertial.signal.detector import Description, Detector, Event, Log, Piece, channel_name, read_in
 from inertial.signal.tones import Tone, tones
 from inertial.text.messages import _
 from inertial.text.numbers import significant

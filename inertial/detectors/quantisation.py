@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.sensors import CHANNELS
-from inertial.signal.detector import Array, Description, Detector, Event, Log, Piece, read_in
+from inertial.signal.detector import Description, Detector, Event, Log, Piece, read_in
 from inertial.signal.scatter import (
     BLOCK,
     in_blocks,

@@ -4,18 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.signal.detector import (
-    Array,
-    Booleans,
-    Description,
-    Detector,
-    Event,
-    Integers,
-    Log,
-    Piece,
-)
+from inertial.arrays import Array, Booleans, Integers
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import runs
 from inertial.signal.stamps import kinds
 from inertial.text.messages import _
@@ -110,7 +101,7 @@ def _repeated(piece: Piece) -> Booleans:
 def _seen_before(rows: Array) -> Booleans:
     """Which of n rows are equal to one before them, (n,)."""
     first: Integers = np.unique(rows, axis=0, return_index=True)[1]
-    before: NDArray[np.bool_] = np.ones(len(rows), bool)
+    before: Booleans = np.ones(len(rows), bool)
     before[first] = False
     return before
 

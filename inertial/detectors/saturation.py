@@ -7,12 +7,11 @@ import numpy as np
 from scipy.special import bdtrc
 from scipy.stats import hypergeom
 
+from inertial.arrays import Array, Integers
 from inertial.signal.detector import (
-    Array,
     Description,
     Detector,
     Event,
-    Integers,
     Log,
     Piece,
     names_of_axes,

@@ -6,13 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erfc
 
+from inertial.arrays import Array, Booleans, Integers
 from inertial.signal.detector import (
-    Array,
-    Booleans,
     Description,
     Detector,
     Event,
-    Integers,
     Log,
     Piece,
     channel_name,

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.signal.detector import Array, Description, Detector, Event, Log, Piece
+from inertial.arrays import Array
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import runs
 from inertial.signal.stamps import disorders, kinds, stamps_of, unit_of
 from inertial.text.messages import _, plural

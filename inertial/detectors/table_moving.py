@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import stdtr
 
+from inertial.arrays import Array
 from inertial.sensors import COLUMNS
-from inertial.signal.detector import Array, Description, Detector, Event, Log, Piece
+from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.signal.static_tilt import (
     CAMPAIGN_RESTS,

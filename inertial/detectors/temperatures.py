@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter
 
+from inertial.arrays import Array, Booleans
 from inertial.sensors import CHANNELS
-from inertial.signal.detector import Array, Booleans, Description, Detector, Event, Log, Windows
+from inertial.signal.detector import Description, Detector, Event, Log, Windows
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.messages import _
 from inertial.text.numbers import significant

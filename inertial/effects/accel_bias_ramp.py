@@ -1,7 +1,8 @@
 """A bias of the accelerometers that drifts evenly."""
 
+from inertial.arrays import Array
 from inertial.physics.drift import Drift
-from inertial.physics.effect import Array, Parameter, by_grade, on_each_axis
+from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import HOUR, STANDARD_GRAVITY
@@ -19,14 +20,11 @@ class AccelBiasRamp(Drift):
         "the bias of the accelerometers drifts, as the sensor or its electronics warm up or age"
     )
     source = "IEEE Std 1554-2005, 'ramp' of the Allan variance"
-    parameters = tuple(
-        Parameter(
-            f"c_{axis}",
-            "m/s³",
-            1e-5 * STANDARD_GRAVITY / HOUR,
-            _("drift of the {axis} specific force, per second", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "c",
+        "m/s³",
+        1e-5 * STANDARD_GRAVITY / HOUR,
+        _("drift of the {axis} specific force, per second"),
     )
     terms = on_each_axis("accel", "c_{i}", "t")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY / HOUR, 20, 100, 100, 1000)

@@ -1,18 +1,10 @@
 """A bias of the accelerometers that goes with the temperature."""
 
-from dataclasses import replace
-
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.physics.drift import OfTemperature, warmer
-from inertial.physics.effect import (
-    Array,
-    Parameter,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-)
+from inertial.physics.effect import Reading, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -27,18 +19,12 @@ class AccelBiasTemperature(OfTemperature):
     name = "accel_bias_temperature"
     cause = _("the bias of the accelerometers changes with the temperature of the instrument")
     source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
-    parameters = tuple(
-        Parameter(
-            f"k_{axis}",
-            "m/s²/K",
-            1e-5 * STANDARD_GRAVITY,
-            _("of the {axis} specific force, per kelvin", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "k", "m/s²/K", 1e-5 * STANDARD_GRAVITY, _("of the {axis} specific force, per kelvin")
     )
     terms = on_each_axis("accel", "k_{i}", "(T - T0)")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 100, 1000)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = np.outer(warmer(motion, self.reference, self.valid), values)
-        return replace(reading, accel=reading.accel + change)
+        return reading.plus("accel", change)

@@ -1,10 +1,9 @@
 """An accelerometer that feels the product of two forces."""
 
-from dataclasses import replace
-
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Term, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Reading, Term, Truth, by_grade
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -46,4 +45,4 @@ class AccelCrossProducts(Effect):
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         products = np.column_stack([truth.force[:, j] * truth.force[:, k] for j, k in PAIRS])
-        return replace(reading, accel=reading.accel + products @ values.reshape(3, 3).T)
+        return reading.plus("accel", products @ values.reshape(3, 3).T)

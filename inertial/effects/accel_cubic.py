@@ -1,8 +1,14 @@
 """An accelerometer with a cubic term."""
 
-from dataclasses import replace
-
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.arrays import Array
+from inertial.physics.effect import (
+    Effect,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -18,17 +24,11 @@ class AccelCubic(Effect):
     name = "accel_cubic"
     cause = _("the suspension or the loop of the proof mass is not linear: third-order term K3")
     source = "IEEE Std 1293-2018, model equation, K3"
-    parameters = tuple(
-        Parameter(
-            f"k3_{axis}",
-            "(m/s²)/(m/s²)³",
-            1e-5 / STANDARD_GRAVITY**2,
-            _("of the {axis} accelerometer", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "k3", "(m/s²)/(m/s²)³", 1e-5 / STANDARD_GRAVITY**2, _("of the {axis} accelerometer")
     )
     terms = on_each_axis("accel", "k3_{i}", "f_{i} * f_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY**2, 5, 50, 200, 1000)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, accel=reading.accel + values * truth.force**3)
+        return reading.plus("accel", values * truth.force**3)

@@ -1,10 +1,9 @@
 """An accelerometer that remembers on which side it was."""
 
-from dataclasses import replace
-
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Reading, Truth, by_grade, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -53,14 +52,8 @@ class AccelHysteresis(Effect):
     name = "accel_hysteresis"
     cause = _("the suspension does not return quite to where it was before the load")
     source = "IEEE Std 528-2019, 'hysteresis error'; Lord Rayleigh, Phil. Mag. 23, 1887, 225"
-    parameters = tuple(
-        Parameter(
-            f"h_{axis}",
-            "m/s²",
-            1e-5 * STANDARD_GRAVITY,
-            _("half the loop of the {axis} axis", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "h", "m/s²", 1e-5 * STANDARD_GRAVITY, _("half the loop of the {axis} axis")
     )
     stays = _("it depends on the forces before the reading, which the reading does not tell")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 5, 20, 50, 500)
@@ -70,4 +63,4 @@ class AccelHysteresis(Effect):
         return Reading(np.zeros_like(accel), accel)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, accel=reading.accel + self.added(truth, motion).accel @ values)
+        return reading.plus("accel", self.added(truth, motion).accel @ values)

@@ -1,10 +1,16 @@
 """An accelerometer whose scale factor differs between the two senses of the force."""
 
-from dataclasses import replace
-
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.arrays import Array
+from inertial.physics.effect import (
+    Effect,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -18,17 +24,11 @@ class AccelScaleAsymmetry(Effect):
     name = "accel_scale_asymmetry"
     cause = _("the suspension or the read-out answers unlike to push and pull")
     source = "IEEE Std 1293-2018, model equation, scale factor asymmetry"
-    parameters = tuple(
-        Parameter(
-            f"a_{axis}",
-            "1",
-            1e-5,
-            _("of the {axis} accelerometer, half the difference of both scale factors", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "a", "1", 1e-5, _("of the {axis} accelerometer, half the difference of both scale factors")
     )
     terms = on_each_axis("accel", "a_{i}", "abs(f_{i})")
     sizes = by_grade(1e-6, 10, 50, 100, 500)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, accel=reading.accel + values * np.abs(truth.force))
+        return reading.plus("accel", values * np.abs(truth.force))

@@ -1,16 +1,14 @@
 """A scale factor of the accelerometers that drifts evenly."""
 
-from dataclasses import replace
-
+from inertial.arrays import Array
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import (
-    Array,
     Effect,
-    Parameter,
     Reading,
     Truth,
     by_grade,
     on_each_axis,
+    parameters_by_axis,
 )
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
@@ -27,11 +25,8 @@ class AccelScaleRamp(Effect):
     name = "accel_scale_ramp"
     cause = _("the scale factor of the accelerometers drifts, as the sensor warms up or ages")
     source = "IEEE Std 1293-2018, stability of bias and scale factor"
-    parameters = tuple(
-        Parameter(
-            f"k_{axis}", "1/s", 1e-5 / HOUR, _("of the {axis} accelerometer, per second", axis=axis)
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "k", "1/s", 1e-5 / HOUR, _("of the {axis} accelerometer, per second")
     )
     terms = on_each_axis("accel", "k_{i}", "t * f_{i}")
     sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
@@ -42,4 +37,4 @@ class AccelScaleRamp(Effect):
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = values * truth.force * motion.time[:, None]
-        return replace(reading, accel=reading.accel + change)
+        return reading.plus("accel", change)

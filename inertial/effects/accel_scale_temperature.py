@@ -1,16 +1,8 @@
 """A scale factor of the accelerometers that goes with the temperature."""
 
-from dataclasses import replace
-
+from inertial.arrays import Array
 from inertial.physics.drift import OfTemperature, warmer
-from inertial.physics.effect import (
-    Array,
-    Parameter,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-)
+from inertial.physics.effect import Reading, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -26,13 +18,10 @@ class AccelScaleTemperature(OfTemperature):
         "the scale factor of the accelerometers changes with the temperature of the instrument"
     )
     source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
-    parameters = tuple(
-        Parameter(f"k_{axis}", "1/K", 1e-5, _("of the {axis} accelerometer, per kelvin", axis=axis))
-        for axis in "xyz"
-    )
+    parameters = parameters_by_axis("k", "1/K", 1e-5, _("of the {axis} accelerometer, per kelvin"))
     terms = on_each_axis("accel", "k_{i}", "(T - T0) * f_{i}")
     sizes = by_grade(1e-6, 5, 20, 50, 200)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = values * truth.force * warmer(motion, self.reference, self.valid)[:, None]
-        return replace(reading, accel=reading.accel + change)
+        return reading.plus("accel", change)

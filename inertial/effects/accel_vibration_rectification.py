@@ -1,10 +1,9 @@
 """An accelerometer whose bias grows with vibration."""
 
-from dataclasses import replace
-
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Reading, Truth, by_grade, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -21,20 +20,14 @@ class AccelVibrationRectification(Effect):
     name = "accel_vibration_rectification"
     cause = _("vibration does not average out where the accelerometer is not linear")
     source = "IEEE Std 1293-2018, vibration rectification error"
-    parameters = tuple(
-        Parameter(
-            f"k_{axis}",
-            "(m/s²)/(m/s²)²",
-            1e-4 / STANDARD_GRAVITY,
-            _("of the {axis} accelerometer", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "k", "(m/s²)/(m/s²)²", 1e-4 / STANDARD_GRAVITY, _("of the {axis} accelerometer")
     )
     stays = _("it depends on how much the samples scatter, which one reading does not tell")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 50, 100, 500, 1000)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, accel=reading.accel + values * motion.vibration**2)
+        return reading.plus("accel", values * motion.vibration**2)
 
     def blind(self, motion: Motion) -> str:
         if np.isfinite(motion.vibration).all():

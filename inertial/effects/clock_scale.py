@@ -1,6 +1,7 @@
 """A clock of the instrument that is fast or slow."""
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, by_grade, known_earth
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Truth, by_grade, known_earth
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, usually
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Truth, usually
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 

@@ -2,7 +2,14 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, by_grade, known_earth
+from inertial.arrays import Array
+from inertial.physics.effect import (
+    Effect,
+    Truth,
+    by_grade,
+    known_earth,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion, cross
 from inertial.text.messages import _
 
@@ -17,14 +24,8 @@ class GyroAccelMisalignment(Effect):
     name = "gyro_accel_misalignment"
     cause = _("the block of the gyros and that of the accelerometers are not mounted alike")
     source = "Titterton & Weston 2004, mounting misalignment"
-    parameters = tuple(
-        Parameter(
-            f"phi_{axis}",
-            "rad",
-            1e-3,
-            _("rotation about {axis} from the case to the gyros", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "phi", "rad", 1e-3, _("rotation about {axis} from the case to the gyros")
     )
     sizes = by_grade(1e-3, 1, 1, 1, 10)
     thinkable = 10.0

@@ -1,37 +1,16 @@
 """A bias of the gyros that jumps once."""
 
-from inertial.physics.drift import Drift, after, evenly
-from inertial.physics.effect import Array, Parameter, Scan, by_grade, on_each_axis
-from inertial.physics.motion import Motion
+from inertial.physics.drift import Jump
+from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 
-CANDIDATES = 72  # times of the jump: one between two of them loses 2 to 4 % of its SNR²
 
-
-class GyroBiasJump(Drift):
-    """Reading += b H(t − t₀); t₀ is scanned.
-
-    Unlike a drift it is instantaneous. A jump between logs is observable only if they share a
-    clock.
-    """
+class GyroBiasJump(Jump):
+    """As `Jump`, of the gyros."""
 
     name = "gyro_bias_jump"
     sensor = "gyro"
-    cause = _(
-        "stress is released, the electronics switch, or the instrument is knocked or restarted"
-    )
-    source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
-    parameters = tuple(
-        Parameter(f"b_{axis}", "rad/s", DEGREE_PER_HOUR, _("of the {axis} rate", axis=axis))
-        for axis in "xyz"
-    )
+    parameters = parameters_by_axis("b", "rad/s", DEGREE_PER_HOUR, _("of the {axis} rate"))
     terms = on_each_axis("gyro", "b_{i}", "(t > t0)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 10, 30, 100)
-    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
-
-    def grid(self, motion: Motion) -> Array:
-        return evenly(motion, CANDIDATES)
-
-    def course(self, motion: Motion) -> Array:
-        return after(motion, self.value(motion))

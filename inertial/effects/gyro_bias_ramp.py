@@ -1,7 +1,8 @@
 """A bias of the gyros that drifts evenly."""
 
+from inertial.arrays import Array
 from inertial.physics.drift import Drift
-from inertial.physics.effect import Array, Parameter, by_grade, on_each_axis
+from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, HOUR
@@ -17,14 +18,8 @@ class GyroBiasRamp(Drift):
     sensor = "gyro"
     cause = _("the bias of the gyros drifts, as the sensor or its electronics warm up or age")
     source = "IEEE Std 952-1997, annex C, rate ramp"
-    parameters = tuple(
-        Parameter(
-            f"c_{axis}",
-            "rad/s²",
-            0.1 * DEGREE_PER_HOUR / HOUR,
-            _("drift of the {axis} rate, per second", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "c", "rad/s²", 0.1 * DEGREE_PER_HOUR / HOUR, _("drift of the {axis} rate, per second")
     )
     terms = on_each_axis("gyro", "c_{i}", "t")
     sizes = by_grade(DEGREE_PER_HOUR / HOUR, 0.05, 1, 10, 100)

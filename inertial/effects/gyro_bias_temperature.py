@@ -1,18 +1,10 @@
 """A bias of the gyros that goes with the temperature."""
 
-from dataclasses import replace
-
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.physics.drift import OfTemperature, warmer
-from inertial.physics.effect import (
-    Array,
-    Parameter,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-)
+from inertial.physics.effect import Reading, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
@@ -27,18 +19,12 @@ class GyroBiasTemperature(OfTemperature):
     name = "gyro_bias_temperature"
     cause = _("the bias of the gyros changes with the temperature of the instrument")
     source = "IEEE Std 952-1997, model equation, terms of temperature"
-    parameters = tuple(
-        Parameter(
-            f"k_{axis}",
-            "rad/s/K",
-            0.1 * DEGREE_PER_HOUR,
-            _("of the {axis} rate, per kelvin", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "k", "rad/s/K", 0.1 * DEGREE_PER_HOUR, _("of the {axis} rate, per kelvin")
     )
     terms = on_each_axis("gyro", "k_{i}", "(T - T0)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 5, 18)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = np.outer(warmer(motion, self.reference, self.valid), values)
-        return replace(reading, gyro=reading.gyro + change)
+        return reading.plus("gyro", change)

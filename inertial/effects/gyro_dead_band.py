@@ -4,16 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import (
-    Array,
-    Effect,
-    Parameter,
-    Reading,
-    Scan,
-    Truth,
-    by_grade,
-    known_earth,
-)
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Reading, Scan, Truth, by_grade, known_earth
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE, DEGREE_PER_HOUR

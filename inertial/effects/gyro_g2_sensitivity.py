@@ -1,8 +1,14 @@
 """A gyro that feels the square of the acceleration."""
 
-from dataclasses import replace
-
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.arrays import Array
+from inertial.physics.effect import (
+    Effect,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
@@ -21,12 +27,9 @@ class GyroG2Sensitivity(Effect):
         "the suspension of the gyro yields unlike in its directions under load (anisoelastic)"
     )
     source = "IEEE Std 528-2019, 'acceleration-squared-sensitive drift rate'"
-    parameters = tuple(
-        Parameter(f"g2_{axis}", "(rad/s)/(m/s²)²", 1.0 * UNIT, _("of the {axis} gyro", axis=axis))
-        for axis in "xyz"
-    )
+    parameters = parameters_by_axis("g2", "(rad/s)/(m/s²)²", 1.0 * UNIT, _("of the {axis} gyro"))
     terms = on_each_axis("gyro", "g2_{i}", "f_{i} * f_{i}")
     sizes = by_grade(UNIT, 0.01, 0.05, 0.5, 5)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, gyro=reading.gyro + values * truth.force**2)
+        return reading.plus("gyro", values * truth.force**2)

@@ -1,8 +1,7 @@
 """A gyro that feels acceleration."""
 
-from dataclasses import replace
-
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Term, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Reading, Term, Truth, by_grade
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
@@ -38,4 +37,4 @@ class GyroGSensitivity(Effect):
     sizes = by_grade(UNIT, 0.05, 1, 11, 100)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, gyro=reading.gyro + truth.force @ values.reshape(3, 3).T)
+        return reading.plus("gyro", truth.force @ values.reshape(3, 3).T)

@@ -1,11 +1,11 @@
 """A gyro that reads less while the rate rises than while it falls."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Reading, Truth, by_grade, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE, DEGREE_PER_HOUR
@@ -50,14 +50,8 @@ class GyroHysteresis(Effect):
     name = "gyro_hysteresis"
     cause = _("friction in the suspension or the read-out holds on to the rate before")
     source = "IEEE Std 528-2019, 'hysteresis error'"
-    parameters = tuple(
-        Parameter(
-            f"h_{axis}",
-            "rad/s",
-            0.1 * DEGREE_PER_HOUR,
-            _("half the loop of the {axis} gyro", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "h", "rad/s", 0.1 * DEGREE_PER_HOUR, _("half the loop of the {axis} gyro")
     )
     of_stillness = True
     stays = _("it depends on the rates before the reading, which the reading does not tell")
@@ -69,4 +63,4 @@ class GyroHysteresis(Effect):
         return Reading(gyro, np.zeros_like(gyro))
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, gyro=reading.gyro + self.added(truth, motion).gyro @ values)
+        return reading.plus("gyro", self.added(truth, motion).gyro @ values)

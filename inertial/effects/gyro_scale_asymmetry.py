@@ -1,10 +1,16 @@
 """A gyro whose scale factor differs between the two senses of rotation."""
 
-from dataclasses import replace
-
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.arrays import Array
+from inertial.physics.effect import (
+    Effect,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -19,17 +25,11 @@ class GyroScaleAsymmetry(Effect):
     name = "gyro_scale_asymmetry"
     cause = _("the loop or the read-out of the gyro answers unlike to the two senses of rotation")
     source = "IEEE Std 528-2019, 'asymmetry error'"
-    parameters = tuple(
-        Parameter(
-            f"a_{axis}",
-            "1",
-            1e-4,
-            _("of the {axis} gyro, half the difference of both scale factors", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "a", "1", 1e-4, _("of the {axis} gyro, half the difference of both scale factors")
     )
     terms = on_each_axis("gyro", "a_{i}", "abs(w_{i})")
     sizes = by_grade(1e-6, 10, 30, 100, 500)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, gyro=reading.gyro + values * np.abs(truth.rate))
+        return reading.plus("gyro", values * np.abs(truth.rate))

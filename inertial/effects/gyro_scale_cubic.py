@@ -1,8 +1,14 @@
 """A gyro whose scale factor grows with the square of the rate."""
 
-from dataclasses import replace
-
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.arrays import Array
+from inertial.physics.effect import (
+    Effect,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE
@@ -19,12 +25,9 @@ class GyroScaleCubic(Effect):
         "the loop or the read-out of the gyro is not linear in the rate, alike for both senses"
     )
     source = "IEEE Std 528-2019, 'nonlinearity'"
-    parameters = tuple(
-        Parameter(f"k_{axis}", "s²/rad²", 1e-8 / DEGREE**2, _("of the {axis} gyro", axis=axis))
-        for axis in "xyz"
-    )
+    parameters = parameters_by_axis("k", "s²/rad²", 1e-8 / DEGREE**2, _("of the {axis} gyro"))
     terms = on_each_axis("gyro", "k_{i}", "w_{i} * w_{i} * w_{i}")
     sizes = by_grade(1e-6 / DEGREE**2, 1e-3, 1e-4, 5e-3, 0.05)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, gyro=reading.gyro + values * truth.rate**3)
+        return reading.plus("gyro", values * truth.rate**3)

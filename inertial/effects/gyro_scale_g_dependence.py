@@ -1,8 +1,14 @@
 """A gyro whose scale factor depends on the acceleration."""
 
-from dataclasses import replace
-
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.arrays import Array
+from inertial.physics.effect import (
+    Effect,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -18,14 +24,11 @@ class GyroScaleGDependence(Effect):
     name = "gyro_scale_g_dependence"
     cause = _("load on the sensing element changes what a rate does to it")
     source = "Sensonor, STIM300 data sheet, linear acceleration effect on the scale factor"
-    parameters = tuple(
-        Parameter(
-            f"k_{axis}", "1/(m/s²)", 1e-4 / STANDARD_GRAVITY, _("of the {axis} gyro", axis=axis)
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "k", "1/(m/s²)", 1e-4 / STANDARD_GRAVITY, _("of the {axis} gyro")
     )
     terms = on_each_axis("gyro", "k_{i}", "w_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 2, 30, 100, 500)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, gyro=reading.gyro + values * truth.rate * truth.force)
+        return reading.plus("gyro", values * truth.rate * truth.force)

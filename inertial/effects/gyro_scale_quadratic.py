@@ -1,10 +1,16 @@
 """A gyro whose scale factor grows with the rate."""
 
-from dataclasses import replace
-
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade, on_each_axis
+from inertial.arrays import Array
+from inertial.physics.effect import (
+    Effect,
+    Reading,
+    Truth,
+    by_grade,
+    on_each_axis,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE
@@ -20,12 +26,9 @@ class GyroScaleQuadratic(Effect):
     name = "gyro_scale_quadratic"
     cause = _("the loop or the read-out of the gyro is not linear in the rate")
     source = "IEEE Std 528-2019, 'nonlinearity'"
-    parameters = tuple(
-        Parameter(f"k_{axis}", "1/(rad/s)", 1e-6 / DEGREE, _("of the {axis} gyro", axis=axis))
-        for axis in "xyz"
-    )
+    parameters = parameters_by_axis("k", "1/(rad/s)", 1e-6 / DEGREE, _("of the {axis} gyro"))
     terms = on_each_axis("gyro", "k_{i}", "w_{i} * abs(w_{i})")
     sizes = by_grade(1e-6 / DEGREE, 0.1, 0.1, 1, 5)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return replace(reading, gyro=reading.gyro + values * truth.rate * np.abs(truth.rate))
+        return reading.plus("gyro", values * truth.rate * np.abs(truth.rate))

@@ -1,16 +1,14 @@
 """A scale factor of the gyros that drifts evenly."""
 
-from dataclasses import replace
-
+from inertial.arrays import Array
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import (
-    Array,
     Effect,
-    Parameter,
     Reading,
     Truth,
     by_grade,
     on_each_axis,
+    parameters_by_axis,
 )
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
@@ -27,10 +25,7 @@ class GyroScaleRamp(Effect):
     name = "gyro_scale_ramp"
     cause = _("the scale factor of the gyros drifts, as the sensor warms up or ages")
     source = "IEEE Std 952-1997, scale factor errors: instability"
-    parameters = tuple(
-        Parameter(f"k_{axis}", "1/s", 1e-5 / HOUR, _("of the {axis} gyro, per second", axis=axis))
-        for axis in "xyz"
-    )
+    parameters = parameters_by_axis("k", "1/s", 1e-5 / HOUR, _("of the {axis} gyro, per second"))
     terms = on_each_axis("gyro", "k_{i}", "t * w_{i}")
     sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
     thinkable = 4.0  # 200 ppm/K that warms by 10 K in an hour
@@ -40,4 +35,4 @@ class GyroScaleRamp(Effect):
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = values * truth.rate * motion.time[:, None]
-        return replace(reading, gyro=reading.gyro + change)
+        return reading.plus("gyro", change)

@@ -1,16 +1,8 @@
 """A scale factor of the gyros that goes with the temperature."""
 
-from dataclasses import replace
-
+from inertial.arrays import Array
 from inertial.physics.drift import OfTemperature, warmer
-from inertial.physics.effect import (
-    Array,
-    Parameter,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-)
+from inertial.physics.effect import Reading, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -24,13 +16,10 @@ class GyroScaleTemperature(OfTemperature):
     name = "gyro_scale_temperature"
     cause = _("the scale factor of the gyros changes with the temperature of the instrument")
     source = "IEEE Std 952-1997, model equation, terms of temperature"
-    parameters = tuple(
-        Parameter(f"k_{axis}", "1/K", 1e-5, _("of the {axis} gyro, per kelvin", axis=axis))
-        for axis in "xyz"
-    )
+    parameters = parameters_by_axis("k", "1/K", 1e-5, _("of the {axis} gyro, per kelvin"))
     terms = on_each_axis("gyro", "k_{i}", "(T - T0) * w_{i}")
     sizes = by_grade(1e-6, 5, 10, 50, 200)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         change = values * truth.rate * warmer(motion, self.reference, self.valid)[:, None]
-        return replace(reading, gyro=reading.gyro + change)
+        return reading.plus("gyro", change)

@@ -1,13 +1,13 @@
 """A law that no effect of the catalogue has: a function of one state, of one axis or of all."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from itertools import product
 from typing import Self
 
 import numpy as np
 
-from inertial.physics.effect import Array, Constant, Effect, Parameter, Reading, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Constant, Effect, Parameter, Reading, Truth, by_grade
 from inertial.physics.laws import LAWS, OWN, functions, unknown
 from inertial.physics.motion import Motion
 from inertial.sensors import SENSORS
@@ -88,9 +88,7 @@ class Law(Effect):
         for axis, own in zip(self.axes, np.split(values, len(self.axes)), strict=True):
             i = AXES.index(axis)
             added[:, i] = functions(self.family, self.state, self.shape, motion, i) @ own
-        if self.sensor == "gyro":
-            return replace(reading, gyro=reading.gyro + added)
-        return replace(reading, accel=reading.accel + added)
+        return reading.plus(self.sensor, added)
 
 
 def law_name(sensor: str, axis: str, family: str, state: str) -> str:

@@ -2,7 +2,8 @@
 
 from dataclasses import replace
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Truth, by_grade, parameters_by_axis
 from inertial.physics.motion import Motion, cross
 from inertial.text.messages import _
 
@@ -17,11 +18,8 @@ class LeverArm(Effect):
     name = "lever_arm"
     cause = _("the accelerometers stand beside the axis of the table and feel its rotation")
     source = "IEEE Std 1293-2018, centrifuge and rate table tests"
-    parameters = tuple(
-        Parameter(
-            f"r_{axis}", "m", 0.01, _("from the table's axis to the case, along {axis}", axis=axis)
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "r", "m", 0.01, _("from the table's axis to the case, along {axis}")
     )
     sizes = by_grade(1e-3, 30, 30, 30, 30)
 

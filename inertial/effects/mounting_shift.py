@@ -2,8 +2,16 @@
 
 from dataclasses import replace
 
+from inertial.arrays import Array
 from inertial.physics.drift import after, evenly, without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Scan, Truth, known_earth, of_tables
+from inertial.physics.effect import (
+    Effect,
+    Scan,
+    Truth,
+    known_earth,
+    of_tables,
+    parameters_by_axis,
+)
 from inertial.physics.motion import Motion, cross
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
@@ -26,14 +34,8 @@ class MountingShift(Effect):
         "differs from then on"
     )
     source = "IEEE Std 1554-2005, stability of the mounting fixture"
-    parameters = tuple(
-        Parameter(
-            f"theta_{axis}",
-            "rad",
-            2 * ARC_SECOND,
-            _("rotation of the case about its {axis} axis", axis=axis),
-        )
-        for axis in "xyz"
+    parameters = parameters_by_axis(
+        "theta", "rad", 2 * ARC_SECOND, _("rotation of the case about its {axis} axis")
     )
     sizes = of_tables(ARC_SECOND, 10, 60)
     vector = True

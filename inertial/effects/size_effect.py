@@ -1,10 +1,9 @@
 """Three accelerometers that do not stand at one point."""
 
-from dataclasses import replace
-
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Reading, Truth, by_grade
 from inertial.physics.motion import Motion, cross
 from inertial.text.messages import _
 
@@ -36,4 +35,4 @@ class SizeEffect(Effect):
         felt = []
         for i, arm in enumerate(values.reshape(3, 3)):
             felt.append((cross(motion.alpha, arm) + motion.pull(arm))[:, i])
-        return replace(reading, accel=reading.accel + np.column_stack(felt))
+        return reading.plus("accel", np.column_stack(felt))

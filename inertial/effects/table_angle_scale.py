@@ -1,6 +1,7 @@
 """A table whose angles are all too large by the same share."""
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, of_tables
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Truth, of_tables
 from inertial.physics.motion import Motion, cross
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE

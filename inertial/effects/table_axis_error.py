@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.effects.table_position_error import TablePositionError
-from inertial.physics.effect import Array, Truth
+from inertial.physics.effect import Truth
 from inertial.physics.motion import Motion, all_level_axes, are_parts_of_turns, cross, turned_all
 from inertial.text.messages import _
 

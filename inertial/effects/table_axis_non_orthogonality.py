@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, of_tables
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Truth, of_tables
 from inertial.physics.motion import Motion, cross, without_north
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND

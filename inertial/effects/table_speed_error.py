@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Truth, of_tables
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Truth, of_tables
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 

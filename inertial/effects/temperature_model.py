@@ -9,21 +9,14 @@ Which of them a campaign determines is selected from its data: `inertial.estimat
 
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.physics.drift import delay, temperature_constants, warmer, without_temperature
-from inertial.physics.effect import (
-    Array,
-    Constant,
-    Effect,
-    Parameter,
-    Reading,
-    Term,
-    Truth,
-)
+from inertial.physics.effect import Constant, Effect, Parameter, Reading, Term, Truth
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.parameters import PARTS
@@ -236,9 +229,7 @@ class TemperatureModel(Effect):
             if parts.kind != "bias":
                 moved = moved * felt[:, "xyz".index(parts.input_axis)]
             change[:, "xyz".index(parts.sensor_axis)] += moved
-        if self.sensor == "gyro":
-            return replace(reading, gyro=reading.gyro + change)
-        return replace(reading, accel=reading.accel + change)
+        return reading.plus(self.sensor, change)
 
 
 CAUSES = {

@@ -1,11 +1,10 @@
 """Thermal hysteresis: a bias that depends on which way the temperature came."""
 
-from dataclasses import replace
-
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.physics.drift import without_clock, without_temperature
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Scan, Truth
+from inertial.physics.effect import Effect, Reading, Scan, Truth, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.sensors import PLURAL
 from inertial.text.messages import _
@@ -38,10 +37,8 @@ class ThermalHysteresis(Effect):
             sensors=PLURAL[sensor],
         )
         self.sizes = dict.fromkeys(("fog", "tactical", "mti", "consumer"), size)  # type: ignore[misc]
-        self.parameters = tuple(  # type: ignore[misc]
-            Parameter(f"h_{axis}", unit, size, _("of the {axis} reading", axis=axis))
-            for axis in "xyz"
-        )
+        of_axis = _("of the {axis} reading")
+        self.parameters = parameters_by_axis("h", unit, size, of_axis)  # type: ignore[misc]
 
     thinkable = 1e4
 
@@ -60,9 +57,7 @@ class ThermalHysteresis(Effect):
         if self.blind(motion):
             return reading
         change = np.outer(turned_over(motion, self.value(motion)), values)
-        if self.sensor == "gyro":
-            return replace(reading, gyro=reading.gyro + change)
-        return replace(reading, accel=reading.accel + change)
+        return reading.plus(self.sensor, change)
 
 
 def turned_over(motion: Motion, width: float) -> Array:

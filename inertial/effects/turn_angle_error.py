@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.physics.effect import Array, Effect, Parameter, Scan, Truth, of_tables
+from inertial.arrays import Array, Booleans
+from inertial.physics.effect import Effect, Parameter, Scan, Truth, of_tables
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
@@ -39,5 +39,5 @@ class TurnAngleError(Effect):
         return np.unique(np.floor(motion.visit[self._turning(motion)]))
 
     @staticmethod
-    def _turning(motion: Motion) -> NDArray[np.bool_]:
+    def _turning(motion: Motion) -> Booleans:
         return np.asarray(motion.rate != 0)

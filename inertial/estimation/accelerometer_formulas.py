@@ -4,16 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.least_squares import pseudo_inverse
 
 CROSS_SIGMA = 0.01  # rad, of a cross term that is not determined: mounting within half a degree
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -12,25 +12,23 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.position_tilt import OF_AXIS, TILTS, in_force, names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
-from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
-from inertial.estimation.triad import UNKNOWNS
-from inertial.estimation.variance_components import (
+from inertial.estimation.scatter_and_random_walk import (
     Deviances,
     ScatterFit,
     walk_search,
     with_random_walk,
 )
+from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
+from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Triad
 from inertial.physics.motion import all_level_axes, cross
-
-Array = NDArray[np.float64]
 
 # Vague priors: M within 1 of the unit matrix, the bias within 10 m/s².
 PRIOR = np.append(np.eye(3).ravel(), np.zeros(3))

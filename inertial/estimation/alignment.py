@@ -20,11 +20,9 @@ The part along the axis is not modulated: its bias, and the scale factor's error
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.physics.motion import cross, level_axes, turned_all
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

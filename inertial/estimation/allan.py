@@ -16,13 +16,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.estimation.noise_model import NoiseModel, angle_autocovariance
 from inertial.estimation.probability import chi2_isf
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 FACTORS_PER_DECADE = 10
 MAX_SHARE = 0.25  # of a stretch, that an averaging time may be: 3 independent differences

@@ -3,13 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.estimation.consistency import CommonCause, common_cause, normal_p_value
 from inertial.estimation.probability import chi2_sf
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

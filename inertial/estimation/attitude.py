@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from inertial.arrays import Array
 from inertial.physics.motion import cross
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -22,13 +22,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 from scipy.stats import chi2, norm
 
+from inertial.arrays import Array
 from inertial.estimation.time_angle import Valued
-
-Array = NDArray[np.float64]
 
 MIN_SIGMAS = 3.0  # of κ above 0, from which a low pass is certain
 CONFIDENCE = 0.95  # of a lower limit, one-sided

@@ -26,6 +26,7 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation import multi_position as forces
 from inertial.estimation.attitude import IntegratedMotion, Passage, integrate, integrated_motion
 from inertial.estimation.drifting_equations import DriftingEquations
@@ -35,13 +36,11 @@ from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA
 from inertial.estimation.least_squares import Estimate, System, solve_iterated
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
 from inertial.estimation.random_walk import Stretch
+from inertial.estimation.scatter_and_random_walk import ScatterFit
 from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.estimation.triad import UNKNOWNS, design_of
-from inertial.estimation.variance_components import ScatterFit
 from inertial.physics.motion import cross
-
-Array = NDArray[np.float64]
 
 ROUNDS = 2  # of the scatter, about the last result
 NONE = Scatter()

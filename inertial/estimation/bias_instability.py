@@ -26,9 +26,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 RATIO = 4.0  # from one time constant to the next
 FASTEST_SHARE = 0.125  # of the shortest stretch: what is faster is white, to 2 % of s²

@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.probability import chi2_sf, t_sf
 from inertial.estimation.regression import basis
-
-Array = NDArray[np.float64]
 
 MIN_ONE_MINUS_LEVERAGE = 1e-9  # below it a reading has a column of its own and fits itself
 
@@ -22,7 +20,7 @@ def normal_p_value(in_sigmas: float, degrees: float = np.inf) -> float:
     return float(2 * t_sf(abs(in_sigmas), degrees))
 
 
-def holm_rejections(p_values: Sequence[float], level: float) -> NDArray[np.bool_]:
+def holm_rejections(p_values: Sequence[float], level: float) -> Booleans:
     """Which of n comparisons differ, (n,), at a family-wise error rate of `level` (Holm 1979).
 
     The smallest p-value is compared with level/n, the next with level/(n − 1), until the first

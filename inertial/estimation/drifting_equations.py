@@ -22,9 +22,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, solve_triangular
 
+from inertial.arrays import Array
 from inertial.estimation.elimination import EquationBlock, Name, eliminate, partial_r_factor
 from inertial.estimation.least_squares import System, solve
 from inertial.estimation.random_walk import (
@@ -38,7 +38,6 @@ from inertial.estimation.random_walk import (
 from inertial.estimation.switch_ons import SwitchOns, between
 from inertial.estimation.triad import UNKNOWNS
 
-Array = NDArray[np.float64]
 Deviance = Callable[[float], float]
 
 

@@ -12,11 +12,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dgeqrf, dormqr
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
+
 Name = tuple[str, str]  # kind and name of an unknown
 
 LAPACK_BLOCK = 64  # columns per block of reflectors

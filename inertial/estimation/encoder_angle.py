@@ -20,13 +20,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.probability import f_sf
 from inertial.estimation.time_angle import Valued
-
-Array = NDArray[np.float64]
 
 BIN_S = 0.05  # s, between edges whose angles are compared
 SETTLED = 8.0  # time constants, after which e⁻⁸ of an answer is left
@@ -124,9 +122,7 @@ def _count(angle: Array) -> float:
     return float(np.median(rough)) / THIRD if len(rough) else 0.0
 
 
-def _calm(
-    edges: Array, curved: Callable[[Array], Array], near: float, settled: float
-) -> NDArray[np.bool_]:
+def _calm(edges: Array, curved: Callable[[Array], Array], near: float, settled: float) -> Booleans:
     """The edges, (k,), s, where the acceleration of the table is the same before and after."""
     size = np.abs(curved(edges))
     ago = np.arange(0.0, settled + near, near)[:, None]

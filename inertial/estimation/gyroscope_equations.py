@@ -40,8 +40,8 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.bias_instability import wave, waves_within
 from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.gyroscope_observations import (
@@ -55,8 +55,6 @@ from inertial.estimation.position_tilt import OF_CASE, TILTS, names_of
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.triad import UNKNOWNS, design_of
 from inertial.physics.motion import all_level_axes, cross, is_vertical, level_axes, turned_all
-
-Array = NDArray[np.float64]
 
 SQRT2 = float(np.sqrt(2))
 UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
@@ -374,7 +372,7 @@ def _whole_angle(
     segment: RateSegment,
     matrix: Array,
     whole: Array,  # (3, columns), weighted sum of the blocks
-    recorded: NDArray[np.bool_],  # (3,)
+    recorded: Booleans,  # (3,)
     angle: float,  # rad, of these blocks
     own: Mapping[Name, float],
 ) -> Array:
@@ -400,7 +398,7 @@ def _windows(
     name: str,
     matrix: Array,
     sums: Sequence[Array],  # (3, columns) each, of the blocks of a window
-    recorded: NDArray[np.bool_],  # (3,)
+    recorded: Booleans,  # (3,)
     angle: Array,  # (k,), rad, of the blocks
     own: Sequence[Name],
 ) -> Array:

@@ -5,15 +5,13 @@ from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
 from inertial.estimation.gyroscope_observations import Earth, Position, WholeTurn
 from inertial.estimation.horizontal_earth_rate import SummedEarthRate
 from inertial.physics.motion import cross, level_axes
 
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 Turn = TypeVar("Turn")
 
 MIN_EARTH_RATE_SIGMAS = 3.0  # of the upward earth rate, else it determines no scale factor

@@ -4,13 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
-
-Array = NDArray[np.float64]
-
 
 EARTH_UP = ("earth", "up")  # the name of the unknown: the upward component
 
@@ -143,7 +140,7 @@ class RateSegment:
         return np.ones(len(self.seconds)) + sum((gap.shares for gap in self.gaps), np.zeros(1))
 
     @property
-    def usable_blocks(self) -> NDArray[np.bool_]:
+    def usable_blocks(self) -> Booleans:
         """Which blocks give equations of their own, (k,): those that no gap cuts short.
 
         In a full block a steady oscillation of the case averages out; next to a gap it may not.

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock, Name
 from inertial.estimation.gyroscope_equations import (
@@ -25,15 +25,13 @@ from inertial.estimation.gyroscope_observations import (
 from inertial.estimation.horizontal_earth_rate import known_azimuths, size_constraint
 from inertial.estimation.least_squares import Estimate, System, solve
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
-from inertial.estimation.triad import UNKNOWNS
-from inertial.estimation.variance_components import (
+from inertial.estimation.scatter_and_random_walk import (
     Deviances,
     ScatterFit,
     walk_search,
     with_random_walk,
 )
-
-Array = NDArray[np.float64]
+from inertial.estimation.triad import UNKNOWNS
 
 # Vague priors: M within 0.1 of the unit matrix, the bias within 1 rad/s. Without rate segments only
 # the earth's rate determines M, and a wider prior would let an absurd M fit an unknown azimuth.

@@ -18,10 +18,9 @@ in 95 of 100 histories (docs/repeatability.md).
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 POINTS = 10  # of the grid, for each of τ, K and s
 ABSENT = {"day": 0.5, "walk": 0.7, "slope": 0.7}  # probability that there is none

@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.elimination import EquationBlock, Name
 from inertial.estimation.gyroscope_equations import (
     Linearisation,
@@ -16,8 +16,6 @@ from inertial.estimation.gyroscope_equations import (
 from inertial.estimation.gyroscope_observations import EARTH_UP, Earth, Position
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.motion import turned_all
-
-Array = NDArray[np.float64]
 
 # ---- The known size of the horizontal earth rate as a constraint.
 #

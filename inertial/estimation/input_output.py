@@ -7,14 +7,12 @@ the data sheet.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import log_ndtr, ndtr
 from scipy.stats import norm
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import pseudo_inverse
-
-Array = NDArray[np.float64]
 
 MIN_APART = 1e-3  # of the largest input: inputs that are closer count as one
 CONFIDENCE = 0.95

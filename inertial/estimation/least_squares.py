@@ -12,15 +12,12 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.optimize import least_squares
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.elimination import Eliminated, partial_r_factor
 from inertial.estimation.probability import chi2_sf, f_sf
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 MIN_INFORMATION_SHARE = 1e-8  # of the information of a column on its own: what is less is rounding
 MIN_SIGMA_REDUCTION = 4.0  # prior sigma over posterior sigma of a determined parameter
@@ -364,6 +361,17 @@ class EffectInformation:
         spanned = np.sum(vectors[:, observable] ** 2, axis=1)
         directions = vectors[:, observable] / size[:, None]
         return values[observable], directions, spanned < MIN_SPANNED_SHARE
+
+
+def whitening(information: Array, least: float = MIN_INFORMATION_SHARE) -> Array:
+    """Combinations W (k, m) of the parameters of unit information, Wᵀ F W = 1.
+
+    `least`: of the information scaled to unit diagonal, below which one is not observable.
+    """
+    size = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(information / np.outer(size, size))
+    observable = values > least
+    return np.asarray(vectors[:, observable] / np.sqrt(values[observable]) / size[:, None])
 
 
 def solve_iterated(linearised: Callable[[Array], System], start: Array) -> Estimate:

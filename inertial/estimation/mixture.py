@@ -1,9 +1,8 @@
 """The distribution where models of a class disagree: their mixture, weighted by probability."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 
 def disagree(values: Array, covariances: Array) -> bool:

@@ -6,14 +6,12 @@ from functools import partial
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import qr
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate, System, solve_iterated
 from inertial.physics.motion import level_axes
 from inertial.text.parameters import BIAS, SYMMETRIC
-
-Array = NDArray[np.float64]
 
 NAMES = (*SYMMETRIC, *BIAS)
 FREE = len(NAMES)

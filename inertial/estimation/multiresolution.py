@@ -17,13 +17,12 @@ from dataclasses import dataclass, field
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import dct, rfft
 from scipy.linalg import matmul_toeplitz
 
-from inertial.estimation.noise_model import Array, rate_autocovariance
+from inertial.arrays import Array, Integers
+from inertial.estimation.noise_model import rate_autocovariance
 
-Integers = NDArray[np.int64]
 _Sums = dict[tuple[int, int], tuple[float, Array, Array, float]]  # by level and bin
 
 MEAN_OF = 16  # values of a level make one of the next

@@ -14,13 +14,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import nnls
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.multiresolution import Bins, Lowest
-from inertial.estimation.noise_model import Array
-
-Booleans = NDArray[np.bool_]
 
 MAX_STEPS = 60
 TOLERANCE = 1e-5  # of the deviance

@@ -23,9 +23,9 @@ a quadratic polynomial of t is free, for it is lost with the second differences)
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 STOCHASTIC = ("quantisation", "white_noise", "bias_instability", "random_walk")
 TERMS = (*STOCHASTIC, "ramp")

@@ -19,14 +19,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.multiresolution import BINS_PER_OCTAVE, Bins, Lowest, Powers
 from inertial.estimation.noise_likelihood import Fit, Likelihood
-from inertial.estimation.noise_model import STOCHASTIC, TERMS, Array, NoiseModel
+from inertial.estimation.noise_model import STOCHASTIC, TERMS, NoiseModel
 from inertial.estimation.probability import chi2_isf, chi2_sf, t_isf, t_sf
-
-Booleans = NDArray[np.bool_]
 
 LEVEL = 0.01  # chance that a term that is absent is detected
 MIN_RISE = 1e-6  # of the deviance: less is rounding, whose root would be in the p-value

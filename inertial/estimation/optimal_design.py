@@ -24,10 +24,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Counts = NDArray[np.int64]
+from inertial.arrays import Array, Integers
 
 A, D, WORST = "A", "D", "worst"
 POWERS = {A: 1, WORST: 8}  # of the mean; D has none
@@ -54,7 +52,7 @@ class Candidates:
     parameters: int
     reference: Array
 
-    def total(self, counts: Array | Counts) -> list[Array]:
+    def total(self, counts: Array | Integers) -> list[Array]:
         """The information of a plan, (q, q) of each sensor."""
         return [
             k + np.tensordot(counts, own, 1)
@@ -119,7 +117,7 @@ class Plan:
     `efficiency`: bound over value.
     """
 
-    counts: Counts
+    counts: Integers
     value: float
     bound: float
 
@@ -181,11 +179,11 @@ class _Search:
         shares = times / seconds / candidates.seconds
         self._rate = [np.tensordot(shares, own, 1) for own in candidates.information]
 
-    def value(self, counts: Counts) -> float:
+    def value(self, counts: Integers) -> float:
         """The criterion of a plan."""
         return float(self._all.value(self._criterion, self._all.total(counts)))
 
-    def filled(self, counts: Counts, least: float = 0.0, without: int | None = None) -> Counts:
+    def filled(self, counts: Integers, least: float = 0.0, without: int | None = None) -> Integers:
         """A plan with more candidates of at least some time, s, as long as one fits."""
         counts = counts.copy()
         seconds = self._all.seconds

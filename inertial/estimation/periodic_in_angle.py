@@ -10,10 +10,9 @@ from scipy.linalg import pinvh
 from scipy.ndimage import median_filter
 from scipy.optimize import minimize_scalar
 
+from inertial.arrays import Array
 from inertial.estimation.probability import chi2_isf, f_sf
 from inertial.estimation.spectrum import WHITE, NoiseShape
-
-Array = NDArray[np.float64]
 
 ORDER_STEP = 0.25  # of the search; finer where the turns together are longer than two
 MIN_PERIODS = 8.0  # in a turn; with fewer, bias and slope are not orthogonal to a line

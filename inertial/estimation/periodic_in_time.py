@@ -4,14 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import pinvh
 from scipy.optimize import minimize_scalar
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.probability import chi2_logsf
 from inertial.estimation.spectrum import WHITE, NoiseShape
-
-Array = NDArray[np.float64]
 
 MIN_SAMPLES = 64  # in which a line can be distinguished from noise
 OVERSAMPLING = 2  # the search steps by half a bin, so that no line lies between two
@@ -133,9 +131,7 @@ def _spectrum(record: Array, rate: float, *, tapered: bool = False) -> tuple[Arr
     return rfftfreq(count, 1 / rate), density
 
 
-def _not_sidelobes(
-    density: Array, tapered: Array, noise: float, leakage: Array
-) -> NDArray[np.bool_]:
+def _not_sidelobes(density: Array, tapered: Array, noise: float, leakage: Array) -> Booleans:
     """Where a peak would be no sidelobe of what is below the search, (m,).
 
     It is higher than such `leakage` may be, or as high in the tapered record; an oscillation that

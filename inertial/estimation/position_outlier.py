@@ -10,16 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.accelerometers import Reference, StaticForce, equations
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Triad
 from inertial.physics.motion import cross, level_axes
-
-Array = NDArray[np.float64]
 
 FREE_TILT_SIGMA = 0.02  # rad, of a tilt that is fitted freely: a degree
 SIGNIFICANCE = 0.001  # accepted probability of a false alarm

@@ -16,11 +16,9 @@ accelerometers it is t − l.
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.elimination import Name
-
-Array = NDArray[np.float64]
 
 TILTS = ("tilt 0", "tilt 1")  # t
 OF_AXIS = ("tilt of axis 0", "tilt of axis 1")  # l

@@ -4,11 +4,11 @@ They call scipy.special: to load scipy.stats takes longer than most stages run.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import special
 from scipy.optimize import brentq
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 MIN_RATIO = 1.01  # of two sums of squares: below it they count as equal
 POLE_FRACTION = 1 - 1e-9  # of the distance to the pole of the cumulant generating function

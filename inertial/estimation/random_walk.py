@@ -22,12 +22,10 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.bias_instability import Instability, moments
 from inertial.estimation.elimination import EquationBlock, Name
-
-Array = NDArray[np.float64]
 
 COMMON_CLOCK = ""  # the name of the clock of all logs, where they have one
 

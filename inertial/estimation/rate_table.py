@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.gyroscope_observations import Earth, SteadyRate
 from inertial.estimation.horizontal_earth_rate import summed_earth_rate
@@ -25,8 +25,6 @@ from inertial.text.parameters import AXES, PARTS
 # rank 2: its scale factor and bias are those of a straight line, its cross terms are not
 # determined.
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 COLUMNS = 4  # the rates about x, y, z, and 1
 EARTH_ITERATIONS = 3  # the earth's rate is sensed through M, which is an unknown

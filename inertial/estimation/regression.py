@@ -4,11 +4,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.probability import f_isf, f_sf, quadratic_ratio_sf
-
-Array = NDArray[np.float64]
 
 MIN_NEW_SHARE = 1e-6  # of a column's length: what is less lies in the other columns already
 MAX_DEGREE = 3  # of a polynomial: models of temperature seldom have more

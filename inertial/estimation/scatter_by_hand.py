@@ -11,13 +11,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.probability import f_sf
-from inertial.estimation.variance_components import ScatterFit, with_scatter
-
-Array = NDArray[np.float64]
+from inertial.estimation.scatter_and_random_walk import ScatterFit, with_scatter
 
 RATE_RANGE = (1e-8, 0.1)  # rad/s
 SWING_RANGE = (1e-6, 0.3)  # rad

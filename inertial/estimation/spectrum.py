@@ -5,13 +5,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import rfft
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.probability import chi2_sf
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 MIN_BAND_BINS = 12  # of a shorter record the band extends as far as that
 CHANGED_P_VALUE = 1e-4  # of a level of a piece, from which the noise changes between pieces

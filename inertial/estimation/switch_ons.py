@@ -16,11 +16,10 @@ The covariance gets the normal one with the same interval of 95 % (GUM G.3).
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import ndtri, stdtrit
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 TWO_SIDED = 0.975  # quantile at the end of an interval of 95 %
 ONE_SIDED = 2.706  # rise of the deviance at the one-sided limit of 95 %

@@ -16,12 +16,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
 from inertial.estimation.probability import chi2_isf, f_isf
 
-Array = NDArray[np.float64]
 Powers = Mapping[str, Sequence[int]]  # by function the columns of degree 1, 2, 3
 Shapes = Mapping[str, Sequence[int]]  # by function the columns that describe it
 

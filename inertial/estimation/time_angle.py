@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from math import pi, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array, Integers
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ class TimeAngle:
         """Standard deviation of the angle, (n + 1,); zero at the start."""
         return self.between(0, np.arange(len(self.time)))
 
-    def between(self, i: int, j: int | NDArray[np.int64]) -> Array:
+    def between(self, i: int, j: int | Integers) -> Array:
         """Standard deviation of the angle between two edges, rad."""
         seconds = np.abs(self.time[j] - self.time[i])
         share = np.abs(self.angle[j] - self.angle[i]) / self.whole

@@ -7,13 +7,11 @@ the case; the symmetric P holds the scale factors and the non-orthogonality.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import polar
 from scipy.spatial.transform import Rotation
 
+from inertial.arrays import Array
 from inertial.text.parameters import AXES, BIAS
-
-Array = NDArray[np.float64]
 
 # Order of the twelve unknowns: M by rows, then the bias.
 UNKNOWNS = 12

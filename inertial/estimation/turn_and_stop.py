@@ -21,8 +21,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.accelerometer_formulas import pooling
 from inertial.estimation.gyroscope_equations import CLOCK
 from inertial.estimation.gyroscope_formulas import Readings, Solution, paired
@@ -30,8 +30,6 @@ from inertial.estimation.gyroscope_observations import Earth, RateSegment, Stati
 from inertial.estimation.horizontal_earth_rate import SummedEarthRate, summed_earth_rate
 from inertial.estimation.least_squares import pseudo_inverse
 from inertial.physics.motion import turned
-
-Array = NDArray[np.float64]
 
 CROSS_SIGMA = 0.01  # of an element of M that no turn determines: mounting within half a degree
 EARTH_ITERATIONS = 3  # the earth's rate is sensed through M, which is an unknown

@@ -17,12 +17,10 @@ No prior is in it. The interval of μ is a generalised confidence interval (Weer
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from inertial.arrays import Array
 from inertial.estimation.probability import chi2_sf, t_isf, t_sf
-
-Array = NDArray[np.float64]
 
 SQUARES = np.r_[0.0, np.geomspace(1e-8, 1e10, 250)]  # θ, in variances of the values
 INNER, OUTER = 0.3173, 0.05  # chances outside the two intervals that a Student's t is to share

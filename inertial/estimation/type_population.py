@@ -12,13 +12,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
+from inertial.estimation.fleet_components import Population, population
 from inertial.estimation.probability import norm_sf, t_sf
-from inertial.estimation.sharing import Population, population
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 MIN_IMUS = 4  # for correlations and outliers: of less none could be significant
 ROUNDS = 300  # of EM

@@ -14,13 +14,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.position_tilt import OF_AXIS, OF_CASE, TILTS
 from inertial.estimation.triad import UNKNOWNS
-
-Array = NDArray[np.float64]
 
 STEP = 1e-4  # relative, of a variance: its square is lost, and nothing by rounding
 # The kinds of the errors and of the known quantities in the equations.

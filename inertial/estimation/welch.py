@@ -14,12 +14,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.spectrum import periodogram
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 MEAN_OF = 4  # values of a level make one of the next
 OVERSAMPLED = 16  # sampling rate of a level over its highest frequency, except for the first

@@ -6,10 +6,7 @@ A reader counts every line of the file once, so the account adds up to the size 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
-Integers = NDArray[np.int64]
+from inertial.arrays import Integers
 
 DECODED = "decoded"
 OTHER_MESSAGE = "other message"

@@ -11,6 +11,8 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from inertial.arrays import Booleans
+
 
 def numbers_of(values: pa.ChunkedArray) -> NDArray[Any]:
     """The numbers in an Arrow array without nulls, (n,)."""
@@ -54,11 +56,11 @@ def batch_of_rows(rows: Sequence[Mapping[str, Any]], schema: pa.Schema) -> pa.Re
     return pa.RecordBatch.from_arrays(arrays, schema=schema)
 
 
-def _array(values: NDArray[Any], unknown: NDArray[np.bool_]) -> pa.Array:
+def _array(values: NDArray[Any], unknown: Booleans) -> pa.Array:
     buffers = [_validity(unknown), pa.py_buffer(np.ascontiguousarray(values))]
     return pa.Array.from_buffers(pa.from_numpy_dtype(values.dtype), len(values), buffers)
 
 
-def _validity(unknown: NDArray[np.bool_]) -> pa.Buffer | None:
+def _validity(unknown: Booleans) -> pa.Buffer | None:
     """Arrow's bitmap of what is not null; None where nothing is."""
     return pa.py_buffer(np.packbits(~unknown, bitorder="little")) if unknown.any() else None

@@ -2,12 +2,8 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from inertial.arrays import Array
 from inertial.model_selection.size_after_selection import Selected, selected
-
-Array = NDArray[np.float64]
 
 FOUND = "found"
 ONE_OF_CLASS = "one_of_class"
@@ -68,7 +64,7 @@ class EffectTest:
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedCauses:
     """The named causes, and the test of every effect of the catalogue."""
 
     causes: tuple[Cause, ...]

@@ -4,14 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammaln, ive, logsumexp
 
+from inertial.arrays import Array, Booleans, Integers
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.search import Set
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MIN_CLASS_PROBABILITY = 0.95  # posterior, of all members together
 MIN_CAPTURED = 0.90  # share of the signal of an effect that a member can mimic
@@ -156,7 +153,7 @@ def _captured(
     right: Array,
     place: int,
     given: Sequence[int],
-    possible: NDArray[np.bool_],
+    possible: Booleans,
 ) -> Array:
     """Share of the estimated signal of a candidate that joint effect can mimic, (m,)."""
     signal = fitted(information, right, candidates.columns[place], given)

@@ -6,11 +6,11 @@ from functools import cached_property, reduce
 from operator import add
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
 from inertial.estimation.probability import chi2_sf, f_sf
-from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
+from inertial.estimation.scatter_and_random_walk import MIN_CONSISTENT_P_VALUE
 
 # ---- Searched effects, each by its columns in the evidence.
 
@@ -50,8 +50,6 @@ def searched_effect(
 
 
 # ---- The information of the equations of all sensors about the effects.
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

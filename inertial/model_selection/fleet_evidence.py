@@ -15,14 +15,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.estimation.sharing import LEVELS, Sharing
+from inertial.arrays import Array, Integers
+from inertial.estimation.fleet_components import LEVELS, Sharing
+from inertial.estimation.least_squares import whitening
+from inertial.model_selection.scan import MIN_EIGENVALUE
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
-
-MIN_EIGENVALUE = 1e-6  # of the information scaled to unit diagonal; below: not observable
 EVERY = -1  # for the group of a hypothesis: each group of its level has a size of its own
 
 
@@ -127,7 +125,7 @@ class FleetEvidence:
             )
         across = {level: self._across(level, model) for level in LEVELS}
         information, right = self._joint(model, across)
-        white = _white(information)
+        white = whitening(information, MIN_EIGENVALUE)
         along = white.T @ right
         projected = {level: part @ white for level, part in across.items()}
         return Given(
@@ -139,7 +137,7 @@ class FleetEvidence:
         """Values (s,) and covariance (s, s) of all parameters of a model."""
         across = {level: self._across(level, model) for level in LEVELS}
         information, right = self._joint(model, across)
-        white = _white(information)
+        white = whitening(information, MIN_EIGENVALUE)
         return white @ (white.T @ right), white @ white.T
 
     def sharing(self, model: Sequence[Shared], effect: int) -> Sharing:
@@ -202,11 +200,3 @@ def _explained(block: Array, scale: Array, right: Array) -> tuple[Array, Integer
     return np.sum(np.where(seen, along**2 / np.where(seen, values, 1.0), 0.0), axis=1), np.sum(
         seen, axis=1
     )
-
-
-def _white(information: Array) -> Array:
-    """Combinations W (s, r) of unit information, Wᵀ F W = 1."""
-    scale = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(information / np.outer(scale, scale))
-    seen = values > MIN_EIGENVALUE
-    return np.asarray(vectors[:, seen] / np.sqrt(values[seen]) / scale[:, None])

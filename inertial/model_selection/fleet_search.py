@@ -22,20 +22,13 @@ from itertools import product
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
+from inertial.estimation.fleet_components import LEVELS
 from inertial.estimation.probability import chi2_isf, chi2_sf
-from inertial.estimation.sharing import LEVELS
-from inertial.model_selection.fleet_evidence import (
-    EVERY,
-    MIN_EIGENVALUE,
-    FleetEvidence,
-    Given,
-    Shared,
-)
+from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Given, Shared
+from inertial.model_selection.scan import MIN_EIGENVALUE
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 Key = TypeVar("Key")
 
 DRAWS = 2000
@@ -58,7 +51,7 @@ class FleetLaw:
 
 
 @dataclass(frozen=True)
-class Finding:
+class FleetEffect:
     """An effect that the fleet shows.
 
     `p_value`: after the search, beside the other findings; `sharings`: posterior probability of
@@ -92,7 +85,7 @@ class FleetSearch:
         self.searched = hypotheses(evidence)
         self.every = hypotheses(evidence, campaigns=True)
 
-    def found(self) -> list[Finding]:
+    def found(self) -> list[FleetEffect]:
         """The effects, each with what shares it."""
         model = self._accepted(self._exchanged(self._forward()))
         return [self._finding(place, model) for place in range(len(model))]
@@ -171,7 +164,7 @@ class FleetSearch:
 
     # ---- What else a finding may be.
 
-    def _finding(self, place: int, model: list[Shared]) -> Finding:
+    def _finding(self, place: int, model: list[Shared]) -> FleetEffect:
         others = model[:place] + model[place + 1 :]
         given = self.evidence.given(others)
         own = model[place]
@@ -183,7 +176,7 @@ class FleetSearch:
         }
         of_effect = {level: weights.get((own.effect, level), 0.0) for level in LEVELS}
         total = sum(of_effect.values())
-        return Finding(
+        return FleetEffect(
             own,
             drop,
             degrees,

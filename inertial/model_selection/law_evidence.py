@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import gammaln, logsumexp
 
+from inertial.arrays import Array, Integers
 from inertial.model_selection.effect_classes import (
     MIN_CAPTURED,
     MIN_CLASS_PROBABILITY,
@@ -30,8 +30,6 @@ from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.null_simulation import noise
 from inertial.model_selection.scan import MIN_EIGENVALUE, Candidates
 from inertial.model_selection.walk_odds import LOG_RANGE, Equations
-
-Array = NDArray[np.float64]
 
 DRAWS = 1000
 MAX_CHANGES = 12  # of a telegraph
@@ -50,7 +48,7 @@ class LawOdds:
 
     candidates: Candidates
     of_each: Array
-    best: NDArray[np.int64]
+    best: Integers
     total: float
 
 

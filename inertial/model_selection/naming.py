@@ -13,7 +13,7 @@ from inertial.model_selection.cause import (
     UNKNOWN_STRUCTURE,
     Cause,
     EffectTest,
-    Named,
+    NamedCauses,
 )
 from inertial.model_selection.effect_classes import EffectClass, effect_class, with_rivals
 from inertial.model_selection.evidence import Evidence, SearchedEffect
@@ -32,7 +32,9 @@ def law_of(evidence: Evidence, effects: Sequence[SearchedEffect], level: float) 
     return null_simulation.chance(evidence.observable().total.information, effects, level)
 
 
-def causes(evidence: Evidence, effects: Sequence[SearchedEffect], law: Chance | None) -> Named:
+def causes(
+    evidence: Evidence, effects: Sequence[SearchedEffect], law: Chance | None
+) -> NamedCauses:
     """Name the causes.
 
     Where the residuals of a sensor exceed the noise also with the named effects, something else
@@ -44,7 +46,7 @@ def causes(evidence: Evidence, effects: Sequence[SearchedEffect], law: Chance | 
     law : the null distributions; those of the coarse scans serve for refined ones too
     """
     if law is None:
-        return Named((), tuple(EffectTest(e.name, 0, 0.0, 0, 1.0, 1.0) for e in effects), ())
+        return NamedCauses((), tuple(EffectTest(e.name, 0, 0.0, 0, 1.0, 1.0) for e in effects), ())
     evidence = evidence.observable()
     candidates = Candidates(effects)
     excesses: tuple[tuple[float, float], ...] = tuple(
@@ -62,14 +64,16 @@ def causes(evidence: Evidence, effects: Sequence[SearchedEffect], law: Chance | 
         classes = _classes(scaled, candidates, law)
     noise_degrees = _noise_degrees(scaled, candidates)
     named = [_cause(scaled, candidates, law, noise_degrees, group, classes) for group in classes]
-    return Named(
+    return NamedCauses(
         _uncertain_given_drift(scaled, named),
         _tests(scaled, candidates, law, noise_degrees, classes),
         excesses,
     )
 
 
-def with_given(evidence: Evidence, named: Named, given: Sequence[SearchedEffect]) -> Named:
+def with_given(
+    evidence: Evidence, named: NamedCauses, given: Sequence[SearchedEffect]
+) -> NamedCauses:
     """The causes with effects that were named before the search, each by its only candidate."""
     total = evidence.total
     every = [*(c.columns for c in named.causes), *(effect.candidates[0] for effect in given)]

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg.blas import dtrmm
 from scipy.optimize import brentq
 from scipy.special import gammaln
 
+from inertial.arrays import Array
 from inertial.estimation.probability import (
     chi2_isf,
     chi2_sf,
@@ -25,7 +25,6 @@ from inertial.model_selection.scan import Candidates
 # thousand times. This gives the distribution of the largest drop among the values of each scan,
 # and that of the smallest p-value among all effects, which sets the level of naming.
 
-Array = NDArray[np.float64]
 
 DRAWS = 5000
 TAIL_SHARE = 0.1  # of the draws, the largest, from which the tail is extrapolated

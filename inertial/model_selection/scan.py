@@ -4,12 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.model_selection.evidence import SearchedEffect
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MAX_BATCH = 20_000  # groups times data sets in one array
 MIN_EIGENVALUE = 1e-6  # of the information scaled to unit diagonal; below: not observable

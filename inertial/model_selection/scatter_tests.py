@@ -12,17 +12,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dpstrf
 
+from inertial.arrays import Array, Integers
 from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
 from inertial.estimation.probability import f_sf
 from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.null_simulation import DRAWS, share_of_level
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MAX_BATCH = 500  # data sets at once, which bound the memory
 MIN_LEFT = 1  # degrees of freedom that an effect must leave: else nothing shows the scatter

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.model_selection.cause import Named
+from inertial.arrays import Array
+from inertial.model_selection.cause import NamedCauses
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.scan import Candidates, joint_drop
 
@@ -16,11 +16,9 @@ from inertial.model_selection.scan import Candidates, joint_drop
 # value lies between two steps, and that residual may be named as another effect. So the evidence
 # is built again with finer values about the detected ones, and the causes are named from it.
 
-Array = NDArray[np.float64]
-
 
 def to_refine(
-    evidence: Evidence, named: Named, effects: Sequence[SearchedEffect], min_snr: float = 0.0
+    evidence: Evidence, named: NamedCauses, effects: Sequence[SearchedEffect], min_snr: float = 0.0
 ) -> dict[str, tuple[int, ...]]:
     """The values to refine of each scan: the best of each member, jointly fitted and alone.
 

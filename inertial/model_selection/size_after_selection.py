@@ -26,12 +26,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special
 
+from inertial.arrays import Array
 from inertial.estimation.probability import ncx2_pdf, ncx2_sf
-
-Array = NDArray[np.float64]
 
 BEYOND = 8.0  # of |z| above the threshold, where nothing is subtracted any more
 NODES, WEIGHTS = (np.array(each) for each in special.roots_sh_legendre(40))  # of 0 to 1

@@ -5,15 +5,13 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.cause import Cause
 from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.scan import Candidates
-
-Array = NDArray[np.float64]
 
 MIN_SEPARATION = 3.3  # at which the likelier of two members is right in 95 of 100 campaigns
 

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.estimation.probability import chi2_isf, chi2_sf, f_sf
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.null_simulation import chance
@@ -13,8 +13,6 @@ from inertial.model_selection.scan import MIN_EIGENVALUE, Candidates
 
 # ---- The functions of the tests.
 
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 HALF_WAVES = 6  # of a smooth function over the whole campaign
 MAX_FREQUENCIES = 60  # of an oscillation in time, in steps of half a cycle per campaign

@@ -15,14 +15,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 
+from inertial.arrays import Array
 from inertial.model_selection.effect_classes import MAX_PRIOR_SNR, MIN_PRIOR_SNR, log_evidence
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.scan import Candidates
-
-Array = NDArray[np.float64]
 
 LARGEST_SNR = 1e3  # of a walk that is tried; beyond MAX_PRIOR_SNR the prior goes on as before
 AXES = 3
@@ -57,14 +55,14 @@ class Equations:
 
 
 @dataclass(frozen=True)
-class Explained:
+class WeighedExplanation:
     """Log evidence of an explanation against none, and the equations with it explained."""
 
     log_evidence: float
     rest: Equations
 
 
-def walk(equations: Equations, axes: Sequence[Sequence[int]]) -> Explained:
+def walk(equations: Equations, axes: Sequence[Sequence[int]]) -> WeighedExplanation:
     """A random walk of all biases alike, or of each by itself.
 
     `axes`: of each axis the columns of its half waves, k = 1, 2, …
@@ -72,7 +70,7 @@ def walk(equations: Equations, axes: Sequence[Sequence[int]]) -> Explained:
     shape = np.arange(1, len(axes[0]) + 1, dtype=np.float64) ** -2.0
     alike = _walk(equations, [i for axis in axes for i in axis], np.tile(shape, len(axes)))
 
-    def alone(rest: Equations, axis: int) -> Explained:
+    def alone(rest: Equations, axis: int) -> WeighedExplanation:
         return _walk(rest, axes[axis], shape)
 
     return _either(alike, _each(equations, alone))
@@ -81,13 +79,15 @@ def walk(equations: Equations, axes: Sequence[Sequence[int]]) -> Explained:
 Scanned = tuple[Sequence[Sequence[int]], Array]  # columns of each value, and its share of the prior
 
 
-def law(equations: Equations, values: Sequence[Sequence[int]], weights: Array) -> Explained:
+def law(
+    equations: Equations, values: Sequence[Sequence[int]], weights: Array
+) -> WeighedExplanation:
     """An effect, of which each value of its scan has columns and a share of the prior.
 
     Where it has parameters for each axis, all axes together or any of them; see `_ways`.
     """
-    ways = _ways(Explained(0.0, equations), (values, weights))
-    return Explained(_sum_of(ways), max(ways, key=lambda way: way.log_evidence).rest)
+    ways = _ways(WeighedExplanation(0.0, equations), (values, weights))
+    return WeighedExplanation(_sum_of(ways), max(ways, key=lambda way: way.log_evidence).rest)
 
 
 def laws(equations: Equations, effects: Sequence[Scanned]) -> float:
@@ -99,7 +99,9 @@ def laws(equations: Equations, effects: Sequence[Scanned]) -> float:
     own = sorted({i for values, _weights in effects for columns in values for i in columns})
     place = {column: i for i, column in enumerate(own)}
     ways = [
-        Explained(0.0, Equations(equations.information[np.ix_(own, own)], equations.right[own]))
+        WeighedExplanation(
+            0.0, Equations(equations.information[np.ix_(own, own)], equations.right[own])
+        )
     ]
     for values, weights in effects:
         moved = [[place[i] for i in columns] for columns in values]
@@ -108,7 +110,7 @@ def laws(equations: Equations, effects: Sequence[Scanned]) -> float:
     return _sum_of(ways)
 
 
-def _ways(before: Explained, effect: Scanned) -> list[Explained]:
+def _ways(before: WeighedExplanation, effect: Scanned) -> list[WeighedExplanation]:
     """An effect as a whole, in any of the three axes of the sensor, or one element of its matrix.
 
     The columns of a matrix are in the order of its rows, of which each axis has one.
@@ -131,16 +133,18 @@ def _ways(before: Explained, effect: Scanned) -> list[Explained]:
     return [_less(way, len(kinds)) for ways in kinds for way in ways]
 
 
-def _less(way: Explained, count: int) -> Explained:
+def _less(way: WeighedExplanation, count: int) -> WeighedExplanation:
     """One of so many ways that are as likely beforehand."""
     return replace(way, log_evidence=way.log_evidence - float(np.log(count)))
 
 
-def _sum_of(ways: Sequence[Explained]) -> float:
+def _sum_of(ways: Sequence[WeighedExplanation]) -> float:
     return float(logsumexp([way.log_evidence for way in ways]))
 
 
-def _each(equations: Equations, alone: Callable[[Equations, int], Explained]) -> Explained:
+def _each(
+    equations: Equations, alone: Callable[[Equations, int], WeighedExplanation]
+) -> WeighedExplanation:
     """Each axis by itself: it acts or does not, as likely beforehand."""
     total, rest = 0.0, equations
     first = [alone(equations, axis).log_evidence for axis in range(AXES)]
@@ -148,23 +152,23 @@ def _each(equations: Equations, alone: Callable[[Equations, int], Explained]) ->
         one = alone(rest, int(axis))
         total += float(np.logaddexp(0.0, one.log_evidence) - np.log(2))
         rest = one.rest if one.log_evidence > 0 else rest
-    return Explained(total, rest)
+    return WeighedExplanation(total, rest)
 
 
-def _either(one: Explained, other: Explained) -> Explained:
+def _either(one: WeighedExplanation, other: WeighedExplanation) -> WeighedExplanation:
     """Two kinds of the same, as likely beforehand."""
     both = float(np.logaddexp(one.log_evidence, other.log_evidence) - np.log(2))
-    return Explained(both, max(one, other, key=lambda each: each.log_evidence).rest)
+    return WeighedExplanation(both, max(one, other, key=lambda each: each.log_evidence).rest)
 
 
-def _walk(equations: Equations, columns: Sequence[int], shape: Array) -> Explained:
+def _walk(equations: Equations, columns: Sequence[int], shape: Array) -> WeighedExplanation:
     """A walk of one size K²; `shape`: variances of its components for K = 1."""
     own = list(columns)
     root = np.sqrt(shape)
     block = equations.information[np.ix_(own, own)] * np.outer(root, root)
     signal = float(np.trace(block))
     if signal <= 0:
-        return Explained(0.0, equations)
+        return WeighedExplanation(0.0, equations)
     values, vectors = np.linalg.eigh(block)
     values = np.maximum(values, 0.0)
     along = vectors.T @ (root * equations.right[own])
@@ -175,14 +179,16 @@ def _walk(equations: Equations, columns: Sequence[int], shape: Array) -> Explain
     step = float(np.log(sizes[1] / sizes[0]))
     total = float(logsumexp(logs)) + np.log(step) - np.log(LOG_RANGE)
     best = float(variances[int(np.argmax(logs)), 0])
-    return Explained(float(total), equations.given(own, best * shape))
+    return WeighedExplanation(float(total), equations.given(own, best * shape))
 
 
-def _after(before: Explained, values: Sequence[Sequence[int]], weights: Array) -> Explained:
+def _after(
+    before: WeighedExplanation, values: Sequence[Sequence[int]], weights: Array
+) -> WeighedExplanation:
     """An effect with all of these columns, after something else is explained."""
     candidates = Candidates([searched_effect("", *values)])
     drops, degrees = candidates.drops(before.rest.information, before.rest.right)
     odds = np.where(degrees > 0, log_evidence(drops, degrees) - np.log(LOG_RANGE), 0.0)
     total = float(logsumexp(odds, b=weights / np.sum(weights)))
     rest = before.rest.given(values[int(np.argmax(odds))])
-    return Explained(before.log_evidence + total, rest)
+    return WeighedExplanation(before.log_evidence + total, rest)

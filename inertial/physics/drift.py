@@ -7,12 +7,11 @@ a warm-up began earlier, and its amplitude differs by a factor.
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.physics.effect import (
     COLDEST,
     MEAN_TEMPERATURE,
@@ -20,13 +19,15 @@ from inertial.physics.effect import (
     Constant,
     Effect,
     Reading,
+    Scan,
     Truth,
 )
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
-Array = NDArray[np.float64]
-
+JUMP_TIMES = 72  # that are tried: a jump between two of them loses 2 to 4 % of its SNR²
+SETTLING_TIMES = (30.0, 3000.0)  # s, of τ: a shorter one is over before the first rest is
+SETTLING_CANDIDATES = 9  # of τ; between two of them the trace changes by a tenth
 THERMOMETER_ERROR = 1.0  # K beyond the coldest and the warmest mean; resolution of many
 
 NO_CLOCK = _(
@@ -52,8 +53,45 @@ class Drift(Effect):
         return without_clock(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        biases = np.outer(self.course(motion), values)
-        return replace(reading, **{self.sensor: getattr(reading, self.sensor) + biases})
+        return reading.plus(self.sensor, np.outer(self.course(motion), values))
+
+
+class Jump(Drift):
+    """Reading += b H(t − t₀): a bias of each axis that jumps once; t₀ is scanned.
+
+    Unlike a drift it is instantaneous. A jump between logs is observable only if they share a
+    clock.
+    """
+
+    cause = _(
+        "stress is released, the electronics switch, or the instrument is knocked or restarted"
+    )
+    source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
+    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
+
+    def grid(self, motion: Motion) -> Array:
+        return evenly(motion, JUMP_TIMES)
+
+    def course(self, motion: Motion) -> Array:
+        return after(motion, self.value(motion))
+
+
+class WarmUp(Drift):
+    """Reading += b exp(−t/τ), with t since the first sample of all logs; τ is scanned.
+
+    Told from an even drift by slowing down. Only logs with a common clock show it. Switched on
+    earlier by T, the amplitude at the first sample is exp(−T/τ) of the whole.
+    """
+
+    cause = _("the sensor and its electronics warm up after they are switched on")
+    source = "IEEE Std 528-2019, 'warm-up time'"
+    scan = Scan("tau", "s", _("time constant of the settling"), smooth=True)
+
+    def grid(self, motion: Motion) -> Array:
+        return np.geomspace(*SETTLING_TIMES, SETTLING_CANDIDATES)
+
+    def course(self, motion: Motion) -> Array:
+        return decayed(motion, self.value(motion))
 
 
 def without_clock(motion: Motion) -> str:
@@ -129,7 +167,7 @@ def warmer(
     return np.asarray(np.where(known_at(motion.temperature, valid), above, np.nan))
 
 
-def known_at(temperature: Array, valid: tuple[float, float] | None) -> NDArray[np.bool_]:
+def known_at(temperature: Array, valid: tuple[float, float] | None) -> Booleans:
     """Which temperatures are within a range, or as near to it as a thermometer is sure, (n,)."""
     low, high = valid or (-np.inf, np.inf)
     return np.asarray(

@@ -5,14 +5,15 @@ from __future__ import annotations
 from abc import ABC
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
+from inertial.text.parameters import AXES
 
 # ---- Typical sizes of effects, by the grade of a sensor or the quality of a table.
 
@@ -45,8 +46,6 @@ def usually(size: float) -> Mapping[str, float]:
 
 # ---- The interface of a physical effect: name, cause, source, parameters, and how it acts.
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Truth:
@@ -63,6 +62,10 @@ class Reading:
     gyro: Array
     accel: Array
 
+    def plus(self, sensor: str, change: Array) -> Reading:
+        """With a change of the readings of gyro or accel, (n, 3)."""
+        return replace(self, **{sensor: getattr(self, sensor) + change})
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -72,6 +75,15 @@ class Parameter:
     unit: str
     typical: float  # size in a good laboratory IMU or table; sets the step of derivatives
     meaning: str
+
+
+def parameters_by_axis(
+    letter: str, unit: str, typical: float, meaning: str
+) -> tuple[Parameter, ...]:
+    """The same parameter on each of x, y and z; `meaning` names the `{axis}`."""
+    return tuple(
+        Parameter(f"{letter}_{axis}", unit, typical, meaning.format(axis=axis)) for axis in AXES
+    )
 
 
 @dataclass(frozen=True)

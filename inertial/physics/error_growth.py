@@ -17,13 +17,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, expm
 
+from inertial.arrays import Array
 from inertial.physics.motion import cross
 from inertial.physics.strapdown import EARTH_RADIUS
-
-Array = NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
 ATTITUDE, VELOCITY, POSITION = slice(0, 3), slice(3, 6), slice(6, 9)

@@ -9,12 +9,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import Motion
 
-Array = NDArray[np.float64]
 Values = Mapping[str, Array]  # label of an effect → values of its parameters
 
 
@@ -120,43 +119,44 @@ def force_of(
     reading: Array, accelerometer: Triad | None, effects: Sequence[Sized], motion: Motion
 ) -> Array:
     """Specific force from the readings of accelerometers, (n, 3); NaN where it is not known."""
-    nothing = np.zeros_like(reading)
 
-    def added(force: Array) -> Array:
-        truth = Truth(nothing, force)
-        return sum(
-            (e.reads(Reading(nothing, nothing), truth, motion, v).accel for e, v in effects),
-            nothing,
-        )
+    def felt(force: Array) -> Truth:
+        return Truth(np.zeros_like(force), force)
 
-    return _truth(reading, accelerometer, added if effects else None)
+    return _truth(reading, accelerometer, "accel", felt, effects, motion)
 
 
 def rate_of(
     reading: Array, gyro: Triad | None, effects: Sequence[Sized], motion: Motion, force: Array
 ) -> Array:
     """Angular rate from the readings of gyros and the specific force that they feel, (n, 3)."""
-    nothing = np.zeros_like(reading)
-
-    def added(rate: Array) -> Array:
-        truth = Truth(rate, force)
-        return sum(
-            (e.reads(Reading(nothing, nothing), truth, motion, v).gyro for e, v in effects),
-            nothing,
-        )
-
-    return _truth(reading, gyro, added if effects else None)
+    return _truth(reading, gyro, "gyro", lambda rate: Truth(rate, force), effects, motion)
 
 
-def _truth(reading: Array, triad: Triad | None, added: Callable[[Array], Array] | None) -> Array:
+def _truth(
+    reading: Array,
+    triad: Triad | None,
+    sensor: str,
+    felt: Callable[[Array], Truth],
+    effects: Sequence[Sized],
+    motion: Motion,
+) -> Array:
     """The truth of three sensors, of which one that is not recorded leaves none."""
     if triad is None:
         return np.full(reading.shape, np.nan)
     inverse = np.linalg.inv(triad.matrix).T
     plain = reading - triad.bias
     truth = np.asarray(plain @ inverse)
-    if added is None:
+    if not effects:
         return truth
+    nothing = np.zeros_like(reading)
+
+    def added(truth: Array) -> Array:
+        read = Reading(nothing, nothing)
+        return sum(
+            (getattr(e.reads(read, felt(truth), motion, v), sensor) for e, v in effects), nothing
+        )
+
     for _unused in range(MAX_ROUNDS):
         before, truth = truth, np.asarray((plain - added(truth)) @ inverse)
         change = np.linalg.norm(truth - before, axis=1)

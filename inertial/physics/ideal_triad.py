@@ -16,12 +16,10 @@ from dataclasses import dataclass
 from math import cos, sin, tan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.physics.motion import cross
 from inertial.physics.site import EARTH_RATE, normal_gravity, radii
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,12 @@ in g, temperature in K, its rate in K/min; an angle is in rad, and known only in
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.physics.drift import without_clock, without_temperature
 from inertial.physics.motion import Motion
 from inertial.text.parameters import AXES
 from inertial.text.units import DEGREE, HOUR
-
-Array = NDArray[np.float64]
 
 NODES, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(5))  # of a stretch
 RATE = 10 * DEGREE  # rad/s

@@ -5,14 +5,13 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from inertial.arrays import Array, Booleans
 from inertial.text.messages import _
 
 # ---- Products of vectors.
 
-Array = NDArray[np.float64]
 
 MIN_VERTICAL_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
 MIN_PART_OF_TURN = 1e-3  # sine of half the angle: less is whole turns
@@ -48,7 +47,7 @@ def is_vertical(up: Array, about: Array) -> bool:
     return bool(abs(up @ about) > MIN_VERTICAL_COSINE)
 
 
-def are_parts_of_turns(angle: Array) -> NDArray[np.bool_]:
+def are_parts_of_turns(angle: Array) -> Booleans:
     """Which angles, rad, are no whole turns."""
     return np.asarray(np.abs(np.sin(angle / 2)) > MIN_PART_OF_TURN)
 
@@ -131,7 +130,7 @@ class Motion:
     visit: Array
     position: Array
     run: Array
-    surveyed: NDArray[np.bool_]
+    surveyed: Booleans
     temperature: Array
     vibration: Array
     peaks: Array
@@ -174,7 +173,7 @@ class Motion:
         return np.asarray(ahead / self.seconds)
 
     @property
-    def ends(self) -> NDArray[np.bool_]:
+    def ends(self) -> Booleans:
         """Which stretches are the first or the last of their visit, (n,)."""
         new = np.diff(self.visit) != 0
         return np.asarray(np.append(True, new) | np.append(new, True))

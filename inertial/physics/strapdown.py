@@ -15,13 +15,10 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.physics.forward import Site
 from inertial.physics.motion import cross, level_axes
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 EARTH_RADIUS = 6371e3  # m, mean
 

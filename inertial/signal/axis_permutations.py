@@ -7,17 +7,10 @@ from itertools import permutations, product
 
 import numpy as np
 
+from inertial.arrays import Array, Integers
 from inertial.physics.motion import cross
 from inertial.sensors import COLUMNS, SINGULAR
-from inertial.signal.detector import (
-    Array,
-    Description,
-    Event,
-    Integers,
-    Log,
-    Piece,
-    read_in,
-)
+from inertial.signal.detector import Description, Event, Log, Piece, read_in
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.sensors import CHANNELS, COLUMNS, SINGULAR, UNITS
 from inertial.text.messages import _
 from inertial.text.units import in_degrees
@@ -25,11 +25,6 @@ def channel_name(channel: int) -> str:
 def read_in(channel: int) -> tuple[float, str]:
     """What a person reads it in, °/s or m/s²: how many of these are one SI unit, and its name."""
     return in_degrees(1.0, UNITS[CHANNELS[channel].partition("_")[0]])
-
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Booleans = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)

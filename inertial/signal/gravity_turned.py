@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.signal.axis_permutations import Permutation
-from inertial.signal.detector import Array
 from inertial.signal.scatter import MAD_TO_SIGMA
 
 SPAN_S = 0.5  # over which a change of the force is compared with the gyros

@@ -3,12 +3,10 @@
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from inertial.arrays import Array
 from inertial.signal.scatter import in_blocks
-
-Array = NDArray[np.float64]
 
 MIN_CHANGE_SIGMA = 5.0  # sigma: 6·10⁻⁷ for one place, and errors of stamps cancel, so in truth less
 MAX_BORDERS = 4  # of the largest differences of blocks, which may be borders

@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from inertial.signal.detector import Array, Booleans, Integers
+from inertial.arrays import Array, Booleans, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA, QUIET_SHARE, median
 
 MEDIAN_WIDTH = 9  # readings: of these a spike may be up to four

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
+from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import CHANNELS, COLUMNS
-from inertial.signal.detector import Array, Booleans, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA, median
 
 PERIODS = (60.0, 30.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)  # s, each divides the first

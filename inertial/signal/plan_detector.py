@@ -7,8 +7,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from inertial.arrays import Array, Booleans, Integers
 from inertial.signal.axis_permutations import Permutation
-from inertial.signal.detector import Array, Booleans, Description, Given, Integers
+from inertial.signal.detector import Description, Given
 from inertial.text.messages import _
 
 

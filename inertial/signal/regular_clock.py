@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter, minimum_filter1d
 
-from inertial.signal.detector import Array, Integers
+from inertial.arrays import Array, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.signal.stamps import unit_of
 

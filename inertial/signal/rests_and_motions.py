@@ -4,12 +4,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.signal.scatter import MAD_TO_SIGMA
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 MIN_MOTION_SIGMA = 6.0  # scatters of the gyros at rest: what cannot be noise
 MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
@@ -22,7 +19,7 @@ MIN_FORCE_CHANGE = 0.1
 
 
 @dataclass(frozen=True)
-class Stretch:
+class BinStretch:
     """Consecutive bins, [first, after), that all move or all rest."""
 
     moves: bool
@@ -78,7 +75,7 @@ def _filled(values: Array) -> Array:
     return np.interp(np.arange(len(values)), there, values[there])
 
 
-def stretches(moves: Booleans, bin_seconds: float, forces: Array | None = None) -> list[Stretch]:
+def stretches(moves: Booleans, bin_seconds: float, forces: Array | None = None) -> list[BinStretch]:
     """The bins as stretches that move or rest, those shorter than a blip joined to their like.
 
     Where `forces`, (k, 3), show that the IMU stands otherwise after a short motion, it fell over.
@@ -94,7 +91,7 @@ def stretches(moves: Booleans, bin_seconds: float, forces: Array | None = None) 
     return _runs(moves)
 
 
-def _fell(stretch: Stretch, forces: Array | None) -> bool:
+def _fell(stretch: BinStretch, forces: Array | None) -> bool:
     """Whether gravity has another direction after a motion than before."""
     if forces is None:
         return False
@@ -105,8 +102,8 @@ def _fell(stretch: Stretch, forces: Array | None) -> bool:
 
 
 def with_slow_ends(
-    found: list[Stretch], above_noise: Booleans, bin_seconds: float
-) -> list[Stretch]:
+    found: list[BinStretch], above_noise: Booleans, bin_seconds: float
+) -> list[BinStretch]:
     """The stretches, every motion with the bins beside it in which it begins and ends slowly.
 
     A table that is moved smoothly stands nearly still for a second, and not yet quite. Such bins
@@ -131,10 +128,10 @@ def _length(true: Booleans) -> int:
     return int(np.logical_and.accumulate(true).sum())
 
 
-def _runs(moves: Booleans) -> list[Stretch]:
+def _runs(moves: Booleans) -> list[BinStretch]:
     edges = [0, *(np.flatnonzero(np.diff(moves)) + 1).tolist(), len(moves)]
     return [
-        Stretch(bool(moves[first]), first, after)
+        BinStretch(bool(moves[first]), first, after)
         for first, after in pairwise(edges)
         if after > first
     ]

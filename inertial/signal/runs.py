@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Booleans, Integers
+from inertial.arrays import Booleans, Integers
 
 
 def runs(there: Booleans) -> Iterator[tuple[int, int]]:

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.signal.detector import Array, Given, Log
+from inertial.arrays import Array
+from inertial.signal.detector import Given, Log
 from inertial.signal.plan_detector import Recorded
 from inertial.text.messages import _
 from inertial.text.units import DEGREE, STANDARD_GRAVITY

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.signal.detector import Array
+from inertial.arrays import Array
 
 MAD_TO_SIGMA = 1.4826  # sigma of Gaussian values in units of the median of their absolute values
 BLOCK = 64  # readings

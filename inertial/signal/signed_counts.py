@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from inertial.signal.detector import Array
+from inertial.arrays import Array
 
 WORD_BITS = (16, 24, 32)
 MIN_LEAPS, MAX_LEFT = 5, 0.1  # over half the range; share of them that the sign must not leave

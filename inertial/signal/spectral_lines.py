@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.fft import rfft
 from scipy.special import gammaincc, gammainccinv
 
-from inertial.signal.detector import Array
+from inertial.arrays import Array
 from inertial.signal.scatter import median
 
 Complex = NDArray[np.complex128]

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.signal.detector import Array, Booleans, Integers, Log, Piece
+from inertial.arrays import Array, Booleans, Integers
+from inertial.signal.detector import Log, Piece
 from inertial.signal.scale_factor import force_at_rest
 
 STAMP_DIGIT_S = 1e-9  # s, the last digit of a stamp at best

@@ -5,9 +5,10 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
+from inertial.arrays import Array, Booleans, Integers
 from inertial.physics.motion import cross
 from inertial.sensors import CHANNELS, COLUMNS
-from inertial.signal.detector import Array, Booleans, Integers, Log, Piece
+from inertial.signal.detector import Log, Piece
 from inertial.signal.scatter import MAD_TO_SIGMA, median
 from inertial.signal.steps import MAX_SIDE_S, Step, steps
 

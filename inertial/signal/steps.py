@@ -9,7 +9,7 @@ from scipy.ndimage import median_filter, uniform_filter1d
 from scipy.special import stdtr
 from scipy.stats import chi2
 
-from inertial.signal.detector import Array, Integers
+from inertial.arrays import Array, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA, in_blocks, median
 
 MAX_SIDE_S = 10.0  # s on each side that are compared at most: further away a bias may have wandered

@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.fft import rfft
 
+from inertial.arrays import Array, Integers
 from inertial.sensors import COLUMNS
-from inertial.signal.detector import Array, Integers, Log, Piece
+from inertial.signal.detector import Log, Piece
 from inertial.signal.spectral_lines import (
     HOP,
     PART_BINS,

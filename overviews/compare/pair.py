@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.estimation.probability import chi2_sf
 from overviews.compare.shared import Key, Shared, shared_by
 from stages.report.tables import Record, Tables
-
-Array = NDArray[np.float64]
 
 READ = (
     "campaign",

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.references import NAMELESS
 from inertial.estimation.triad import linear_names
 from inertial.estimation.type_population import Campaigns
@@ -21,7 +21,6 @@ from inertial.text.messages import _
 from inertial.text.parameters import SCALE
 from overviews.fleet.declared import READ
 
-Array = NDArray[np.float64]
 Place = tuple[str, str]  # an effect and its parameter; or a sensor and its parameter
 
 UNKNOWN = "unknown"  # serial number

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from inertial.estimation.consistency import normal_p_value
-from inertial.estimation.sharing import LEVELS, shares
+from inertial.estimation.fleet_components import LEVELS, shares
 from inertial.estimation.type_population import of_new_imu, type_population
 from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
-from inertial.model_selection.fleet_search import Finding, FleetSearch, fleet_law
+from inertial.model_selection.fleet_search import FleetEffect, FleetSearch, fleet_law
 from inertial.sensors import UNITS
 from inertial.tables.fleet import FLEET
 from overviews.fleet.members import (
@@ -75,7 +75,7 @@ def results_of(
 
 def _effects(
     evidence: FleetEvidence,
-    found: Sequence[Finding],
+    found: Sequence[FleetEffect],
     places: Mapping[str, Sequence[Place]],
     units: Mapping[Place, str],
 ) -> Iterator[tuple[str, Row]]:

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import degrees
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import NAMES, Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
@@ -17,7 +17,7 @@ from inertial.estimation import accelerometers, triad
 from inertial.estimation.accelerometers import Reference, StaticForce, equations, triad_of, weighted
 from inertial.estimation.position_outlier import OffPosition, off_position
 from inertial.estimation.random_walk import MeasuredDrift
-from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
+from inertial.estimation.scatter_and_random_walk import MIN_CONSISTENT_P_VALUE
 from inertial.physics.forward import Triad
 from inertial.tables import AXES
 from inertial.tables.stage import Stage, Tables
@@ -118,7 +118,7 @@ def _position_findings(
         yield _finding(off, joint.sigma[: triad.UNKNOWNS], mount)
 
 
-def _finding(off: OffPosition, sigma: NDArray[np.float64], mount: str) -> Finding:
+def _finding(off: OffPosition, sigma: Array, mount: str) -> Finding:
     """With the affected parameters; `sigma`: (12,), of the parameters without the scatter."""
     cause, several = "table_position_error", len(off.positions) > 1
     names = _(" or ").join(off.positions)

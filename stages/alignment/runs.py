@@ -5,16 +5,14 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.sample_stretches import Samples
 from inertial.physics.motion import stretches
 from inertial.tables import ACCEL, GYRO
-
-Array = NDArray[np.float64]
 
 BIN_S = 0.05  # s, over which readings are averaged: 4° at 80 °/s, of which a mean lacks 2·10⁻⁴
 LEVEL = 0.5  # of up along an axis, below which the axis counts as level

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.measurement import Measurement, measurements_of
@@ -28,8 +28,6 @@ from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import BIAS
 from stages.alignment.declared import DECLARED
 from stages.alignment.runs import LEVEL, Group, Run, groups, run_of, since_alignment
-
-Array = NDArray[np.float64]
 
 RECORDED, COMPENSATED = "recorded", "compensated"
 MAX_POINTS = 200  # of a curve in the table

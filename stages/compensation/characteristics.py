@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
-from inertial.campaign.rate_segments import Recorded, position_of
+from inertial.campaign.rate_segments import Rotation, position_of
 from inertial.campaign.records import Manoeuvre, Row, rows_of, with_mount
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import Position
@@ -45,7 +45,6 @@ from stages.compensation.checks import (
 )
 from stages.compensation.correction import UNKNOWN
 
-Array = NDArray[np.float64]
 ByCounts = dict[tuple[str, str], float]
 
 MIN_COSINE = 1 - 1e-9  # between an axis of the case and that of the input
@@ -281,7 +280,7 @@ Turned = tuple[float, float, float, float]
 
 
 def _whole_turn(
-    rotation: Recorded, data: CampaignData, whole: Measurement, own: Measurement
+    rotation: Rotation, data: CampaignData, whole: Measurement, own: Measurement
 ) -> Iterator[Turned]:
     """The mean rate of a turn from rest to rest, by its angle."""
     triad = whole.gyro.triad
@@ -300,7 +299,7 @@ def _whole_turn(
 
 
 def _steady_turn(
-    rotation: Recorded, data: CampaignData, whole: Measurement, own: Measurement
+    rotation: Rotation, data: CampaignData, whole: Measurement, own: Measurement
 ) -> Iterator[Turned]:
     """The steady rate of a turn, by what the plan states of it."""
     m, blocks, triad = rotation.plan, rotation.steady, whole.gyro.triad

@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
-from inertial.campaign.rate_segments import Recorded, position_of
+from inertial.campaign.rate_segments import Rotation, position_of
 from inertial.campaign.records import Row, with_mount
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_equations import horizontal_sigma
@@ -28,8 +28,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, with_own_sigma
 from inertial.text.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
 from stages.compensation.correction import UNKNOWN
-
-Array = NDArray[np.float64]
 
 UNITS = {
     # quantity: (its name in a sentence, unit of the value, unit of the difference)
@@ -284,7 +282,7 @@ def noise_along(direction: Array, triad: Triad, sigma: Array) -> float:
 
 
 def angle_check(
-    rotation: Recorded, measurement: Measurement, triad: Triad, data: CampaignData, scatter: Array
+    rotation: Rotation, measurement: Measurement, triad: Triad, data: CampaignData, scatter: Array
 ) -> Iterator[Check]:
     """The angle of a whole turn about its axis, with the earth's rate taken out.
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 import pyarrow as pa
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.masked_samples import Masks, Repairs
 from inertial.campaign.measurement import Measurement, measurement_of
@@ -20,7 +20,6 @@ from inertial.tables.parquet import Stream
 
 # ---- Which result applies to which records, and how the errors are taken out of a reading.
 
-Array = NDArray[np.float64]
 
 ALL = np.iinfo(np.int64).max  # a record number that no log reaches
 UNKNOWN = np.full(3, np.nan)

@@ -11,9 +11,9 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
 from inertial.campaign.motions import CampaignMotions
@@ -25,8 +25,6 @@ from inertial.physics.forward import Site, Triad, predict
 from inertial.physics.motion import Motion, cross, stretches, turned
 from inertial.tables import ACCEL, CHANNELS, GYRO
 from inertial.tables.parquet import Stream
-
-Array = NDArray[np.float64]
 
 SECONDS = 1.0  # of a mean in a rotation
 MIN_SHARE = 0.98  # of it that is recorded, so that a vibration averages out as in the others

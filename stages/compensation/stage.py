@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.campaign import findings as findings
 from inertial.campaign.attitudes_by_hand import with_attitudes
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
@@ -29,8 +29,6 @@ from stages.compensation.checks import checks, not_compensated
 from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
 from stages.compensation.residuals import residuals
-
-Array = NDArray[np.float64]
 
 ALREADY = Finding(
     id="compensation/already_compensated/campaign",

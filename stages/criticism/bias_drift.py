@@ -1,18 +1,19 @@
 """Drift of the biases of a sensor given the named effects: random walk and half waves."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import chi2
 
+from inertial.arrays import Array
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
-from inertial.campaign.scatter_of_positions import likely_walk
-from inertial.estimation.variance_components import sigma_of
+from inertial.campaign.scatter_given_effects import likely_walk
+from inertial.estimation.scatter_and_random_walk import sigma_of
 from inertial.model_selection.walk_odds import Equations, walk
 from inertial.physics.drift import without_clock
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.effect import Effect, Reading, Truth, parameters_by_axis
 from inertial.physics.motion import Motion
 from inertial.sensors import SENSORS
 from inertial.text.messages import _
@@ -82,7 +83,20 @@ MAX_HALF_WAVES = 8  # in the campaign: the fastest that is distinguishable from 
 TYPICAL_SIZE = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}  # a degree per hour, 10 µg
 
 
-class HalfWave(Effect):
+class _BiasChange(Effect):
+    """A change of the biases of a sensor that no law of the catalogue has; `at`: which one."""
+
+    thinkable = 1e4
+
+    def __init__(self, name: str, sensor: str, at: int) -> None:
+        unit, size = TYPICAL_SIZE[sensor]
+        self.name, self.sensor, self.at = name, sensor, float(at)  # type: ignore[misc]
+        of_axis = _("of the {axis} reading")
+        self.parameters = parameters_by_axis("c", unit, size, of_axis)  # type: ignore[misc]
+        self.sizes = {"usual": size}  # type: ignore[misc]
+
+
+class HalfWave(_BiasChange):
     """Reading += c cos(k π t/T): no physical effect, but a component of a drift without a law.
 
     It replaces several effects that together would only imitate it.
@@ -90,17 +104,9 @@ class HalfWave(Effect):
 
     cause = _("the bias drifts, by no law of the catalogue")
     source = "Fourier, by cosines over the time of the campaign"
-    thinkable = 1e4
 
     def __init__(self, sensor: str, count: int) -> None:
-        unit, size = TYPICAL_SIZE[sensor]
-        self.sensor, self.at = sensor, float(count)
-        self.name = drift_name(sensor)  # type: ignore[misc]
-        self.parameters = tuple(  # type: ignore[misc]
-            Parameter(f"c_{axis}", unit, size, _("of the {axis} reading", axis=axis))
-            for axis in "xyz"
-        )
-        self.sizes = {"usual": size}  # type: ignore[misc]
+        super().__init__(drift_name(sensor), sensor, count)
 
     def blind(self, motion: Motion) -> str:
         return without_clock(motion)
@@ -111,12 +117,10 @@ class HalfWave(Effect):
         first, last = motion.time.min(), motion.time.max()
         phase = np.pi * self.at * (motion.time - first) / max(last - first, 1.0)
         wave = np.outer(np.cos(phase), values)
-        if self.sensor == "gyro":
-            return replace(reading, gyro=reading.gyro + wave)
-        return replace(reading, accel=reading.accel + wave)
+        return reading.plus(self.sensor, wave)
 
 
-class BiasOfRun(Effect):
+class BiasOfRun(_BiasChange):
     """Reading += c in one run of the instrument: its bias is another one after each switch-on.
 
     That of the first run is the bias itself.
@@ -124,23 +128,13 @@ class BiasOfRun(Effect):
 
     cause = _("the bias is another one after each switch-on")
     source = "IEEE Std 528-2019, 'bias repeatability'"
-    thinkable = 1e4
 
     def __init__(self, sensor: str, run: int) -> None:
-        unit, size = TYPICAL_SIZE[sensor]
-        self.sensor, self.at = sensor, float(run)
-        self.name = per_log_name(sensor)  # type: ignore[misc]
-        self.parameters = tuple(  # type: ignore[misc]
-            Parameter(f"c_{axis}", unit, size, _("of the {axis} reading", axis=axis))
-            for axis in "xyz"
-        )
-        self.sizes = {"usual": size}  # type: ignore[misc]
+        super().__init__(per_log_name(sensor), sensor, run)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         step = np.outer(motion.run == self.at, values)
-        if self.sensor == "gyro":
-            return replace(reading, gyro=reading.gyro + step)
-        return replace(reading, accel=reading.accel + step)
+        return reading.plus(self.sensor, step)
 
 
 def per_log_name(sensor: str) -> str:

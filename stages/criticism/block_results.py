@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
@@ -19,7 +20,7 @@ from inertial.model_selection.cause import (
 )
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
-from inertial.physics.effect import Array, Effect
+from inertial.physics.effect import Effect
 from inertial.sensors import PLURAL, UNITS
 from inertial.tables import AXES
 from inertial.text.cause_names import in_words

@@ -18,7 +18,6 @@ from inertial.sensors import SENSORS
 from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.rivals import MAX_LOG_ODDS, members_of
 from stages.criticism.selection import Selection
-from stages.criticism.temperature_selection import log_evidence
 
 
 def select_beside_drift(
@@ -49,7 +48,7 @@ def select_beside_drift(
 
 def _log_evidence(selection: Selection, level: float) -> float:
     laws = sum(isinstance(effect, Law) for effect in selection.effects)
-    return log_evidence(selection) + laws * float(np.log(level))
+    return selection.log_evidence + laws * float(np.log(level))
 
 
 def _with_alternatives(selection: Selection, other: Selection) -> Selection:

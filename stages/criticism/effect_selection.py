@@ -12,8 +12,8 @@ import numpy as np
 
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
-from inertial.campaign.scatter_of_positions import scattered
-from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, Named
+from inertial.campaign.scatter_given_effects import scattered
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, NamedCauses
 from inertial.model_selection.detection_limits import visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.naming import causes, law_of, with_given
@@ -184,7 +184,7 @@ def _select(
 class _Thinkable:
     """Which members of the named classes would have to be larger than any that is thinkable."""
 
-    named: Named
+    named: NamedCauses
     rest: Evidence
     searched: Sequence[SearchedEffect]
     families: Mapping[str, Sequence[Effect]]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.effects import LAWS
 from inertial.effects.law import ALL, Law, law_name
@@ -26,7 +27,7 @@ from inertial.model_selection.law_evidence import (
 )
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics import laws
-from inertial.physics.effect import Array, Effect
+from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 from inertial.text.parameters import AXES
 from stages.criticism.bias_drift import WALK_WAVES, half_waves

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Orders, log_chance, log_chance_of_own
 from inertial.estimation.periodic_in_time import Line, Taken, phasor, pooled, strongest
@@ -27,8 +28,6 @@ class Detection:
 
 
 # ---- Oscillations of the case while the table turns, in the full-rate residuals of the gyros.
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import (
     MAX_ORDER_SHIFT,
@@ -27,8 +27,6 @@ from inertial.estimation.periodic_in_angle import (
 from inertial.estimation.periodic_in_time import score, score_of_own_frequency
 from inertial.tables import AXES
 from stages.criticism.oscillation_fits import ECCENTRICITY_ORDER, TABLE, Detection, direction
-
-Array = NDArray[np.float64]
 
 TIME, ANGLE = "time", "angle"
 IN_TIME, RIPPLE, ECCENTRICITY = "oscillation", "table_ripple", "table_eccentricity"

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from math import sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import expit
 
+from inertial.arrays import Array
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.effects import CATALOGUE
@@ -28,8 +28,6 @@ from stages.criticism.oscillation_fits import ECCENTRICITY_ORDER, TABLE, TurnLin
 from stages.criticism.oscillation_hypotheses import ECCENTRICITY, IN_TIME, RIPPLE
 from stages.criticism.oscillation_search import Oscillation, SearchResult
 
-Array = NDArray[np.float64]
-
 EFFECTS = (IN_TIME, RIPPLE, ECCENTRICITY)
 SIZES = {IN_TIME: ("amplitude",), RIPPLE: ("a", "b"), ECCENTRICITY: ("a", "b")}
 # A frequency or an order, and two parts: of the search in one turn, or by one a and one b.
@@ -37,7 +35,7 @@ DEGREES = {IN_TIME: 3, RIPPLE: 3, ECCENTRICITY: 2}
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedOscillation:
     """An oscillation with its finding.
 
     `moves`: the largest shift of a parameter by it, in sigma, where it is known.
@@ -83,20 +81,20 @@ class Named:
 
 
 class OscillationResults:
-    """The rows of one mount; `moves`: of each oscillation, as in `Named`."""
+    """The rows of one mount; `moves`: of each oscillation, as in `NamedOscillation`."""
 
     def __init__(
         self, result: SearchResult, mount: str, moves: Sequence[float | None] | None = None
     ) -> None:
         self.result, self.mount = result, mount
-        self.named: list[Named] = []
+        self.named: list[NamedOscillation] = []
         known = moves or [None] * len(result.oscillations)
         for oscillation, moved in zip(result.oscillations, known, strict=True):
             effect = oscillation.effects[0]
             before = sum(other.effect == effect for other in self.named)
             number = [str(before + 1)] if before else []
             finding = finding_id(effect, mount, *number)
-            self.named.append(Named(oscillation, finding, moved))
+            self.named.append(NamedOscillation(oscillation, finding, moved))
 
     def rows(self) -> Iterator[TableRow]:
         """Scores, parameters, detection limits, spectral lines, and findings."""
@@ -108,7 +106,7 @@ class OscillationResults:
             yield from self._finding(named)
         yield from self._lines()
 
-    def _first(self, name: str) -> Named | None:
+    def _first(self, name: str) -> NamedOscillation | None:
         """The first oscillation that is an effect."""
         return next((named for named in self.named if named.effect == name), None)
 
@@ -140,7 +138,7 @@ class OscillationResults:
             "sentence": self._sentence(first.oscillation) if first else self._not_named(name),
         }
 
-    def _finding(self, named: Named) -> Iterator[TableRow]:
+    def _finding(self, named: NamedOscillation) -> Iterator[TableRow]:
         oscillation, ripple, members = named.oscillation, named.ripple, named.oscillation.effects
         several = len(members) > 1
         yield (
@@ -176,7 +174,7 @@ class OscillationResults:
         """The parameters of each oscillation that is this effect; or their detection limits."""
         effect, limit = CATALOGUE[name], limit_of(self.result, name)
         scan = effect.scan
-        own: list[Named | None] = [named for named in self.named if named.effect == name]
+        own: list[NamedOscillation | None] = [named for named in self.named if named.effect == name]
         for named in own or [None]:
             values = _estimates(name, named.oscillation) if named else {}
             described = [(p.name, p.unit, p.meaning) for p in effect.parameters]
@@ -240,7 +238,7 @@ class OscillationResults:
                     if (line.manoeuvre, _axis(line, turn), id(part)) not in listed:
                         yield self._line(line, turn, named)
 
-    def _line(self, line: TurnLine, turn: SteadyTurn, named: Named | None) -> TableRow:
+    def _line(self, line: TurnLine, turn: SteadyTurn, named: NamedOscillation | None) -> TableRow:
         frequency = line.line.frequency
         return "lines", {
             "manoeuvre": line.manoeuvre,

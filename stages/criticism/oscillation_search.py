@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
@@ -42,8 +42,6 @@ from stages.criticism.oscillation_hypotheses import (
     folded,
     hypotheses_of,
 )
-
-Array = NDArray[np.float64]
 
 MAX_MULTIPLE = 10  # of a frequency or an order, that is still the same cause
 MAX_ALIAS_MULTIPLE = 3  # the same beyond half the sample rate

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from math import degrees, exp, pi
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Ripple
 from inertial.text.cause_names import in_words
@@ -237,7 +237,7 @@ def from_angle(size: float) -> str:
     return FROM_ANGLE.format(size=significant(size / ARC_SECOND, 2))
 
 
-def from_angle_by_order(sizes: tuple[float, float, float], orders: NDArray[np.float64]) -> str:
+def from_angle_by_order(sizes: tuple[float, float, float], orders: Array) -> str:
     """A usual size, that of the lowest order and that of the highest, in rad."""
     size, largest, smallest = (significant(each / ARC_SECOND, 2) for each in sizes)
     lowest, highest = (significant(order, 3) for order in orders[[0, -1]])

@@ -9,8 +9,8 @@ from dataclasses import asdict, dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.campaign.equations import Campaign
 from inertial.campaign.hypotheses import MAX_CARRYING
 from inertial.model_selection.cause import UNKNOWN_STRUCTURE
@@ -21,7 +21,7 @@ from inertial.model_selection.structure_tests import (
     Structure,
     structures,
 )
-from inertial.physics.effect import Array, Effect, Parameter, Reading
+from inertial.physics.effect import Effect, Parameter, Reading
 from inertial.physics.motion import Motion
 from inertial.sensors import FILE_KEYS, PLURAL, UNITS
 from inertial.text.cause_names import in_words
@@ -30,8 +30,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant
 from inertial.text.parameters import AXES
 from stages.criticism.finding_rows import ONLY_CONSISTENT, TableRow, finding_id, member_rows, snr_of
-
-Integers = NDArray[np.int64]
 
 PRIOR_SIGMA = 1e4  # of a named effect's parameters, in their typical sizes
 BINS = 60  # of a figure
@@ -60,7 +58,7 @@ class Functions(Effect):
 
 
 @dataclass(frozen=True)
-class Fitted:
+class TestedFit:
     """The fit whose residuals are tested: mount, named effects, manoeuvres used (None: all)."""
 
     campaign: Campaign
@@ -72,7 +70,7 @@ class Fitted:
 class Tested:
     """The six tests of the residuals; `noise_degrees`, `level`: as in `structure_tests`."""
 
-    fitted: Fitted
+    fitted: TestedFit
     noise_degrees: float
     level: float
     tests: Sequence[Structure]
@@ -108,10 +106,10 @@ def structure_tests(
 
     `level`: accepted probability that any detects a structure where there is none.
     """
-    return _tests(Fitted(campaign, named), noise_degrees, level)
+    return _tests(TestedFit(campaign, named), noise_degrees, level)
 
 
-def _tests(fitted: Fitted, noise_degrees: float, level: float) -> Tested:
+def _tests(fitted: TestedFit, noise_degrees: float, level: float) -> Tested:
     equations = [
         equation
         for sensor in FILE_KEYS
@@ -134,7 +132,7 @@ def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
     campaign = tested.fitted.campaign
     names = list(dict.fromkeys(campaign.manoeuvres_of(sensor)))
 
-    def without(some: Sequence[str]) -> Fitted:
+    def without(some: Sequence[str]) -> TestedFit:
         return replace(tested.fitted, only=frozenset(campaign.manoeuvres).difference(some))
 
     def found(some: Sequence[str]) -> list[Structure]:
@@ -154,7 +152,7 @@ def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
     return tuple(left_out)
 
 
-def _explained(fitted: Fitted, test: Structure) -> float:
+def _explained(fitted: TestedFit, test: Structure) -> float:
     """The reduction of χ² by a structure of this shape, its amplitude estimated again."""
     chosen, values = test.values
     assert test.equations is not None  # it is detected
@@ -211,7 +209,7 @@ def _bins(abscissa: Array) -> list[Integers]:
 
 
 def _equations(
-    fitted: Fitted, sensor: str, axis: int, noise_degrees: float
+    fitted: TestedFit, sensor: str, axis: int, noise_degrees: float
 ) -> Iterator[ScoreEquations]:
     campaign = fitted.campaign
     if getattr(campaign.solution, FILE_KEYS[sensor]) is None:
@@ -243,7 +241,7 @@ def _equations(
 
 
 def _residuals(
-    fitted: Fitted, sensor: str, axis: int, functions: Sequence[Array]
+    fitted: TestedFit, sensor: str, axis: int, functions: Sequence[Array]
 ) -> tuple[Array, Array, int]:
     """The residuals, (m,), the functions with all that is fitted removed, (m, k), and the degrees.
 

@@ -63,7 +63,7 @@ def _log_odds(law: Selection, walk: Selection, sensor: str) -> float:
     # Of all its waves: without the fast ones the evidence against a walk would be incomplete.
     known = [effect for effect in law.fitted if effect.name not in only]
     walking = replace(walking, log_evidence=walk_evidence(law.campaign, sensor, known))
-    nothing = walk_odds.Explained(0.0, start)
+    nothing = walk_odds.WeighedExplanation(0.0, start)
     # A walk is as likely beforehand as any one effect: each further cause is penalised for having
     # been chosen.
     further = (len(only) - len(beside) - 1) * float(np.log(len(law.families)))
@@ -110,7 +110,9 @@ def with_further_jumps(selection: Selection) -> Selection:
                 continue
             if cause.effect not in doubtful:
                 rest = selection.equations_without({*doubtful, cause.effect})
-                effect = selection.explained([cause.effect], walk_odds.Explained(0.0, rest))
+                effect = selection.explained(
+                    [cause.effect], walk_odds.WeighedExplanation(0.0, rest)
+                )
                 if effect - _log_evidence_of_jumps(selection, jump, rest) < MAX_LOG_ODDS:
                     doubtful.add(cause.effect)
     causes = tuple(
@@ -147,7 +149,7 @@ def replacing_walk(selection: Selection, number: int) -> float:
     for replaced in [[effect] for effect in own] + [own] * (len(own) > 1):
         start = selection.equations_without(replaced)
         walking = walk_odds.walk(start, selection.half_waves(sensor)).log_evidence
-        law = selection.explained(replaced, walk_odds.Explained(0.0, start))
+        law = selection.explained(replaced, walk_odds.WeighedExplanation(0.0, start))
         if law - walking < MAX_LOG_ODDS:
             others = [effect for effect in selection.effects if effect.name not in replaced]
             if size := likely_random_walk(selection.campaign, sensor, others):

@@ -5,12 +5,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
+from inertial.campaign.shared_tilts import deviance
 from inertial.model_selection import walk_odds
-from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause, Named
+from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause, NamedCauses
 from inertial.model_selection.detection_limits import Visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect
-from inertial.physics.effect import Array, Effect
+from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import biases_of_runs, drift_name, per_log_name
 
@@ -33,7 +35,7 @@ class Selection:
     evidence: Evidence
     searched: Sequence[SearchedEffect]
     families: Mapping[str, Sequence[Effect]]
-    named: Named
+    named: NamedCauses
     limits: Sequence[Visible]
     rivals: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     of_structure: Mapping[str, str] = field(default_factory=dict)
@@ -57,7 +59,19 @@ class Selection:
         drift = next(each for each in self.searched if each.name == drift_name(sensor))
         return drift.candidates[: walk_odds.AXES]
 
-    def explained(self, effects: Collection[str], first: walk_odds.Explained) -> float:
+    @property
+    def log_evidence(self) -> float:
+        """Log evidence of the named effects beside the random walks."""
+        total = self.evidence.observable().total
+        equations = walk_odds.Equations(total.information, total.right)
+        effects = {cause.effect for cause in self.named.causes}
+        return (
+            self.explained(effects, walk_odds.WeighedExplanation(0.0, equations))
+            - deviance(self.campaign) / 2
+            - sum(map(bool, self.random_walks)) * float(np.log(walk_odds.LOG_RANGE))
+        )
+
+    def explained(self, effects: Collection[str], first: walk_odds.WeighedExplanation) -> float:
         """The log evidence of some effects after something else is explained, and of that."""
         own = [searched for searched in self.searched if searched.name in effects]
         scanned = [(searched.candidates, self.prior(searched)) for searched in own]

@@ -32,9 +32,9 @@ from stages.criticism.law_selection import with_laws
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
 from stages.criticism.pooled_evidence import pooled_evidence_rows
-from stages.criticism.position_scatter import select_beside_scatter
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
 from stages.criticism.selection import Selection
+from stages.criticism.set_position_scatter import select_beside_scatter
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_selection import select_with_temperature
 from stages.criticism.without_law import without_law

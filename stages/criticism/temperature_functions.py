@@ -17,8 +17,9 @@ from types import MappingProxyType
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
-from inertial.campaign.scatter_of_positions import PRIOR_SIZE, likely_walk
+from inertial.campaign.scatter_given_effects import PRIOR_SIZE, likely_walk
 from inertial.effects.temperature_model import (
     BEND,
     FUNCTIONS,
@@ -31,7 +32,7 @@ from inertial.effects.temperature_model import (
 from inertial.estimation.temperature import Columns, SensorEquations, best_knots, orders, with_knots
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.drift import without_clock
-from inertial.physics.effect import Array, Effect
+from inertial.physics.effect import Effect
 
 MAX_ROUNDS = 4  # of degrees and knots in turn
 KNOTS = 24  # tried at first

@@ -5,16 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
 from inertial.estimation.regression import Curve, Knee, curve_of, knee_of
 from inertial.text.units import STANDARD_GRAVITY
 
 # ---- Means at temperatures, without time: readings at rest, and scale factors of turns.
 
-Array = NDArray[np.float64]
 
 ACCELEROMETERS, GYROS, SCALE = "accel", "gyro", "scale"
 MIN_SPAN = 5.0  # K, of a sweep of temperatures

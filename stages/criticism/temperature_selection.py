@@ -16,10 +16,8 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.campaign.equations import Campaign
-from inertial.campaign.shared_tilts import deviance
 from inertial.effects import OF_TEMPERATURE_CYCLES
 from inertial.effects.temperature_model import TemperatureModel
-from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
@@ -68,7 +66,7 @@ def select_with_temperature(
     fewer = functions(plain.effects)
     if fewer and _pieces(fewer) < _pieces(models):
         rival = selected(fewer)
-        selection = max(selection, rival, key=log_evidence)
+        selection = max(selection, rival, key=lambda one: one.log_evidence)
     return _weighed(selection, plain)
 
 
@@ -123,7 +121,7 @@ def temperature_models(
 
 def _weighed(functions: Selection, plain: Selection) -> Selection:
     """The likelier selection; where both are as likely, one class of both."""
-    odds = log_evidence(functions) - log_evidence(plain)
+    odds = functions.log_evidence - plain.log_evidence
     if odds > MAX_LOG_ODDS:
         return functions
     if odds < -MAX_LOG_ODDS:
@@ -162,16 +160,3 @@ def _weighed(functions: Selection, plain: Selection) -> Selection:
     if all(one is other for one, other in zip(causes, functions.named.causes, strict=True)):
         return plain  # nothing else is named instead: they are not needed
     return replace(functions, named=replace(functions.named, causes=causes))
-
-
-def log_evidence(selection: Selection) -> float:
-    """Log evidence of the named effects beside the random walks of a selection."""
-    total = selection.evidence.observable().total
-    start = walk_odds.Explained(0.0, walk_odds.Equations(total.information, total.right))
-    effects = {cause.effect for cause in selection.named.causes}
-    walks = sum(1 for size in selection.random_walks if size)
-    return (
-        selection.explained(effects, start)
-        - deviance(selection.campaign) / 2
-        - walks * float(np.log(walk_odds.LOG_RANGE))
-    )

@@ -8,8 +8,8 @@ curve, the residuals counting as noise, and what the curve leaves beyond the sca
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.text.messages import _
 from stages.criticism.finding_rows import TableRow
 from stages.criticism.temperature_models import (
@@ -20,8 +20,6 @@ from stages.criticism.temperature_models import (
     Sweep,
     TemperatureDependence,
 )
-
-Array = NDArray[np.float64]
 
 TEMPERATURES = 41  # of a curve, from the coldest to the warmest
 UNITS = {ACCELEROMETERS: "m/s²", SCALE: "1"}

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.formats.account import Integers
+from inertial.arrays import Array, Booleans, Integers
 from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.formats.columns.data_rows import Rows
@@ -18,7 +18,7 @@ from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
-from stages.decode.decoded import Decoded, Reals, first_of, intervals_of, on_axis
+from stages.decode.decoded import Decoded, first_of, intervals_of, on_axis
 from stages.decode.table_angle import ANGLE_UNITS, Continuous
 
 
@@ -31,8 +31,8 @@ class Stamped:
     """
 
     record: Integers
-    ticks: Reals | Integers
-    repeated: NDArray[np.bool_]
+    ticks: Array | Integers
+    repeated: Booleans
 
     @classmethod
     def of(cls, rows: Rows, sensor: str) -> "Stamped":
@@ -66,7 +66,7 @@ class ArrivalTimes:
         self._record = stamped.record
         self._time = clock.time[np.cumsum(~stamped.repeated) - 1]
 
-    def of(self, record: Integers) -> Reals:
+    def of(self, record: Integers) -> Array:
         """The time of each record, (n,), s; one of the other sensor lies between its neighbours."""
         return np.asarray(np.interp(record, self._record, self._time))
 
@@ -82,7 +82,7 @@ def arrival_times(
     return None if clock is None else ArrivalTimes(stamped, clock, ticks)
 
 
-def _count_size(triad: Mapping[str, Any]) -> Reals:
+def _count_size(triad: Mapping[str, Any]) -> Array:
     """What 1 in a column of a sensor is, SI, one number or (3,)."""
     size = CHANNEL_UNITS[triad["unit"]] / np.asarray(triad.get("counts_per_unit", 1.0))
     return np.asarray(size, np.float64)
@@ -161,7 +161,7 @@ class ColumnLog:
             }
             yield Decoded(samples, reading.refused, reading.account, mean_sigmas=sigmas)
 
-    def _triad(self, sensor: str, key: str, values: Reals) -> dict[str, Reals]:
+    def _triad(self, sensor: str, key: str, values: Array) -> dict[str, Array]:
         triad = self._layout.get(key)
         if triad is None:
             return {}
@@ -171,7 +171,7 @@ class ColumnLog:
         in_units = (values - np.asarray(triad.get("zero_counts", 0.0))) * size
         return dict(on_axis(sensor, axis, in_units[:, i]) for i, axis in self._axes(sensor))
 
-    def _sigmas(self, sensor: str, key: str, values: Reals | None) -> dict[str, Reals]:
+    def _sigmas(self, sensor: str, key: str, values: Array | None) -> dict[str, Array]:
         if values is None:
             return {}
         size = np.broadcast_to(_count_size(self._layout[key]), 3)
@@ -196,7 +196,7 @@ class ColumnLog:
 ZEROS = {1 << (bits - 1): bits for bits in (16, 12, 24)}  # middle of the counts of converters
 
 
-def refuse_unsigned(file: str, sensor: str, triad: Mapping[str, Any], values: Reals) -> None:
+def refuse_unsigned(file: str, sensor: str, triad: Mapping[str, Any], values: Array) -> None:
     """Refuse the first readings of a triad, (n, 3), where their zero is that of unsigned counts.
 
     All three channels then lie in the middle half of a converter's counts: no gyro turns so about
@@ -247,7 +247,7 @@ def refuse_unsigned(file: str, sensor: str, triad: Mapping[str, Any], values: Re
             )
 
 
-def _fits(sensor: str, triad: Mapping[str, Any], usual: Reals, zero: int) -> bool:
+def _fits(sensor: str, triad: Mapping[str, Any], usual: Array, zero: int) -> bool:
     """Whether the usual readings, (3,), make more sense from this zero than from 0."""
     if sensor != "accelerometer" or "counts_per_unit" not in triad:
         return True

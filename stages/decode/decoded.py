@@ -12,6 +12,7 @@ import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from inertial.arrays import Array, Integers
 from inertial.formats.account import Account, RefusedLine
 from inertial.formats.arrow_arrays import (
     array_of_numbers,
@@ -75,8 +76,6 @@ def refuse_grown(path: Path, size: int) -> None:
 
 LOOK_AHEAD = 1000  # samples, where there are as many, of which the interval is the median
 
-Reals = NDArray[np.float64]
-
 
 @dataclass(frozen=True)
 class Decoded:
@@ -87,10 +86,10 @@ class Decoded:
     account: Account
     imu_types: frozenset[int] = frozenset()  # in the messages, by NovAtel's list
     # Of means: the standard deviation of each by channel, (n,), NaN where none is stated; SI.
-    mean_sigmas: Mapping[str, Reals] = field(default_factory=dict)
+    mean_sigmas: Mapping[str, Array] = field(default_factory=dict)
 
 
-def first_of(times: Iterable[NDArray[np.int64] | Reals]) -> NDArray[Any]:
+def first_of(times: Iterable[Integers | Array]) -> NDArray[Any]:
     """The first times of a log, at least `LOOK_AHEAD` where there are as many."""
     so_far: list[NDArray[Any]] = []
     for some in times:
@@ -114,7 +113,7 @@ def intervals_of(times: NDArray[Any]) -> tuple[float | None, float | None]:
     return median, float(np.mean(forward[forward < 1.5 * median]))
 
 
-def on_axis(sensor: str, axis: str, values: Reals) -> tuple[str, Reals]:
+def on_axis(sensor: str, axis: str, values: Array) -> tuple[str, Array]:
     """The channel of a field, (n,), whose body axis and sign are such as -y."""
     return f"{sensor}_{axis[-1]}", -values if axis.startswith("-") else values
 

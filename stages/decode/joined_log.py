@@ -24,13 +24,14 @@ from typing import Any
 
 import numpy as np
 
-from inertial.formats.account import DECODED, NOT_SELECTED, Account, Integers, RefusedLine
+from inertial.arrays import Array, Integers
+from inertial.formats.account import DECODED, NOT_SELECTED, Account, RefusedLine
 from inertial.sensors import FILE_KEYS
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from stages.decode.column_log import ColumnLog
-from stages.decode.decoded import Decoded, Reals
+from stages.decode.decoded import Decoded
 from stages.decode.no_samples import no_samples
 
 MAX_READINGS = 10_000_000  # of a log, held in memory: 480 MB
@@ -47,8 +48,8 @@ class _Readings:
     line, offset : (n,), of their lines in the file
     """
 
-    time: Reals
-    values: Reals
+    time: Array
+    values: Array
     line: Integers
     offset: Integers
     refused: list[RefusedLine]
@@ -172,7 +173,7 @@ class JoinedLog:
         return self._log.began(origin, absolute=absolute) + self._offset
 
 
-def _joined(time: Reals, others: _Readings) -> Reals:
+def _joined(time: Array, others: _Readings) -> Array:
     """The other sensor's readings at the samples of one, (n, 3); NaN where there are none."""
     if np.array_equal(time, others.time):
         return others.values
@@ -199,7 +200,7 @@ def _joined(time: Reals, others: _Readings) -> Reals:
     return joined
 
 
-def _nearest_lines(time: Reals, readings: _Readings) -> dict[str, Integers]:
+def _nearest_lines(time: Array, readings: _Readings) -> dict[str, Integers]:
     """The lines of the readings that are nearest to these times, and their offsets, (n,) each."""
     places = {"line": readings.line, "offset": readings.offset}
     if time is readings.time:
@@ -209,19 +210,19 @@ def _nearest_lines(time: Reals, readings: _Readings) -> dict[str, Integers]:
     return {name: place[ascending[of]] for name, place in places.items()}
 
 
-def _advancing(time: Reals) -> Integers:
+def _advancing(time: Array) -> Integers:
     """Where time advances beyond all that came before, (m,)."""
     former = np.maximum.accumulate(np.append(-np.inf, time[:-1])) if len(time) else time
     return np.flatnonzero(time > former)
 
 
-def _nearest(time: Reals, others: Reals) -> tuple[Integers, Reals]:
+def _nearest(time: Array, others: Array) -> tuple[Integers, Array]:
     """Which of the others, (m,), ascending, is nearest to each time, and how much later, (n,)."""
     of = np.searchsorted((others[1:] + others[:-1]) / 2, time)
     return of, others[of] - time
 
 
-def _means(time: Reals, other_time: Reals, readings: Reals) -> Reals:
+def _means(time: Array, other_time: Array, readings: Array) -> Array:
     """The means of readings, (m, 3), over the intervals of samples, (n, 3); NaN without readings.
 
     Sums up to the ends of the readings' intervals are linear between these.
@@ -245,13 +246,13 @@ def _means(time: Reals, other_time: Reals, readings: Reals) -> Reals:
     return means
 
 
-def _sums(parts: Reals) -> Reals:
+def _sums(parts: Array) -> Array:
     """The sum before and after each part, (2n,)."""
     after = np.cumsum(parts)
     return np.column_stack([after - parts, after]).ravel()
 
 
-def _regular(time: Reals) -> tuple[Reals, Reals]:
+def _regular(time: Array) -> tuple[Array, Array]:
     """The times of the samples by a regular clock, and its intervals, (n,) each, s.
 
     `time` ascends. A stretch of one sample has the interval of the others.
@@ -272,10 +273,10 @@ def _regular(time: Reals) -> tuple[Reals, Reals]:
     return regular, np.where(np.isnan(interval), np.nanmedian(interval), interval)
 
 
-def _usual_interval(time: Reals) -> float:
+def _usual_interval(time: Array) -> float:
     """The interval of most samples, s; NaN where there are not two."""
     return float(np.median(_regular(time[_advancing(time)])[1])) if len(time) > 1 else np.nan
 
 
-def _span(time: Reals) -> str:
+def _span(time: Array) -> str:
     return f"{time.min():.6g} … {time.max():.6g} s" if len(time) else "–"

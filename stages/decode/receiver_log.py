@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.formats.file_type import FileType, file_type_of, refuse_no_log
 from inertial.formats.gps_time import NANOSECONDS, utc
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
-from stages.decode.decoded import Decoded, Reals, first_of, intervals_of, on_axis
+from stages.decode.decoded import Decoded, first_of, intervals_of, on_axis
 
 if TYPE_CHECKING:
     from inertial.formats.novatel import novatel_reader
@@ -67,7 +68,7 @@ class ReceiverLog:
             types_in_messages = frozenset(np.flatnonzero(types).tolist())
             yield Decoded(samples, reading.refused, reading.account, types_in_messages)
 
-    def _rates(self, counts: NDArray[np.int32]) -> dict[str, Reals]:
+    def _rates(self, counts: NDArray[np.int32]) -> dict[str, Array]:
         if self.interval is None:
             return {}
         fields = [(sensor, axis) for sensor in ("accel", "gyro") for axis in self._axes[sensor]]

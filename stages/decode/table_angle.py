@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.formats.columns.encoder_log import Encoder
 from inertial.formats.gps_time import WEEK
-from stages.decode.decoded import Reals, path_of
+from stages.decode.decoded import path_of
 
 ANGLE_UNITS = {"deg": math.radians(1), "rad": 1.0}
 
@@ -21,7 +22,7 @@ class Continuous:
     def __init__(self) -> None:
         self._last = math.nan
 
-    def __call__(self, angle: Reals) -> Reals:
+    def __call__(self, angle: Array) -> Array:
         """The next piece, (n,), rad."""
         result = np.array(angle, dtype=np.float64)
         known = np.flatnonzero(np.isfinite(result))
@@ -59,7 +60,7 @@ class TableAngle:
         """Whether its clock is GPS time."""
         return self.week is not None
 
-    def at(self, time: Reals) -> Reals:
+    def at(self, time: Array) -> Array:
         """The angle at times of the IMU's clock, (n,), rad; NaN where it is not known."""
         began = (self.week or 0) * WEEK + self.offset
         return self.encoder.angle_at(time - began) * self.unit

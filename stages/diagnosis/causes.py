@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from inertial.campaign.explanations import MIN_SPOILING, PER_RUN, Explained
+from inertial.campaign.explanations import MIN_SPOILING, PER_RUN, ExplainedFindings
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,
@@ -81,7 +81,7 @@ class Cause:
     error it is there; `turns`: by how many sigma one of its class turns a sensor's axes.
     """
 
-    members: tuple[Explained, ...]
+    members: tuple[ExplainedFindings, ...]
     sensors: tuple[str, ...]
     cure: str
     done: str
@@ -229,9 +229,9 @@ class Evidence:
     performed: Mapping[str, Performed]
     curves: frozenset[tuple[str, str]] = frozenset()
 
-    def causes(self, explained: Sequence[Explained]) -> list[Cause]:
+    def causes(self, explained: Sequence[ExplainedFindings]) -> list[Cause]:
         """Every cause once: equal faults of one sensor are one."""
-        groups: dict[Any, list[Explained]] = {}
+        groups: dict[Any, list[ExplainedFindings]] = {}
         for number, each in enumerate(explained):
             cause = each.cause
             alone = cause.stage == MODEL or cause.cause in DIFFERENT_THINGS or cause.repair
@@ -239,7 +239,7 @@ class Evidence:
             groups.setdefault(key, []).append(each)
         return [self._cause(tuple(group)) for group in groups.values()]
 
-    def _cause(self, members: tuple[Explained, ...]) -> Cause:
+    def _cause(self, members: tuple[ExplainedFindings, ...]) -> Cause:
         main = max(members, key=lambda m: m.cause.row["severity"]).cause
         own = list(self._own(main))
         cure, moves, drop = self._cure(main, own, members)
@@ -277,7 +277,7 @@ class Evidence:
         return cause.stage == RECORDING and bool(done) and all(each.rate for each in done)
 
     def _cure(
-        self, cause: Hypothesis, own: Sequence[SensorResult], members: Sequence[Explained]
+        self, cause: Hypothesis, own: Sequence[SensorResult], members: Sequence[ExplainedFindings]
     ) -> tuple[str, float | None, float | None]:
         """The cure, the largest shift of a parameter in sigma, and the gain on held-out data."""
         if cause.repair is not None:

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from inertial.campaign.explanations import Explained
+from inertial.campaign.explanations import ExplainedFindings
 from inertial.campaign.hypotheses import MODEL
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.triad import linear_names
@@ -187,7 +187,7 @@ class Estimated:
             self.accelerometer_covariance, self.gyroscope_covariance, self.extension_covariance
         )
 
-    def results(self, explained: Sequence[Explained]) -> Iterator[SensorResult]:
+    def results(self, explained: Sequence[ExplainedFindings]) -> Iterator[SensorResult]:
         """Of every sensor and mount; `explained`: the causes, of which some are alarms."""
         roots = [each.cause.row for each in explained if each.cause.stage == MODEL]
         of_all = rows_of(self.candidates), rows_of(self.candidate_effects)

@@ -12,8 +12,8 @@ from inertial.tables.stage import Stage, Tables
 from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
-from stages.diagnosis.effect_sizes import by_result, sentences, sizes
 from stages.diagnosis.sensor_results import Estimated, SensorResult
+from stages.diagnosis.sizes_of_causes import by_result, sentences, sizes
 from stages.diagnosis.temperature_curves import curve_rows
 from stages.diagnosis.verdict import NOT_USABLE, Verdict, verdict
 

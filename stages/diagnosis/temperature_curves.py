@@ -7,8 +7,8 @@
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.records import Row
 from inertial.effects.temperature_model import (
     BEND,
@@ -21,8 +21,6 @@ from inertial.effects.temperature_model import (
 )
 from inertial.physics.effect import COLDEST, MEAN_TEMPERATURE, WARMEST
 from stages.diagnosis.result import Result
-
-Array = NDArray[np.float64]
 
 TEMPERATURES = 41  # of a curve, from the coldest to the warmest
 PIECES = {piece.name: piece for piece in EVERY}

@@ -12,14 +12,12 @@ from itertools import product
 from math import radians
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.parameters import PARTS
 from stages.export.calibration import PARAMETERS, Triad
-
-Array = NDArray[np.float64]
 
 G = 9.80665  # m/s², by definition
 # Per triad: the truth, its name, and the unit in which the error is stated.

@@ -14,8 +14,8 @@ from statistics import median
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.estimates import UNIT
 from inertial.campaign.measurement import (
     EffectOfResult,
@@ -41,8 +41,6 @@ from inertial.tables import BODY, CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
 from stages.export.examples import Example
-
-Array = NDArray[np.float64]
 
 PARAMETERS = linear_names()  # M − I by rows, then the bias
 MAX_CONDITION = 1e6  # condition number of M; that of three good sensors is 1.01
@@ -83,7 +81,7 @@ class Use:
 
 
 @dataclass(frozen=True)
-class Fitted:
+class Fits:
     """The tables of the fits by all methods."""
 
     fit: pd.DataFrame
@@ -245,7 +243,7 @@ def mounts_of(
     result: pd.DataFrame,
     covariance: pd.DataFrame,
     verdicts: pd.DataFrame,
-    fits: Fitted,
+    fits: Fits,
     examples: Mapping[str, Sequence[Example]],
 ) -> list[Mount]:
     """The result that counts of every mount; `examples`: by mount."""
@@ -277,7 +275,7 @@ def _triad(
     result: SensorResult,
     products: Mapping[tuple[str, str], float],
     verdict: Row | None,
-    fits: Fitted,
+    fits: Fits,
 ) -> Triad:
     rows = result.rows
     determined = [n for n in PARAMETERS if rows.get(n, {}).get("value") is not None]

@@ -12,12 +12,12 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedSeq
 from ruamel.yaml.representer import RoundTripRepresenter
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
+from inertial.arrays import Array
 from inertial.campaign.measurement import EffectOfResult
 from inertial.campaign.records import Part, Row, labels, omissions
 from inertial.tables import BODY, CHANNEL_PARTS, OF_TRIAD
@@ -28,8 +28,6 @@ from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
 from stages.export.equation import added_by, equations
 from stages.export.examples import Example
 from stages.export.filter_noise import FilterNoise, filter_noise
-
-Array = NDArray[np.float64]
 
 FORMAT = "turntable calibration"
 VERSION = 4

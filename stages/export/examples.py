@@ -9,15 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.masked_samples import Masks, Repairs, pieces
 from inertial.campaign.records import Manoeuvre
 from inertial.tables import CHANNELS, STATIC_PHASES
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
-
-Array = NDArray[np.float64]
 
 TURN_PHASES = ("steady", "turning")
 # Where the sensors come in records of their own, a turn is shown by its gyros.

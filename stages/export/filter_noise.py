@@ -28,16 +28,14 @@ from dataclasses import dataclass
 from math import log, pi, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.records import Row
 from inertial.physics.effect import Reading, Truth
 from inertial.physics.motion import stretches
 from inertial.tables import AXES
 from inertial.text.parameters import SENSOR_OF
 from stages.export.calibration import PARAMETERS, Triad, Use
-
-Array = NDArray[np.float64]
 
 G = 9.80665  # m/s², by definition
 FLICKER = 2 * log(2) / pi  # Allan variance of a bias instability of 1 (IEEE Std 952)

@@ -16,7 +16,7 @@ from stages.export.c_header import c_header
 from stages.export.calibration import (
     COMPENSATED,
     Calibration,
-    Fitted,
+    Fits,
     Use,
     epoch_of,
     mounts_of,
@@ -72,7 +72,7 @@ def export(
                 tables["result"],
                 tables["covariance"],
                 tables["verdict"],
-                Fitted(fits, manoeuvres),
+                Fits(fits, manoeuvres),
                 examples_of(plan, tables["blocks"], samples, tables["masks"], repairs),
             ),
         )

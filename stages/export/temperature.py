@@ -14,8 +14,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.measurement import EffectOfResult
 from inertial.physics.effect import COLDEST, MEAN_TEMPERATURE, WARMEST, Reading, Truth
 from inertial.physics.motion import stretches
@@ -24,8 +24,6 @@ from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
 from inertial.text.units import ICE_POINT
 from stages.export.calibration import Calibration, Triad
-
-Array = NDArray[np.float64]
 
 ORDER = 3
 # The constants of effects of temperature, and what was recorded where they have none.

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
-from inertial.campaign.rate_segments import Recorded
+from inertial.campaign.rate_segments import Rotation
 from inertial.estimation import accelerometers
 from inertial.estimation.gyroscope_equations import (
     CLOCK,
@@ -40,7 +40,6 @@ from inertial.sensors import SENSORS
 # with its known sigma; where the bias drifts, that too. Changes within a turn of a gyro are not
 # included.
 
-Array = NDArray[np.float64]
 UNTIMED = Stretch("")
 Errors = dict[tuple[str, str], tuple[Array, float]]  # what the readings change by (3,), and sigma
 
@@ -80,8 +79,6 @@ class Channels:
     def _traces(self) -> list[tuple[Motion, Truth, Array, Array]]:
         """Each stretch: motion, truth, and traces of gyros and accelerometers, (n, 3, k)."""
         campaign = self.campaign
-        motions = [*campaign.gyro_motions]
-        motions += [motion for _, _, motion in campaign.static_forces]
         triads = [campaign.solution.gyro, campaign.solution.accelerometer]
         gyro, accel = (triad or Triad(np.eye(3), np.zeros(3)) for triad in triads)
         responses = signatures(campaign.motion, campaign.solution.site, gyro, accel, self.effects)
@@ -90,7 +87,7 @@ class Channels:
             for s in SENSORS
         ]
         stretches, start = [], 0
-        for motion in motions:
+        for motion in campaign.motions:
             part = slice(start, start + len(motion.rate))
             truth = truth_of(motion, campaign.solution.site)
             stretches.append((motion, truth, traces[0][part], traces[1][part]))
@@ -119,10 +116,9 @@ class Channels:
             name, time = position.manoeuvre.name, float(motion.time[0])
             parts = (known, traces[0], errors, time, rest.stretch or UNTIMED)
             means.append(Mean(name, residual, rest.sigma, *parts))
-        whole = [usable for usable in inputs.usable if usable.plan.recorded == "whole"]
         responses = self._traces[static : static + turns]
         for recorded, turn, (motion, truth, traces, _) in zip(
-            whole, inputs.turns, responses, strict=True
+            inputs.whole_turns, inputs.turns, responses, strict=True
         ):
             means.append(self._of_turn(recorded, turn, motion, truth, traces))
         return means
@@ -133,7 +129,7 @@ class Channels:
         return self.campaign.solution.gyro
 
     def _of_turn(
-        self, recorded: Recorded, turn: RateSegment, motion: Motion, truth: Truth, traces: Array
+        self, recorded: Rotation, turn: RateSegment, motion: Motion, truth: Truth, traces: Array
     ) -> Mean:
         """A turn as a whole; gaps are weighted as the blocks next to them."""
         weight = turn.weights * turn.seconds

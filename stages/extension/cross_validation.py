@@ -22,13 +22,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
+from inertial.arrays import Array
+from inertial.estimation.least_squares import EffectInformation, whitening
 from inertial.sensors import SENSORS
 from stages.extension.models import Models, SensorEvidence
-
-Array = NDArray[np.float64]
 
 MIN_TRAINING_SHARE = 0.5  # of the information
 MIN_TRAINED_CHI_SQUARED = 9.0  # of a combination: 3 sigma
@@ -55,17 +53,9 @@ class Fold:
         return self.kept >= MIN_TRAINING_SHARE
 
 
-def basis_of(information: Array) -> Array:
-    """Combinations of the parameters, (k, m), of which each is known with variance 1."""
-    size = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
-    values, vectors = np.linalg.eigh(information / np.outer(size, size))
-    determined = values > MIN_INFORMATION_SHARE
-    return np.asarray(vectors[:, determined] / np.sqrt(values[determined]) / size[:, None])
-
-
 def snr_squared(whole: EffectInformation) -> float:
     """The squared signal-to-noise ratio of the effects, less what noise adds; at least 0."""
-    basis = basis_of(whole.information)
+    basis = whitening(whole.information)
     along = basis.T @ whole.right
     return max(float(along @ along) - len(along), 0.0)
 
@@ -74,7 +64,7 @@ def fold_of(
     manoeuvres: Sequence[str], whole: EffectInformation, training: EffectInformation | None
 ) -> Fold:
     """Predict `manoeuvres` from the training, which is all but them; None if that is nothing."""
-    basis = basis_of(whole.information)
+    basis = whitening(whole.information)
     information = np.zeros_like(whole.information) if training is None else training.information
     right = np.zeros_like(whole.right) if training is None else training.right
     shares, rotation = np.linalg.eigh(basis.T @ information @ basis)

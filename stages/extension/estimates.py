@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
@@ -25,7 +25,6 @@ from stages.extension.selected_sizes import SelectedSizes
 
 # ---- The parameters of a model with effects, their covariance, and how well it fits.
 
-Array = NDArray[np.float64]
 Row = Mapping[str, Any]
 
 NOT_DETERMINED = _("with the effects in the model the manoeuvres do not determine it")

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.least_squares import EffectInformation, System
 from inertial.estimation.periodic_in_time import without_line
@@ -19,7 +19,6 @@ from stages.extension.channels import Channels, Mean, system_of
 from stages.extension.cross_validation import CrossValidation, Fold, drop_of, fold_of, snr_squared
 from stages.extension.models import Models, with_columns
 
-Array = NDArray[np.float64]
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a row of it
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.effect_evidence import MIN_OBSERVABLE_SIGMAS
 from inertial.campaign.equations import Campaign
 from inertial.estimation.least_squares import (
@@ -16,8 +16,6 @@ from inertial.estimation.least_squares import (
     System,
 )
 from inertial.physics.effect import Effect
-
-Array = NDArray[np.float64]
 
 PRIOR_SIGMA = 1e4  # of an effect's parameters, in their typical sizes
 

@@ -36,7 +36,7 @@ class NamedClass:
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedEffects:
     """The named effects of one mount.
 
     `classes`: of the effects that equations can hold; `in_spectrum`: the parameters of the others
@@ -53,7 +53,7 @@ def named_of(
     members: Iterable[Row],
     positions: Iterable[Row],
     mount: str,
-) -> Named:
+) -> NamedEffects:
     """The findings of a mount, with the parameters in `effects` and the `members` of classes.
 
     `positions`: at which a finding about a single position may be.
@@ -76,7 +76,7 @@ def named_of(
             first.setdefault(row["cause"], row["id"])
             if row["threshold"] is not None:
                 by_size[row["id"]] = selected(row["statistic"], row["degrees"], row["threshold"])
-    return Named(
+    return NamedEffects(
         tuple(
             replace(
                 _class_of(name, finding, values.get(finding, {}), of_class.get(finding, ())),

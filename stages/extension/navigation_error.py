@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.effects import KNOWN
 from inertial.estimation.triad import UNKNOWNS, linear_names
@@ -30,7 +30,6 @@ from stages.extension.estimates import Solved
 # errors over short times; Groves, Principles of GNSS, Inertial, and Multisensor Integrated
 # Navigation Systems, 2nd ed. 2013, on short-term straight-line error propagation.
 
-Array = NDArray[np.float64]
 
 SECONDS = 60.0
 
@@ -127,16 +126,15 @@ def worth(
 
 def _parts(campaign: Campaign) -> dict[str, dict[str, list[int]]]:
     """Manoeuvre → sensor → the places of its stretches among all stretches of the campaign."""
-    whole = [r.plan.name for r in campaign.inputs.usable if r.plan.recorded == "whole"]
+    whole = [turn.plan.name for turn in campaign.inputs.whole_turns]
     names = [("gyro", position.manoeuvre.name) for position in campaign.inputs.static_positions]
     names += [("gyro", name) for name in whole[: len(campaign.turn_motions)]]
     names += [("gyro", name) for name, _, _ in campaign.steady_rates]
     names += [("gyro", name) for name in (campaign.by_hand.moving if campaign.by_hand else ())]
     names += [("accel", name) for name, _, _ in campaign.static_forces]
-    motions = [*campaign.gyro_motions, *(motion for _, _, motion in campaign.static_forces)]
     parts: dict[str, dict[str, list[int]]] = {}
     start = 0
-    for (sensor, name), motion in zip(names, motions, strict=True):
+    for (sensor, name), motion in zip(names, campaign.motions, strict=True):
         after = start + len(motion.rate)
         if campaign.by_hand and name in campaign.by_hand.moving:
             start = after

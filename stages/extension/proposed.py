@@ -18,7 +18,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth, by_grade
+from inertial.arrays import Array
+from inertial.physics.effect import Effect, Parameter, Reading, Truth, by_grade
 from inertial.physics.laws import functions, unknown
 from inertial.physics.motion import Motion
 from inertial.text.messages import _

@@ -15,10 +15,11 @@ from types import MappingProxyType
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.mixture import mixture
 from inertial.estimation.triad import UNKNOWNS
-from inertial.physics.effect import Array, Effect, Parameter, Reading, Truth
+from inertial.physics.effect import Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Solved
 from stages.extension.models import PRIOR_SIGMA, compressed, with_columns

@@ -14,15 +14,12 @@ from functools import reduce
 from operator import add
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.estimation.least_squares import EffectInformation, Estimate, System
+from inertial.arrays import Array
+from inertial.estimation.least_squares import EffectInformation, Estimate, System, whitening
 from inertial.model_selection.size_after_selection import corrected, regressed
-from stages.extension.cross_validation import basis_of
 from stages.extension.models import SensorEvidence
 from stages.extension.named_effects import NamedClass
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -57,7 +54,7 @@ class SelectedSizes:
         whole = _of(effects, tuple(dict.fromkeys((*own, *self.names)))).information
         column = {name: i for i, name in enumerate(dict.fromkeys((*own, *self.names)))}
         mine, named = [column[name] for name in own], [column[name] for name in self.names]
-        basis = basis_of(whole[np.ix_(mine, mine)])
+        basis = whitening(whole[np.ix_(mine, mine)])
         return np.asarray(basis @ (basis.T @ whole[np.ix_(mine, named)]))
 
 

@@ -12,7 +12,7 @@ from inertial.campaign.equations import Campaign
 from inertial.campaign.estimates import switch_on_columns
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import rows_of
-from inertial.campaign.scatter_of_positions import scattered
+from inertial.campaign.scatter_given_effects import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
@@ -36,7 +36,7 @@ from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved, unseen_components
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.models import PRIOR_SIGMA, Models, given, models_of, with_columns
-from stages.extension.named_effects import Named, named_of
+from stages.extension.named_effects import NamedEffects, named_of
 from stages.extension.navigation_error import change_of, worth
 from stages.extension.proposed import proposed_rows
 from stages.extension.scanned_values import over_moments, with_scanned_values
@@ -145,7 +145,7 @@ class Extension:
     def __init__(
         self,
         data: CampaignData,
-        named: Named,
+        named: NamedEffects,
         joint: Mapping[str, Joint],
         random_walks: tuple[float, float],
         replaced: Sequence[str],

@@ -18,6 +18,7 @@ from math import prod
 import numpy as np
 from scipy.special import logsumexp
 
+from inertial.arrays import Array
 from inertial.effects.temperature_model import (
     BEND,
     BENDS,
@@ -31,7 +32,7 @@ from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.mixture import mixture
 from inertial.estimation.triad import UNKNOWNS
 from inertial.model_selection.effect_classes import log_evidence
-from inertial.physics.effect import Array, Effect
+from inertial.physics.effect import Effect
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Row, Solved
 from stages.extension.models import compressed, with_columns

@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import Motion
@@ -20,7 +20,6 @@ from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import quantity
 from stages.extension.estimates import Solved
 
-Array = NDArray[np.float64]
 Row = Mapping[str, Any]
 
 MAX_COOLING = 1.0  # K below the warmest so far, in a campaign that warms up

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Booleans
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
@@ -65,7 +65,7 @@ def gyroscope(
     return {**collected.tables(), "findings": table_of(raised)}
 
 
-def _channels(inputs: GyroInputs) -> NDArray[np.bool_]:
+def _channels(inputs: GyroInputs) -> Booleans:
     """Which gyros are in the logs, (3,)."""
     readings = [rest.mean for rest in inputs.static_rates]
     readings += [steady.mean for steady in inputs.steady_rates]

@@ -8,8 +8,8 @@ from math import pi
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.differences import Difference
 from inertial.campaign.measurement import SensorResult
 from inertial.campaign.records import Row, rows_of
@@ -19,8 +19,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import fixed, whole
 from inertial.text.parameters import PARTS, SCALE
 from inertial.text.units import PPM
-
-Array = NDArray[np.float64]
 
 KIND = "fencepost"
 MIN_AXES = 2  # axes, for what is in common

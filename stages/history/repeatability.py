@@ -6,9 +6,10 @@ from datetime import date, timedelta
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.records import Row
+from inertial.estimation.calibration_components import Component, components
 from inertial.estimation.history_of_values import (
     MIN_VALUES,
     History,
@@ -18,13 +19,10 @@ from inertial.estimation.history_of_values import (
     jump,
     predicted,
 )
-from inertial.estimation.repeatability import Component, components
 from inertial.tables import AXES, STATIC_PHASES, UNITS
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.parameters import JOINT, PARTS
-
-Array = NDArray[np.float64]
 
 YEAR = 365.25  # days
 LEAST_OWN = 1e-3  # of a sigma: no less than rounding leaves where nearly all is a reference's

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, measurement_of
 from inertial.campaign.records import Row
@@ -30,7 +30,6 @@ from inertial.sensors import SENSORS
 from inertial.tables import ACCEL, GYRO
 from inertial.text.parameters import BIAS, PARTS
 
-Array = NDArray[np.float64]
 Source = tuple[str, str]  # family and source, as in the table of shares
 
 QUANTITIES = {"attitude": ATTITUDE, "velocity": VELOCITY, "position": POSITION}
@@ -167,7 +166,7 @@ class Corridor:
 
 
 @dataclass(frozen=True)
-class Stretch:
+class NavigatedStretch:
     """What is navigated: readings in n steps, or one that stands for all of them.
 
     `at_rest`, `moving`: (1, 6) and (n, 6), recorded, forces first; `time`, s, `temperature`, K: of
@@ -204,7 +203,7 @@ def _corrected(measurement: Measurement, variance: Array) -> Array:
 
 
 def corridor(
-    data: CampaignData, result: Uncertain, stretch: Stretch, after: Sequence[int]
+    data: CampaignData, result: Uncertain, stretch: NavigatedStretch, after: Sequence[int]
 ) -> Corridor:
     """The errors that are expected after some of its steps, (k,) ascending.
 

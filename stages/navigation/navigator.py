@@ -6,9 +6,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from inertial.arrays import Array, Integers
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import position_of
 from inertial.campaign.records import Manoeuvre, Part, Row, with_mount
@@ -20,16 +20,13 @@ from inertial.text.messages import _
 from stages.navigation.corridor import (
     QUANTITIES,
     Corridor,
+    NavigatedStretch,
     Source,
-    Stretch,
     Uncertain,
     corridor,
     white_of,
 )
 from stages.navigation.windows import ALIGNMENT, HORIZONS, Readings
-
-Array = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 STEP_IN_TURN = 0.1  # s, at least, in which errors grow in a turn; at rest steps may be long
 STEPS_OF_A_TURN = 200  # at most: in 360° less than 2° each
@@ -159,7 +156,7 @@ class Navigator:
             runs[name] = Run(start, values[each.aligned :], step, self.site.gravity)
         return runs
 
-    def _turn(self, each: Readings, runs: Mapping[str, Run], stretch: Stretch) -> None:
+    def _turn(self, each: Readings, runs: Mapping[str, Run], stretch: NavigatedStretch) -> None:
         """A whole turn: after it, everything is as it was."""
         m, samples = each.window.manoeuvre, len(each.recorded) - each.aligned
         every = max(round(STEP_IN_TURN / each.window.step), -(-samples // STEPS_OF_A_TURN), 1)
@@ -186,7 +183,12 @@ class Navigator:
         self._add(each.window.part, "turn", seconds, stretch.azimuth, expected, runs, steps * every)
 
     def _errors(
-        self, part: Part, horizon: float, stretch: Stretch, runs: Mapping[str, Run], after: int
+        self,
+        part: Part,
+        horizon: float,
+        stretch: NavigatedStretch,
+        runs: Mapping[str, Run],
+        after: int,
     ) -> None:
         self._navigated.add((part.label, horizon))
         expected = corridor(self.data, self.known, replace(stretch, step=horizon), [1])
@@ -221,7 +223,9 @@ class Navigator:
             for source, variance in expected.shares(quantity).items():
                 total[source] = total.get(source, 0.0) + float(variance[0])
 
-    def _course(self, part: Part, stretch: Stretch, runs: Mapping[str, Run], samples: int) -> None:
+    def _course(
+        self, part: Part, stretch: NavigatedStretch, runs: Mapping[str, Run], samples: int
+    ) -> None:
         """The errors of the longest window against time."""
         step = runs["calibrated"].step
         every = max(samples // POINTS, 1)
@@ -316,9 +320,11 @@ class Navigator:
         readings = (mean.recorded[None], mean.time * one, one, mean.temperature * one)
         return np.asarray(self.known.slopes(*readings)[0])
 
-    def _resting(self, m: Manoeuvre, mean: Mean, start: Start, alignment: float) -> Stretch:
+    def _resting(
+        self, m: Manoeuvre, mean: Mean, start: Start, alignment: float
+    ) -> NavigatedStretch:
         """A rest whose mean stands for alignment and navigation; the step is set by who uses it."""
-        return Stretch(
+        return NavigatedStretch(
             manoeuvre=m.name,
             at_rest=mean.recorded[None],
             moving=mean.recorded[None],

@@ -6,16 +6,14 @@ from math import ceil
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.masked_samples import Columns, Repairs, pieces
 from inertial.campaign.records import Manoeuvre, Part, rows_of
 from inertial.tables import CHANNELS, STATIC_PHASES
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
-
-Array = NDArray[np.float64]
 
 HORIZONS = (60.0, 600.0)  # s
 ALIGNMENT = 60.0  # s at rest before, where there is room for it

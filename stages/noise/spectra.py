@@ -4,14 +4,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.estimation.spectrum import NoiseShape, in_band, level_of_pieces, shape_of
 from inertial.sensors import COLUMNS
 from inertial.signal.scatter import smallest_step
-
-Array = NDArray[np.float64]
 
 MIN_SAMPLES = 16  # fewer give no level
 

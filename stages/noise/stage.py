@@ -5,9 +5,9 @@ from itertools import chain, pairwise, product
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array, Integers
 from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
@@ -17,8 +17,6 @@ from inertial.tables.stage import Stage, Tables
 from stages.noise.declared import DECLARED
 from stages.noise.spectra import Spectra, shapes_of
 from stages.noise.static_stretches import StaticStretches
-
-Array = NDArray[np.float64]
 
 MAX_SAMPLES = 32768  # of one periodogram: bounds the memory of a long log
 PHASES = {"rest": "rest", "rest-before": "rest", "rest-after": "rest", "steady": "steady"}
@@ -154,7 +152,7 @@ def _stated_levels(blocks: pd.DataFrame, mean_sigmas: pd.DataFrame) -> dict[_Lev
 
 def _unbroken(
     recorded: MaskedSamples, gaps: pd.DataFrame
-) -> Iterator[tuple[str, NDArray[np.int64], Array, bool]]:
+) -> Iterator[tuple[str, Integers, Array, bool]]:
     """Records of one log without a gap or a masked record between them.
 
     Log, numbers, values, and whether they continue those before.

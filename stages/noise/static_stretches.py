@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.noise_levels import drift_of
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
 from inertial.estimation.multiresolution import MIN_WHOLE, Powers
@@ -23,9 +23,8 @@ from inertial.estimation.welch import Spectrum, WelchSums, segment_for
 from inertial.sensors import COLUMNS
 from inertial.tables import AXES
 
-Array = NDArray[np.float64]
 Row = dict[str, Any]
-Stretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
+StaticStretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
 
 SAME_INTERVAL = 1e-3  # relative difference of sampling intervals that are alike
 SAME_SCATTER = 1.5  # ratio of scatters that are alike
@@ -51,7 +50,7 @@ class _Pool:
     sums: AllanSums
     powers: Powers
     welch: WelchSums
-    stretch: Stretch | None = None
+    stretch: StaticStretch | None = None
     samples: int = 0
 
     @classmethod
@@ -75,7 +74,7 @@ class _Pool:
             WelchSums(channels, interval, segment_for([longest])),
         )
 
-    def add(self, stretch: Stretch, values: Array) -> None:
+    def add(self, stretch: StaticStretch, values: Array) -> None:
         if stretch != self.stretch:
             self.end()
             self.stretch = stretch
@@ -113,7 +112,7 @@ class StaticStretches:
     longest: int
     _pools: list[_Pool] = field(default_factory=list)
 
-    def add(self, stretch: Stretch, values: Array, interval: float) -> None:
+    def add(self, stretch: StaticStretch, values: Array, interval: float) -> None:
         """The next samples (n, 6) of a stretch; NaN where a channel, or a sensor, is not there."""
         for sensor, columns in COLUMNS.items():
             part = values[:, columns]
@@ -128,7 +127,7 @@ class StaticStretches:
 
     def _pool(
         self,
-        stretch: Stretch,
+        stretch: StaticStretch,
         sensor: str,
         recorded: tuple[bool, ...],
         interval: float,

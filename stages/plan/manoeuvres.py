@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from inertial import tables
-from inertial.physics.motion import Array, Profile, turned
+from inertial.arrays import Array
+from inertial.physics.motion import Profile, turned
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE, ICE_POINT, in_si

@@ -6,21 +6,18 @@ from math import degrees
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans, Integers
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.signal.detector import channel_name
-from inertial.signal.rests_and_motions import Stretch
+from inertial.signal.rests_and_motions import BinStretch
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
 from inertial.text.numbers import fixed
 from inertial.text.units import STANDARD_GRAVITY
-from stages.segment.explanations import Explained
 from stages.segment.matching import AS_NAMED, Located, motion
+from stages.segment.recording_explanations import ExplainedRecording
 from stages.segment.windows import Binned, rate_about
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 MAX_MISSING_RUN = 3  # samples in a row that may be interpolated where the rate changes
 MAX_MISSING_SHARE = 0.1  # of the time of the ramps, or of a turn: what may be interpolated in all
@@ -84,7 +81,7 @@ def _few_are_masked(moving: pd.DataFrame, missing: Missing, gaps: pd.DataFrame) 
     )
 
 
-def _hindrance(moving: pd.DataFrame, holes: NDArray[np.int64], inside: Booleans) -> str:
+def _hindrance(moving: pd.DataFrame, holes: Integers, inside: Booleans) -> str:
     """Why what is missing before the blocks `holes` cannot be bridged; empty where it can."""
     missing = moving["missing_s"].to_numpy(np.float64)
     seconds = moving["seconds"].to_numpy(np.float64)
@@ -137,7 +134,9 @@ def not_found(m: Manoeuvre) -> Performed:
     return Performed(m.name, sentence, found=False, complete=False)
 
 
-def left_out(explained: Explained, plan: Sequence[Manoeuvre]) -> Iterator[tuple[str, Performed]]:
+def left_out(
+    explained: ExplainedRecording, plan: Sequence[Manoeuvre]
+) -> Iterator[tuple[str, Performed]]:
     """Manoeuvres that are found otherwise than planned, so that only the laboratory can decide.
 
     They bear another's name, or stand in its place, or their log alone has axes that are taken
@@ -182,7 +181,7 @@ def positions(m: Manoeuvre, number: int) -> Performed:
     return Performed(m.name, sentence, found=number > 0, complete=number > 0)
 
 
-def rest(binned: Binned, m: Manoeuvre, stretch: Stretch) -> Performed:
+def rest(binned: Binned, m: Manoeuvre, stretch: BinStretch) -> Performed:
     """A rest and its duration."""
     seconds = binned.duration(stretch.first, stretch.after)
     if not np.isfinite(binned.first_s[stretch.first]):

@@ -6,10 +6,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.detection import Examination, ExaminationOfStretches
 from inertial.campaign.findings import Detection, Finding, detections_of
+from inertial.campaign.log_lines import RecordRange
 from inertial.campaign.masked_samples import Batch, Masks
 from inertial.campaign.records import Manoeuvre, Performed, rows_of
 from inertial.signal.detector import Detector, Event, Given, Log
@@ -23,11 +24,10 @@ from inertial.signal.plan_detector import (
     Swapped,
 )
 from inertial.tables import STATIC_PHASES
-from stages.segment.explanations import Explained, unlike
 from stages.segment.matching import AS_PLANNED, Located, Part, motion
+from stages.segment.recording_explanations import ExplainedRecording, unlike
 from stages.segment.steps import BY_GRAVITY, Exchanged, axes_step, exchange_step
 
-Array = NDArray[np.float64]
 UNKNOWN = np.full(3, np.nan)
 
 
@@ -63,7 +63,7 @@ class Recording:
 
 def recorded_of(
     plan: Sequence[Manoeuvre],
-    explained: Explained,
+    explained: ExplainedRecording,
     undone: Undone,
     recording: Recording,
     given: Given,
@@ -190,7 +190,7 @@ def _shown(m: Manoeuvre, located: Located) -> tuple[Array | None, Array | None]:
     return None if before is None else located.observed[before].force, turned
 
 
-def swapped_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Swapped]:
+def swapped_in(plan: Sequence[Manoeuvre], explained: ExplainedRecording) -> list[Swapped]:
     """Exchanged manoeuvres, in each pair that first which the plan has earlier."""
     return [in_order(exchanged, plan) for exchanged in explained.exchanged]
 
@@ -205,7 +205,7 @@ def in_order(exchanged: Exchanged, plan: Sequence[Manoeuvre]) -> Swapped:
     return Swapped(later_first, exchanged.logs[::-1], repair)
 
 
-def misread_in(plan: Sequence[Manoeuvre], explained: Explained) -> list[Misread]:
+def misread_in(plan: Sequence[Manoeuvre], explained: ExplainedRecording) -> list[Misread]:
     """The sensors whose axes are others than those of the plan, and the logs where they are."""
     found = []
     for sensor, axes in unlike(explained.everywhere, AS_PLANNED):
@@ -311,7 +311,7 @@ class ExaminationOfRests:
         given = next((log.given for log in self._logs.values()), None)
         self._examination = ExaminationOfStretches(
             Examination(detectors, self._logs, given),
-            {name: (part.log, part.first, part.after) for name, part in rests.items()},
+            {name: RecordRange(part.log, part.first, part.after) for name, part in rests.items()},
             masks,
         )
         self.columns = self._examination.columns

@@ -8,21 +8,18 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.rests_and_motions import (
-    Stretch,
+    BinStretch,
     moving,
     steady_part,
     stretches,
     with_slow_ends,
 )
 from stages.segment.windows import Binned
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 MAX_MOUNTING_ANGLE = np.radians(25)  # how far an IMU may be mounted from the planned direction
 FAR_LESS = 0.5  # by which share a rest at that angle fits less than one in the planned direction
@@ -149,12 +146,12 @@ class Observation:
     unsure: Array
 
 
-def observe(binned: Binned, stretches: Sequence[Stretch], level: Array) -> list[Observation]:
+def observe(binned: Binned, stretches: Sequence[BinStretch], level: Array) -> list[Observation]:
     """What each stretch of a window shows; `level` is what the gyros read at rest."""
     return [_observation(binned, stretch, level) for stretch in stretches]
 
 
-def _observation(binned: Binned, stretch: Stretch, level: Array) -> Observation:
+def _observation(binned: Binned, stretch: BinStretch, level: Array) -> Observation:
     inside = slice(stretch.first, stretch.after)
     rates, seconds = binned.rates[inside] - level, binned.seconds[inside]
     mean, number = _mean(rates), np.isfinite(rates).sum(axis=0)
@@ -201,7 +198,7 @@ def match(
     return {m.name: place for m, place in zip(sought, places, strict=True)}
 
 
-def motion(binned: Binned, stretches: Sequence[Stretch], place: int) -> tuple[int, int]:
+def motion(binned: Binned, stretches: Sequence[BinStretch], place: int) -> tuple[int, int]:
     """The bins of a turn; in a window of its own it is all that moves, pauses included."""
     if binned.window.alone:
         moves = [stretch for stretch in stretches if stretch.moves]
@@ -209,7 +206,7 @@ def motion(binned: Binned, stretches: Sequence[Stretch], place: int) -> tuple[in
     return stretches[place].first, stretches[place].after
 
 
-def rest_part(binned: Binned, stretch: Stretch, name: str, margin: float) -> Part:
+def rest_part(binned: Binned, stretch: BinStretch, name: str, margin: float) -> Part:
     """A rest without the margin beside a motion."""
     room = binned.bins_in(margin)
     first = stretch.first + (room if stretch.first > 0 else 0)
@@ -220,7 +217,7 @@ def rest_part(binned: Binned, stretch: Stretch, name: str, margin: float) -> Par
 
 def position_parts(
     binned: Binned,
-    stretches: Sequence[Stretch],
+    stretches: Sequence[BinStretch],
     m: Manoeuvre,
     matched: Mapping[str, int | None],
     margin: float,
@@ -243,14 +240,14 @@ def between_parts(rests: Sequence[Part]) -> Iterator[Part]:
             yield Part(name, BETWEEN, before.log, before.after, behind.first)
 
 
-def _first_of(rest: Stretch, room: int, shared: bool) -> int:
+def _first_of(rest: BinStretch, room: int, shared: bool) -> int:
     """Where the rest before a turn begins; the turn before it, if any, has the first half."""
     if shared:
         return (rest.first + rest.after) // 2
     return min(rest.first + (room if rest.first > 0 else 0), rest.after)
 
 
-def _after_of(rest: Stretch, room: int, shared: bool, bins: int) -> int:
+def _after_of(rest: BinStretch, room: int, shared: bool, bins: int) -> int:
     """Where the rest after a turn ends; the turn behind it, if any, has the second half."""
     if shared:
         return (rest.first + rest.after) // 2
@@ -259,7 +256,7 @@ def _after_of(rest: Stretch, room: int, shared: bool, bins: int) -> int:
 
 def turn_parts(
     binned: Binned,
-    stretches: Sequence[Stretch],
+    stretches: Sequence[BinStretch],
     m: Manoeuvre,
     matched: Mapping[str, int | None],
     level: Array,
@@ -331,7 +328,7 @@ class Division:
     """A window cut into stretches that move or rest, in one way or another."""
 
     binned: Binned
-    ways: Sequence[tuple[Sequence[Stretch], Sequence[Observation]]]
+    ways: Sequence[tuple[Sequence[BinStretch], Sequence[Observation]]]
 
 
 @dataclass(frozen=True)
@@ -344,7 +341,7 @@ class Located:
     binned: Binned
     axes: Axes
     plan: Sequence[Manoeuvre]
-    stretches: Sequence[Stretch]
+    stretches: Sequence[BinStretch]
     observed: Sequence[Observation]
     matched: Mapping[str, int | None]
 

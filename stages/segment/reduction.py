@@ -4,17 +4,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from inertial import tables
-from inertial.campaign.masked_samples import Batch, Booleans, Integers, Masks, regular
+from inertial.arrays import Array, Booleans, Integers
+from inertial.campaign.masked_samples import Batch, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.static_positions import ENCODER
 from inertial.campaign.sums import EdgesOver, ExtremesOver, SumsOver, TimesOver
 from inertial.tables import STATIC_PHASES
 from stages.segment.matching import BETWEEN, Part
-
-Floats = NDArray[np.float64]
 
 TRACE_POINTS = 1200  # per log, what a figure shows
 
@@ -30,7 +28,7 @@ class _Spans:
         }
         self.stretches = {log: (first[place], after[place]) for log, place in self.places.items()}
 
-    def in_order(self, by_log: Mapping[str, Floats]) -> Floats:
+    def in_order(self, by_log: Mapping[str, Array]) -> Array:
         """The sums of all logs, (k,) or (k, 6) each, in the order of the spans."""
         both = np.concatenate(list(by_log.values()))
         places = np.concatenate([self.places[log] for log in by_log])
@@ -135,7 +133,7 @@ class Blocks(SumsOver):
             return tables.BLOCKS.empty()
         sums = self.result()
 
-        def column(name: str) -> Floats:
+        def column(name: str) -> Array:
             return self._spans.in_order({log: getattr(own, name) for log, own in sums.items()})
 
         encoder = self._encoder.result()
@@ -234,7 +232,7 @@ def _clipped(parts: Sequence[Part], masks: Masks) -> dict[tuple[str, str], Boole
     return clipped
 
 
-def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Floats:
+def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Array:
     """The time that is missing before each block of a turn, (k,), s; negative where time goes back.
 
     By the stamps; where they give a whole number of samples within their own scatter, that.

@@ -8,9 +8,9 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre, Row
 from inertial.sensors import PLURAL
@@ -21,8 +21,13 @@ from inertial.signal.plan_detector import Misread, Rescaled, Reversed, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from stages.segment.detection import Undone, in_order, misread_in, swapped_in
-from stages.segment.explanations import Explained, explained_of, turned_back, unlike
 from stages.segment.matching import AS_NAMED, AS_PLANNED
+from stages.segment.recording_explanations import (
+    ExplainedRecording,
+    explained_of,
+    turned_back,
+    unlike,
+)
 from stages.segment.repair_readings import (
     Scale,
     axes_by_gravity,
@@ -43,8 +48,6 @@ from stages.segment.steps import (
     where,
 )
 from stages.segment.windows import Binned
-
-Array = NDArray[np.float64]
 
 MOUNTING = _("the IMU may be mounted turned against the plan, which reads the same")
 
@@ -85,7 +88,7 @@ class SetRight:
 
     plan: Sequence[Manoeuvre]
     level: Array
-    explained: Explained
+    explained: ExplainedRecording
     rows: Sequence[Row]
     channels: Sequence[Row]
     undone: Undone
@@ -247,7 +250,7 @@ class _Campaign:
         return sense_in_words(step.turns)
 
     def _axes_everywhere(
-        self, explained: Explained, fitting: tuple[int, int, int]
+        self, explained: ExplainedRecording, fitting: tuple[int, int, int]
     ) -> Iterator[Row]:
         """Axes that are others in all logs."""
         axes = explained.everywhere
@@ -269,7 +272,9 @@ class _Campaign:
                 self._misread.append(replace(each, undone=True))
                 yield from self._axes(step, each, each.axes)
 
-    def _axes_of_logs(self, explained: Explained, fitting: tuple[int, int, int]) -> Iterator[Row]:
+    def _axes_of_logs(
+        self, explained: ExplainedRecording, fitting: tuple[int, int, int]
+    ) -> Iterator[Row]:
         """Axes that are others in single logs."""
         for each in misread_in(self._plan, explained):
             if not each.log:
@@ -293,7 +298,7 @@ class _Campaign:
                 yield _channel(step.id, log, misread.sensor, axis, source, sign)
 
     def _plan_as_found(
-        self, explained: Explained, fitting: tuple[int, int, int]
+        self, explained: ExplainedRecording, fitting: tuple[int, int, int]
     ) -> list[Manoeuvre]:
         """The plan with exchanged manoeuvres in their places, and turns the other way."""
         plan = list(self._plan)
@@ -415,7 +420,7 @@ def _scale_step(scale: Scale) -> Step:
     return Step("/".join(["count_size", scale.sensor, *place]), "count_size", scale.sensor)
 
 
-def _by_mounting(explained: Explained) -> bool:
+def _by_mounting(explained: ExplainedRecording) -> bool:
     """Whether the axes of both sensors may be right, and the IMU is mounted otherwise.
 
     Both triads are then turned alike; where only one is seen, the other one may be.

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import Permutation
@@ -25,13 +25,10 @@ from inertial.signal.scale_factor import (
     factors_near,
 )
 from inertial.text.messages import _
-from stages.segment.explanations import Explained
 from stages.segment.matching import AS_NAMED, Located, motion
+from stages.segment.recording_explanations import ExplainedRecording
 from stages.segment.steps import BY_GRAVITY, Step, axes_step
 from stages.segment.windows import Binned
-
-Array = NDArray[np.float64]
-
 
 # ---- Axes and signs by which the gyros turn gravity as the accelerometers see it, without a plan.
 
@@ -131,7 +128,7 @@ class Scale:
 
 
 def scales_of(
-    explained: Explained,
+    explained: ExplainedRecording,
     level: Array,
     given: Given,
     counts: Mapping[str, Mapping[str, float]],
@@ -253,7 +250,7 @@ class Restated:
     names: Sequence[str]
 
 
-def rates_of(explained: Explained, level: Array, tolerance: float) -> Restated | None:
+def rates_of(explained: ExplainedRecording, level: Array, tolerance: float) -> Restated | None:
     """The turns whose rate alone is misstated, if it is so by one ratio."""
     off = [
         one

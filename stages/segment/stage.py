@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.findings import Detection, close_ups, table_of
 from inertial.campaign.log_properties import Stated, records_of, stated_by
 from inertial.campaign.masked_samples import Masks, RecordIndex, Repairs, read_once
@@ -35,8 +35,6 @@ from stages.segment.matching import (
 from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken
 from stages.segment.windows import Bins, Selection, Window, windows
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,13 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.campaign.masked_samples import Batch, Integers, Masks, regular
+from inertial.arrays import Array, Integers
+from inertial.campaign.masked_samples import Batch, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.sums import MeansOver
-
-Array = NDArray[np.float64]
 
 BIN_S = 0.1  # s, of the short means in which motion is sought
 MAX_BINS = 2_000_000  # of them in a campaign; one of more than two days has longer ones

@@ -10,6 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from inertial import tables
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs, inside, pieces
 from inertial.campaign.motions import at_rest, in_samples
@@ -22,8 +23,6 @@ from inertial.tables import GYRO
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
 from stages.simulation.declared import DECLARED
-
-Array = NDArray[np.float64]
 
 OF_CHANNELS = ("predicted", "residual")
 NOTHING = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # of a triad that is not determined

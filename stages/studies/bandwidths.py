@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.rate_segments import Recorded
+from inertial.campaign.rate_segments import Rotation
 from inertial.campaign.records import with_mount
 from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.bandwidth import Bandwidth, by_noise, first_order, spread_by_ramps
@@ -32,7 +32,7 @@ OVERSHOOT = _("the drive of the table does not accelerate evenly, and has no enc
 NO_SPECTRUM = _("the rests are too short for the spectrum of the noise")
 
 
-def of_ramps(data: CampaignData, rotation: Recorded, samples: Samples) -> Valued | None:
+def of_ramps(data: CampaignData, rotation: Rotation, samples: Samples) -> Valued | None:
     """Variance of the delay, s², of gyro and drive, by one turn with its rests."""
     m, step = rotation.plan, data.clocks[rotation.plan.log].step
     axis = axis_of(m.axis)

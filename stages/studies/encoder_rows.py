@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.rate_segments import Recorded
+from inertial.campaign.rate_segments import Rotation
 from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.encoder_angle import Ripple, against_encoder, low_pass, ripple
 from inertial.estimation.probability import chi2_sf
@@ -27,7 +27,7 @@ def with_rests(m: str) -> str:
 
 
 def of_turn(
-    data: CampaignData, rotation: Recorded, samples: Samples, steady: tuple[float, float]
+    data: CampaignData, rotation: Rotation, samples: Samples, steady: tuple[float, float]
 ) -> list[Row]:
     """What one turn says; nothing where the encoder has gaps in it, or samples are missing."""
     m, step = rotation.plan, data.clocks[rotation.plan.log].step

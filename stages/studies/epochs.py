@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
+from inertial.campaign.log_lines import RecordRange
 from inertial.campaign.records import Manoeuvre, Performed, rows_of, with_mount
-from inertial.campaign.sample_stretches import Samples, Stretch
+from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.triad import errors_of, linear_names
 from inertial.sensors import COLUMNS
@@ -19,7 +20,6 @@ from inertial.tables import AXES, CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
 
-Array = NDArray[np.float64]
 Row = dict[str, Any]
 
 MAX_SAMPLES = 60_000  # of each rest: ten minutes at 100 Hz
@@ -37,7 +37,7 @@ NEEDED = {
 
 
 @dataclass(frozen=True)
-class Named:
+class FormulaParameters:
     """Parameters of one stage by a formula over the rests; its readings rest by rest, x, y, z."""
 
     stage: str
@@ -47,7 +47,7 @@ class Named:
 
 def rests_of(
     plan: Sequence[Manoeuvre], done: Mapping[str, Performed], segments: pd.DataFrame
-) -> dict[str, tuple[Manoeuvre, Stretch]]:
+) -> dict[str, tuple[Manoeuvre, RecordRange]]:
     """The planned rests of known attitude that were found, each cut to the shortest of them.
 
     One that is far shorter than the others is left out.
@@ -66,13 +66,13 @@ def rests_of(
     }
     length = min([*lengths.values(), MAX_SAMPLES])
     return {
-        m.name: (m, Stretch(m.log, spans[m.name][0], spans[m.name][0] + length))
+        m.name: (m, RecordRange(m.log, spans[m.name][0], spans[m.name][0] + length))
         for m in usable
         if m.name in lengths
     }
 
 
-def formulas(ups: Array, gravity: float) -> list[Named]:
+def formulas(ups: Array, gravity: float) -> list[FormulaParameters]:
     """What the upward directions (n, 3) of the rests let the formulas solve."""
     found = []
     truth = np.vstack([gravity * ups.T, np.ones(len(ups))])
@@ -83,7 +83,7 @@ def formulas(ups: Array, gravity: float) -> list[Named]:
             weights[3 * sensor : 3 * sensor + 3, :, sensor] = inverse[:, :3].T
             weights[9 + sensor, :, sensor] = inverse[:, 3]
         formula = Formula(weights.reshape(12, -1), errors_of(np.zeros(12)))
-        found.append(Named("accelerometer", linear_names(), formula))
+        found.append(FormulaParameters("accelerometer", linear_names(), formula))
     names, rows = [], []
     for i, axis in enumerate(AXES):
         up, down = (sign * ups[:, i] > 1 - 1e-9 for sign in (1, -1))
@@ -93,13 +93,17 @@ def formulas(ups: Array, gravity: float) -> list[Named]:
             names.append(f"bias_{axis}")
             rows.append(row.ravel())
     if rows:
-        found.append(Named("gyroscope", tuple(names), Formula(np.array(rows), np.zeros(len(rows)))))
+        found.append(
+            FormulaParameters(
+                "gyroscope", tuple(names), Formula(np.array(rows), np.zeros(len(rows)))
+            )
+        )
     return found
 
 
 def studied(
     data: CampaignData,
-    rests: Mapping[str, tuple[Manoeuvre, Stretch]],
+    rests: Mapping[str, tuple[Manoeuvre, RecordRange]],
     samples: Mapping[str, Samples],
 ) -> dict[str, list[Row]]:
     """Epochs and spreads of the rests of one mount, and what is not studied."""
@@ -138,7 +142,7 @@ def _not_studied(mount: str, subject: str, reason: str) -> Row:
 
 def _add(
     rows: dict[str, list[Row]],
-    named: Named,
+    named: FormulaParameters,
     readings: Array,
     density: Array,
     step: float,

@@ -3,13 +3,12 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.time_angle import Ramp, plateau, spin_down, spin_up
 from inertial.physics.motion import Profile
 from stages.studies.table_motion import WholeMotion
 
-Array = NDArray[np.float64]
 Row = dict[str, Any]
 
 MAX_ROWS = 400  # rows of a turn

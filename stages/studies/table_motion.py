@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array, Booleans
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.motions import measured_angles
-from inertial.campaign.rate_segments import Recorded, position_of
+from inertial.campaign.rate_segments import Rotation, position_of
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.sample_stretches import Samples
 from inertial.campaign.solution import joint_rows
@@ -30,8 +30,6 @@ from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross
 from inertial.tables import AXES, GYRO
 from inertial.text.messages import _
-
-Array = NDArray[np.float64]
 
 # ---- Rotations recorded whole, sample by sample: gyro increments, and the angle of the table.
 
@@ -52,7 +50,7 @@ class Gyros:
 
     triad: Triad
     sigma: Array
-    unknown: NDArray[np.bool_]
+    unknown: Booleans
 
     @property
     def remaining_cross(self) -> Array:
@@ -105,7 +103,7 @@ class WholeMotion:
     window alike.
     """
 
-    recorded: Recorded
+    recorded: Rotation
     step: float
     increments: Array
     first: int
@@ -138,13 +136,13 @@ class WholeMotion:
         return ripple_window(line.amplitude, line.frequency, seconds)
 
 
-def steady_times(rotation: Recorded, segments: pd.DataFrame) -> tuple[float, float]:
+def steady_times(rotation: Rotation, segments: pd.DataFrame) -> tuple[float, float]:
     """Times of the first and the last sample of the steady part, s."""
     rows = segments[(segments["manoeuvre"] == rotation.plan.name) & (segments["phase"] == "steady")]
     return float(rows["from_s"].min()), float(rows["to_s"].max())
 
 
-def exclusion_reason(rotation: Recorded) -> str:
+def exclusion_reason(rotation: Rotation) -> str:
     """Why a turn is not studied; empty where it is."""
     if rotation.refusal:
         return rotation.refusal
@@ -159,7 +157,7 @@ def exclusion_reason(rotation: Recorded) -> str:
 
 def motion_of(
     data: CampaignData,
-    rotation: Recorded,
+    rotation: Rotation,
     samples: Samples,
     steady: tuple[float, float],
     gyros: Gyros,

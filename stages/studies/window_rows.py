@@ -6,8 +6,8 @@ from math import pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import angles_about
 from inertial.estimation.angle_windows import (
@@ -23,7 +23,6 @@ from inertial.estimation.time_angle import Valued, plateau
 from inertial.tables import AXES, GYRO
 from stages.studies.table_motion import Gyros, WholeMotion
 
-Array = NDArray[np.float64]
 Row = dict[str, Any]
 
 WINDOW_ANGLE = pi  # rad, of a window, as S0 has it

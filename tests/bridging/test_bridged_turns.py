@@ -9,7 +9,7 @@ import pytest
 from z_turns import ANGLE, NOISE, STEP, Z_SCALE
 
 from inertial.campaign.noise_levels import NoiseLevels, effective_levels
-from inertial.campaign.rate_segments import Recorded, rate_segment_of
+from inertial.campaign.rate_segments import Rotation, rate_segment_of
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.static_positions import Blocks
 from inertial.estimation.gyroscope_observations import Earth, Position, RateSegment, StaticRate
@@ -90,7 +90,7 @@ def turn(
         encoder=np.full((kept.sum(), 4), np.nan),
     )
     return rate_segment_of(
-        Recorded(m, Performed(m.name, ""), blocks, ""), levels(), None, rate_sigma
+        Rotation(m, Performed(m.name, ""), blocks, ""), levels(), None, rate_sigma
     )
 
 

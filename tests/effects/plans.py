@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.noise_levels import NoiseLevels, effective_levels
@@ -21,8 +21,6 @@ from inertial.physics.forward import Site, Triad, predict
 from inertial.physics.motion import Profile, turning
 from inertial.physics.site import earth_rate
 from inertial.tables import CHANNELS
-
-Array = NDArray[np.float64]
 
 ARC_SECOND = np.radians(1 / 3600)
 GYRO_NOISE = np.radians(0.1) / 60  # rad/√s

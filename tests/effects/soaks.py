@@ -8,12 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import plans
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.tables import CHANNELS
 
-Array = NDArray[np.float64]
 Hidden = Callable[[Array, Array, Array], Array]  # K above the middle, readings, s → change (n, 6)
 
 ICE_POINT = 273.15  # K

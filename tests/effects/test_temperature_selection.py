@@ -4,9 +4,9 @@ import numpy as np
 import plans
 import pytest
 import soaks
-from numpy.typing import NDArray
 from soaks import ICE_POINT, MIDDLE
 
+from inertial.arrays import Array
 from inertial.effects import CATALOGUE, KNOWN, TEMPERATURE_MODELS
 from inertial.effects.temperature_model import (
     FUNCTIONS,
@@ -29,8 +29,6 @@ from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import stretches
 from stages.criticism.temperature_selection import select_with_temperature, temperature_models
 from tests.expressions import value_of
-
-Array = NDArray[np.float64]
 
 G = 9.8
 LEVEL, TEMPERATURE_LEVEL = 4e-3, 5e-4

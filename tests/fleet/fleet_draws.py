@@ -9,15 +9,13 @@ from typing import Any
 
 import numpy as np
 from fleet_plans import FALSE_DISCOVERIES, SEED, SHAPES, Array, code, fleet
-from numpy.typing import NDArray
 from scipy import stats
 
-from inertial.estimation.sharing import population
+from inertial.arrays import Integers
+from inertial.estimation.fleet_components import population
 from inertial.estimation.type_population import Campaigns, of_new_imu, type_population
 from inertial.model_selection.fleet_evidence import FleetEvidence
-from inertial.model_selection.fleet_search import Finding, FleetSearch
-
-Integers = NDArray[np.int64]
+from inertial.model_selection.fleet_search import FleetEffect, FleetSearch
 
 LEVELS = ("type", "table", "imu")
 RATIOS = (6.0, 8.0, 12.0, 20.0)
@@ -57,7 +55,7 @@ def hidden(
     return Hidden(effect, level, group), beta
 
 
-def found_in(shape: str, beta: Array, random: np.random.Generator) -> list[Finding]:
+def found_in(shape: str, beta: Array, random: np.random.Generator) -> list[FleetEffect]:
     """What is found in a fleet in which the campaigns have effects of these sizes."""
     evidence, law, roots = fleet(shape)
     right = np.einsum("ckl,cl->ck", evidence.information, beta)

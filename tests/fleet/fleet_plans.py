@@ -7,14 +7,12 @@ from functools import cache
 import chain
 import numpy as np
 from hidden_plans import PLANS
-from numpy.typing import NDArray
 
 import laboratory
+from inertial.arrays import Array
 from inertial.model_selection.fleet_evidence import FleetEvidence
 from inertial.model_selection.fleet_search import FleetLaw, fleet_law
 from inertial.tables.code import code_of, hash_of
-
-Array = NDArray[np.float64]
 
 SEED = 60_013
 KEPT = chain.ROOT / "data/derived/fleets"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from inertial.estimation.sharing import Sharing, population, shares
+from inertial.estimation.fleet_components import Sharing, population, shares
 from inertial.estimation.type_population import Campaigns, of_new_imu, type_population
 from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
 from inertial.model_selection.fleet_search import FleetSearch, fleet_law

@@ -11,15 +11,13 @@ from typing import Any, ClassVar
 import numpy as np
 from hidden_plans import PLANS, SPANS
 from hidden_ways import WAYS, Way
-from numpy.typing import NDArray
 
 import laboratory
+from inertial.arrays import Array
 from inertial.effects import CATALOGUE
 from inertial.physics.effect import Effect, Parameter, Reading
 from inertial.physics.motion import Motion
 from laboratory import LogTruth, Recording
-
-Array = NDArray[np.float64]
 
 RATE = 20  # Hz, of these recordings: all plans move in steps of it, and integrals are exact
 SCANNED = 3  # values of what an effect scans, evenly between the first and the last that is drawn

@@ -13,12 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation import history_of_values as estimated
 from inertial.estimation.history_of_values import History, jump, predicted
-
-Array = NDArray[np.float64]
 
 KINDS = ("nothing", "days", "walk", "drift", "all")
 FEWEST, MOST = 3, 12

@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.scan import Candidates
@@ -22,8 +23,6 @@ from tests.inference.naming_plans import (
     rows_of,
     times_of_jumps,
 )
-
-Array = NDArray[np.float64]
 
 ARW, VRW = 2.9e-5, 5e-4  # rad/√s, (m/s)/√s
 TILT = 2 / 206265  # rad, of every position

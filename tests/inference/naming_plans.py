@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 EARTH, LATITUDE, GRAVITY = 7.292115e-5, np.radians(30.53), 9.7936
 HALF_WAVES = 8  # of a drift without a law

@@ -26,8 +26,8 @@ from inertial.estimation.multi_position import (
     matrix_of,
     unobservable,
 )
+from inertial.estimation.scatter_and_random_walk import with_scatter
 from inertial.estimation.triad import mounting_and_symmetric
-from inertial.estimation.variance_components import with_scatter
 
 A_TENTH = np.radians(0.1)
 

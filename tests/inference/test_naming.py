@@ -9,7 +9,7 @@ from textbook_power import power_limit
 
 from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection import naming
-from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Named
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, NamedCauses
 from inertial.model_selection.evidence import Evidence, searched_effect
 from inertial.model_selection.naming import causes
 from inertial.model_selection.null_simulation import Chance, chance, noise
@@ -38,7 +38,7 @@ def visible(plan: str) -> list[int]:
     return [i for i, (effect, tail) in enumerate(both) if tail.degrees and not effect.free]
 
 
-def named(plan: str, effects: dict[str, float], rng: np.random.Generator) -> Named:
+def named(plan: str, effects: dict[str, float], rng: np.random.Generator) -> NamedCauses:
     """What is named where these effects act with these signal-to-noise ratios."""
     p = plan_of(plan)
     beta = np.sum([p.signal(name, snr, rng)[0] for name, snr in effects.items()], axis=0)

@@ -5,13 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.model_selection.structure_tests import Structure, structures
 from tests.inference.naming_evidence import Residuals, fits, whitened
 from tests.inference.naming_plans import rows_of
 
-Array = NDArray[np.float64]
 ROWS = rows_of("c")
 TIME = (ROWS.time - ROWS.time[0]) / np.ptp(ROWS.time)
 N = len(TIME)

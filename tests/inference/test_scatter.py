@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from inertial.estimation.least_squares import Estimate
-from inertial.estimation.variance_components import with_scatter
+from inertial.estimation.scatter_and_random_walk import with_scatter
 
 
 def fit_of(deviance):

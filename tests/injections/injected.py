@@ -29,7 +29,7 @@ from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.estimation.probability import chi2_sf, f_sf
-from inertial.estimation.variance_components import MIN_CONSISTENT_P_VALUE
+from inertial.estimation.scatter_and_random_walk import MIN_CONSISTENT_P_VALUE
 from inertial.model_selection.naming import law_of
 from inertial.model_selection.null_simulation import Chance, power
 from inertial.model_selection.scatter_tests import ScatterTests, named_share, residual_columns

@@ -20,7 +20,7 @@ from scipy.optimize import minimize_scalar
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
-from inertial.campaign.scatter_of_positions import PRIOR_SIZE, likely_walk, scattered
+from inertial.campaign.scatter_given_effects import PRIOR_SIZE, likely_walk, scattered
 from inertial.estimation.probability import chi2_sf, f_isf, f_sf
 from inertial.estimation.scatter_by_hand import Scatter, likeliest
 from inertial.physics.effect import Effect

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from inertial.arrays import Integers
 from laboratory import Recording, SpecificationError, perform, specify
 from laboratory.faults import FAULTS
 
-Integers = NDArray[np.int64]
 Spans = list[tuple[int, int]]
 Strike = Callable[..., tuple["Written", Spans]]
 

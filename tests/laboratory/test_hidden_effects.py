@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from inertial.arrays import Array
 from laboratory import Recording, perform, specify
 from laboratory.checking import the_schema
 from laboratory.effects import EFFECTS
@@ -17,7 +17,6 @@ from laboratory.faults import FAULTS
 from tests.laboratory.at_zero_and_not import ALSO, AT_ZERO_AND_NOT, PLAN
 
 GRAVITY, STANDARD, ARCSECOND = 9.7936174, 9.80665, radians(1 / 3600)
-Array = NDArray[np.float64]
 Performed = Callable[..., Recording]
 REST = {"id": "still", "do": "rest", "up": "+z", "mark": "+x", "seconds": 20, "log": "rest.asc"}
 TURN = {

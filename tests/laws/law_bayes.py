@@ -12,8 +12,8 @@ import numpy as np
 from hidden_courses import Course
 from law_families import FAMILIES, Family
 from law_reference import course
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.effects.law import Law
@@ -26,7 +26,6 @@ from inertial.physics.effect import Effect
 from inertial.physics.laws import STEPS, after, steps
 from stages.criticism.residual_structure import Functions
 
-Array = NDArray[np.float64]
 ALONE = 0.25  # prior of each axis by itself; the rest is that of all axes
 
 

@@ -9,9 +9,9 @@ import chain
 import numpy as np
 from hidden_courses import RATE, Course, _start, known_course
 from law_families import Family, plan_document
-from numpy.typing import NDArray
 
 import laboratory
+from inertial.arrays import Array
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
@@ -21,8 +21,6 @@ from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.scan import Candidates
 from inertial.physics.effect import Effect
 from laboratory import Recording
-
-Array = NDArray[np.float64]
 
 
 @cache

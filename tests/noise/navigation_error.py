@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.fft import irfft, rfft, rfftfreq
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 RATE = 200.0  # Hz
 SECONDS = 100.0

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 OVERSAMPLED = 4
 BEFORE = 0.5  # of the recording

@@ -16,10 +16,10 @@ import numpy as np
 from hidden_courses import RATE, Course, _start, known_course, told
 from hidden_plans import PLANS, SPANS
 from hidden_ways import WAYS
-from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 import laboratory
+from inertial.arrays import Array, Integers
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
@@ -37,8 +37,6 @@ from stages.criticism.selection import Selection
 from stages.criticism.stage import BLOCKS_SHARE, STRUCTURE_SHARE, TEMPERATURE_SHARE
 from stages.criticism.temperature_selection import select_with_temperature
 
-Array = NDArray[np.float64]
-Columns = NDArray[np.int64]
 Document = dict[str, Any]
 
 SEED = 72_119  # of all draws
@@ -84,14 +82,14 @@ class Quiet:
     said: EffectInformation
     degrees: float
 
-    def law(self, name: str) -> Columns:
+    def law(self, name: str) -> Integers:
         """The columns of a law, (values, 3)."""
         count = {law: 3 * len(courses) for law, courses in self.courses.items()}
         first = sum(count[law] for law in LAWS[: LAWS.index(name)])
         return np.arange(first, first + count[name]).reshape(-1, 3)
 
     @property
-    def walk(self) -> Columns:
+    def walk(self) -> Integers:
         """The columns of the half waves, (WAVES, 3): behind those of the laws."""
         return np.arange(-3 * WAVES, 0).reshape(-1, 3) + len(self.said.names)
 
@@ -320,7 +318,7 @@ def _mean(logs: Array) -> float:
     return float(logsumexp(logs) - np.log(logs.size))
 
 
-def _law(said: EffectInformation, columns: Columns, ratio: float) -> Array:
+def _law(said: EffectInformation, columns: Integers, ratio: float) -> Array:
     """Of a law of either sign, of each value and axis."""
     along = said.right[columns] * ratio / np.sqrt(np.diag(said.information)[columns])
     return np.stack([along, -along]) - ratio**2 / 2

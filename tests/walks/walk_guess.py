@@ -17,11 +17,10 @@ from numpy.typing import NDArray
 from scipy.special import gammaln, ive, logsumexp
 from walk_draws import IN_BLOCKS, LEVEL, half_waves, quiet
 
+from inertial.arrays import Array
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.physics.effect import Effect
-
-Array = NDArray[np.float64]
 
 WALK, SILENCE = "walk", ""
 LEAST, MOST, STEPS = 2.0, 40.0, 60  # signal-to-noise ratios

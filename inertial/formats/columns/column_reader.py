@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.formats.columns import text_reader
-from inertial.formats.columns.column_values import Reals
 from inertial.formats.columns.data_rows import Reading, Rows
 from inertial.formats.columns.text_lines import CHUNK_BYTES
 from inertial.formats.containers import container
@@ -43,7 +43,7 @@ def read(
 
 def _unwrapped(readings: Iterable[Reading], wraps_at: int) -> Iterator[Reading]:
     """The same with ticks that go on where a counter began again after `wraps_at` ticks."""
-    last: Reals = np.zeros(0)
+    last: Array = np.zeros(0)
     for reading in readings:
         if (ticks := reading.records.ticks) is not None and len(ticks):
             last = np.unwrap(np.append(last, ticks), period=wraps_at)[len(last) :]

@@ -12,11 +12,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from numpy.typing import NDArray
 
-from inertial.formats.account import Integers
+from inertial.arrays import Array, Booleans, Integers
 from inertial.formats.arrow_arrays import array_of_texts, numbers_of
-
-Reals = NDArray[np.float64]
-Truths = NDArray[np.bool_]
 
 _DECIMAL = pa.decimal128(38, 9)  # holds every number of nanoseconds since 1970 to its last digit
 _TO_WHOLE = pc.CastOptions(target_type=pa.int64(), allow_decimal_truncate=True)
@@ -29,10 +26,10 @@ _NAN = pa.Array.from_buffers(pa.float64(), 1, [None, pa.py_buffer(np.array([np.n
 class ColumnValues(Protocol):
     """One column over n rows."""
 
-    def numbers(self) -> Reals:
+    def numbers(self) -> Array:
         """The numbers; NaN or infinite where there is none, (n,)."""
 
-    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Truths]:
+    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Booleans]:
         """Whole nanoseconds, of dates and times in ISO 8601 those since 1970; and which are known.
 
         (n,) each. A stamp of 19 digits is not rounded, as a floating-point number would be.
@@ -41,7 +38,7 @@ class ColumnValues(Protocol):
     def texts(self) -> list[str]:
         """The texts that the plan selects rows by, (n,)."""
 
-    def blank(self) -> Truths:
+    def blank(self) -> Booleans:
         """Where nothing stands, (n,)."""
 
     def text(self, row: int) -> str:
@@ -64,7 +61,7 @@ class TextValues:
             return self._texts
         return pc.replace_substring(pc.replace_substring(self._texts, ".", "_"), ",", ".")
 
-    def numbers(self) -> Reals:
+    def numbers(self) -> Array:
         """The numbers that the texts are, NaN where one is none, (n,)."""
         texts = self._in_digits()
         try:
@@ -74,7 +71,7 @@ class TextValues:
                 [float(text) if _NUMBER.fullmatch(text) else np.nan for text in texts.to_pylist()]
             )
 
-    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Truths]:
+    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Booleans]:
         """What the texts say, also as 1.40363657975856E+018, (n,) each."""
         if iso:
             return _times(self._texts)
@@ -85,7 +82,7 @@ class TextValues:
                 return numbers_of(whole), np.ones(len(whole), bool)
         return _one_by_one(texts, _whole)
 
-    def blank(self) -> Truths:
+    def blank(self) -> Booleans:
         """Which texts are empty, (n,)."""
         return np.asarray(numbers_of(pc.utf8_length(self._texts)) == 0)
 
@@ -105,16 +102,16 @@ class NumberValues:
     def __init__(self, values: NDArray[Any]) -> None:
         self._values = values
 
-    def numbers(self) -> Reals:
+    def numbers(self) -> Array:
         """The numbers, (n,)."""
         return self._values.astype(np.float64)
 
-    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Truths]:
+    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Booleans]:
         """The numbers, if they are not to be dates, (n,) each."""
         known = np.isfinite(self._values) & (not iso)
         return np.where(known, self._values, 0).astype(np.int64), known
 
-    def blank(self) -> Truths:
+    def blank(self) -> Booleans:
         """Nowhere: what is no number is damaged, (n,)."""
         return np.zeros(len(self._values), bool)
 
@@ -133,17 +130,17 @@ class WordValues:
     def __init__(self, words: Sequence[object]) -> None:
         self._words = words
 
-    def numbers(self) -> Reals:
+    def numbers(self) -> Array:
         """None: all NaN, (n,)."""
         return np.full(len(self._words), np.nan)
 
-    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Truths]:
+    def nanoseconds(self, *, iso: bool) -> tuple[Integers, Booleans]:
         """The dates among the words, (n,) each."""
         if iso:
             return _times(pa.chunked_array([array_of_texts(self.texts())]))
         return np.zeros(len(self._words), np.int64), np.zeros(len(self._words), bool)
 
-    def blank(self) -> Truths:
+    def blank(self) -> Booleans:
         """Where there is no word, (n,)."""
         return np.array([not text for text in self.texts()], bool)
 
@@ -174,7 +171,7 @@ def _digits(value: float) -> str:
     return str(int(value)) if isinstance(value, int) or value.is_integer() else repr(value)
 
 
-def _times(texts: pa.ChunkedArray) -> tuple[Integers, Truths]:
+def _times(texts: pa.ChunkedArray) -> tuple[Integers, Booleans]:
     """Dates and times in ISO 8601, one without a zone in UTC, as ns since 1970; which are known."""
     texts = pc.replace_substring(texts, ",", ".")
     zoned = pc.match_substring_regex(texts, _WITH_ZONE)
@@ -199,7 +196,9 @@ def _whole(text: str) -> int:
     return int(Decimal(text))
 
 
-def _one_by_one(texts: pa.ChunkedArray, converted: Callable[[str], int]) -> tuple[Integers, Truths]:
+def _one_by_one(
+    texts: pa.ChunkedArray, converted: Callable[[str], int]
+) -> tuple[Integers, Booleans]:
     """The whole numbers that texts mean, 0 where one means none; and which these are."""
     found = np.zeros(len(texts), np.int64)
     known = np.zeros(len(texts), bool)

@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.formats.account import Account, Integers, RefusedLine, quoted
+from inertial.arrays import Array, Booleans, Integers
+from inertial.formats.account import Account, RefusedLine, quoted
 from inertial.formats.columns.column_layout import ISO_8601, Column, ColumnLayout, Triad
-from inertial.formats.columns.column_values import ColumnValues, Reals, Truths
+from inertial.formats.columns.column_values import ColumnValues
 from inertial.text.messages import _
 
 
@@ -18,16 +19,16 @@ class Rows:
     record: Integers  # number among the data rows of the log, refused ones counted, (n,)
     offset: Integers  # byte in the file where the line begins; 0 where rows are no lines, (n,)
     line: Integers  # number of the line, or of the row where rows are no lines, from 1, (n,)
-    ticks: Reals | Integers | None  # time; unit by `ticks_per_second` of the layout, (n,)
-    mean_of: Reals | None  # number of samples that the row is the mean of, (n,)
-    accelerometer: Reals  # x, y, z, as they stand in the file, (n, 3)
-    gyro: Reals  # likewise
-    table_angle: Reals | None  # as it stands in the file, (n,)
-    temperature: Reals | None  # likewise
+    ticks: Array | Integers | None  # time; unit by `ticks_per_second` of the layout, (n,)
+    mean_of: Array | None  # number of samples that the row is the mean of, (n,)
+    accelerometer: Array  # x, y, z, as they stand in the file, (n, 3)
+    gyro: Array  # likewise
+    table_angle: Array | None  # as it stands in the file, (n,)
+    temperature: Array | None  # likewise
     label: list[str] | None  # "column=value; …" of the columns that the plan selects by, (n,)
     # Of rows that are means: their standard deviations, as they stand in the file, (n, 3).
-    accelerometer_sigma: Reals | None = None
-    gyro_sigma: Reals | None = None
+    accelerometer_sigma: Array | None = None
+    gyro_sigma: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -53,8 +54,8 @@ class SortedRows:
     """n data rows by kind."""
 
     samples: Rows  # the m rows that hold a sample
-    taken: Truths  # which rows these are, (n,)
-    not_selected: Truths  # rows that hold none of the sensors, (n,)
+    taken: Booleans  # which rows these are, (n,)
+    not_selected: Booleans  # rows that hold none of the sensors, (n,)
     reasons: dict[int, str]  # why the others are refused, by their place among the n
 
 
@@ -83,7 +84,7 @@ def sort_rows(
     for triad, holds in zip(columns.triads, held, strict=True):
         wanted += [(column, holds) for column in triad.columns if column]
 
-    def refuse(column: Column, where: Truths, expected: str) -> None:
+    def refuse(column: Column, where: Booleans, expected: str) -> None:
         for row in np.flatnonzero(intact & where).tolist():
             reasons[row] = _(
                 "column {name} is '{value}', expected {expected}",
@@ -104,12 +105,12 @@ def sort_rows(
         refuse(column, unusable, _("the standard deviation of a mean, above 0"))
     taken = intact & selected
 
-    def ticks() -> Reals | Integers | None:
+    def ticks() -> Array | Integers | None:
         if columns.counts_rows:
             return record.astype(np.float64)
         return stamps[taken] if exact is not None else of(columns.time)
 
-    def of(column: Column | None) -> Reals | None:
+    def of(column: Column | None) -> Array | None:
         return None if column is None else numbers[column][taken]
 
     record = place.record[taken]
@@ -134,9 +135,9 @@ def sort_rows(
 def _held(
     triad: Triad,
     fields: Mapping[int, ColumnValues],
-    numbers: Mapping[Column, Reals],
+    numbers: Mapping[Column, Array],
     count: int,
-) -> Truths:
+) -> Booleans:
     """Which rows hold the triad, (n,)."""
     there = [column for column in triad.columns if column]
     holds = np.ones(count, bool)
@@ -147,7 +148,7 @@ def _held(
     return holds
 
 
-def _selected(columns: ColumnLayout, held: Sequence[Truths]) -> Truths:
+def _selected(columns: ColumnLayout, held: Sequence[Booleans]) -> Booleans:
     """Which rows hold anything: all of them, unless every triad has rows of its own, (n,)."""
     recorded = [
         holds for triad, holds in zip(columns.triads, held, strict=True) if any(triad.columns)
@@ -155,7 +156,7 @@ def _selected(columns: ColumnLayout, held: Sequence[Truths]) -> Truths:
     return np.logical_or.reduce(recorded) if recorded else held[0]
 
 
-def _sigmas(triad: Triad, numbers: Mapping[Column, Reals], taken: Truths) -> Reals | None:
+def _sigmas(triad: Triad, numbers: Mapping[Column, Array], taken: Booleans) -> Array | None:
     """The standard deviations of means, (m, 3), NaN where none is stated; None without any."""
     if not any(triad.sigmas):
         return None
@@ -165,8 +166,8 @@ def _sigmas(triad: Triad, numbers: Mapping[Column, Reals], taken: Truths) -> Rea
 
 
 def _unusable_sigmas(
-    columns: ColumnLayout, numbers: Mapping[Column, Reals], axes: Sequence[Reals]
-) -> Iterator[tuple[Column, Truths]]:
+    columns: ColumnLayout, numbers: Mapping[Column, Array], axes: Sequence[Array]
+) -> Iterator[tuple[Column, Booleans]]:
     """The columns of standard deviations, and in which rows a mean has none."""
     for triad, means in zip(columns.triads, axes, strict=True):
         for column, mean in zip(triad.sigmas, means.T, strict=True):
@@ -175,7 +176,7 @@ def _unusable_sigmas(
                 yield column, np.isfinite(mean) & ~known
 
 
-def _axes(triad: Triad, holds: Truths, numbers: Mapping[Column, Reals]) -> Reals:
+def _axes(triad: Triad, holds: Booleans, numbers: Mapping[Column, Array]) -> Array:
     """The three axes of a triad; NaN where it is not recorded, (n, 3)."""
     axes = np.full((len(holds), 3), np.nan)
     for axis, column in enumerate(triad.columns):
@@ -188,7 +189,7 @@ def _axes(triad: Triad, holds: Truths, numbers: Mapping[Column, Reals]) -> Reals
 
 
 def _label(
-    columns: Sequence[Column], fields: Mapping[int, ColumnValues], taken: Truths
+    columns: Sequence[Column], fields: Mapping[int, ColumnValues], taken: Booleans
 ) -> list[str] | None:
     """The text "column=value" of each column, joined with "; ", (n,)."""
     if not columns:

@@ -9,15 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.formats.account import Account, RefusedLine
 from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
-
-Reals = NDArray[np.float64]
 
 MAX_READINGS = 20_000_000  # held in memory: 320 MB
 MAX_GAP_INTERVALS = 5.5  # median intervals between two readings that are interpolated
@@ -36,7 +34,7 @@ class Encoder:
 
     def __init__(self, path: Path, layout: Mapping[str, Any], turn: float) -> None:
         self.account, self.refused = Account(), list[RefusedLine]()
-        ticks, angles, count = list[Reals](), list[Reals](), 0
+        ticks, angles, count = list[Array](), list[Array](), 0
         for reading in column_reader.read(path, layout):
             self.account.add_account(reading.account)
             self.refused += reading.refused
@@ -61,7 +59,7 @@ class Encoder:
         self.time = time[later]
         self.angle = np.unwrap(np.concatenate([np.zeros(0), *angles])[later], period=turn)
 
-    def angle_at(self, time: Reals) -> Reals:
+    def angle_at(self, time: Array) -> Array:
         """The angle at these times of its clock, (n,), NaN where it is not known."""
         if len(self.time) < 2:
             return np.full(len(time), np.nan)

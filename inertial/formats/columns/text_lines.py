@@ -12,11 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from inertial.formats.account import HEADER, Account, Integers, RefusedLine, quoted
-
-Truths = NDArray[np.bool_]
+from inertial.arrays import Booleans, Integers
+from inertial.formats.account import HEADER, Account, RefusedLine, quoted
 
 # ---- Chunks of whole lines, so that a log of any length passes through memory.
 
@@ -47,7 +45,7 @@ class Chunk:
         """The line `index` of the chunk without its line end."""
         return self.data[self.starts[index] : self.ends[index]]
 
-    def begin_with(self, mark: bytes) -> Truths:
+    def begin_with(self, mark: bytes) -> Booleans:
         """Which lines begin with these bytes, (n,)."""
         characters = np.frombuffer(self.data + mark, np.uint8)
         there = self.ends - self.starts >= len(mark)
@@ -60,7 +58,7 @@ class Chunk:
         line, offset, length = self.lines[index], self.offsets[index], self.lengths[index]
         return RefusedLine(int(line), int(offset), int(length), reason, quoted(self.text(index)))
 
-    def part(self, kept: Truths) -> "Chunk":
+    def part(self, kept: Booleans) -> "Chunk":
         """Those of its lines that are kept, (n,)."""
         if kept.all():
             return self

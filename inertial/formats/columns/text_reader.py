@@ -20,14 +20,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 from pyarrow import csv
 
-from inertial.formats.account import (
-    BLANK,
-    DECODED,
-    NOT_SELECTED,
-    REFUSED,
-    Integers,
-    quoted,
-)
+from inertial.arrays import Integers
+from inertial.formats.account import BLANK, DECODED, NOT_SELECTED, REFUSED, quoted
 from inertial.formats.arrow_arrays import numbers_of
 from inertial.formats.columns import vectornav_lines
 from inertial.formats.columns.column_layout import (

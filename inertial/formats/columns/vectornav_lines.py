@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from inertial.arrays import Booleans
 from inertial.formats.account import OTHER_MESSAGE, REFUSED, Account, quoted
-from inertial.formats.columns.text_lines import Chunk, RowLines, Truths
+from inertial.formats.columns.text_lines import Chunk, RowLines
 from inertial.text.messages import _
 
 MESSAGE = "VNIMU"  # the only one with readings that were not compensated by the sensor
@@ -72,7 +73,7 @@ class MessageLines:
         return RowLines(kept, account, refused, np.cumsum(lost)[rows], int(lost.sum()))
 
 
-def _intact(chunk: Chunk) -> Truths:
+def _intact(chunk: Chunk) -> Booleans:
     """Which lines are messages with a right checksum, (n,)."""
     characters = np.frombuffer(chunk.data, np.uint8)
     starts, ends = chunk.starts, chunk.ends

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Integers
 from inertial.formats.novatel.kernel import (
     BINARY,
     EXTENDED,
@@ -30,7 +31,6 @@ from inertial.formats.novatel.kernel import (
     SHORT_SYNC,
     SYNC,
     Bytes,
-    Integers,
     scan,
 )
 

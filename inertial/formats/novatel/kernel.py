@@ -16,8 +16,9 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Integers
+
 Bytes = NDArray[np.uint8]
-Integers = NDArray[np.int64]
 
 # Kinds of items. UNPARSED: an IMU message of right checksum with fields outside the usual notation;
 # CONTINUED: the first part of a damaged stretch that extends beyond the data.

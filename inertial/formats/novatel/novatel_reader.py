@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from inertial.arrays import Booleans, Integers
 from inertial.formats.account import (
     BLANK,
     DECODED,
@@ -32,15 +33,13 @@ from inertial.formats.novatel.imu_messages import (
     first_bytes,
     name_of,
 )
-from inertial.formats.novatel.kernel import BINARY, IMU, UNPARSED, Bytes, Integers
+from inertial.formats.novatel.kernel import BINARY, IMU, UNPARSED, Bytes
 from inertial.formats.novatel.message_errors import fields_of, too_long, why_refused
 from inertial.text.messages import _
 
 CHUNK_BYTES = 7 << 19  # of the shortest IMU messages as many as rows of a batch
 WEEK_NS = kernel.WEEK_S * kernel.SECOND_NS
 ROLLOVER_NS = 1024 * WEEK_NS  # the weeks that ten bits count
-
-Truths = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -153,7 +152,7 @@ class _Log:
         self._line = int(lines[-1]) + 1
         return lines
 
-    def _damaged_records(self, data: Bytes, items: Items, damaged: list[int]) -> Truths:
+    def _damaged_records(self, data: Bytes, items: Items, damaged: list[int]) -> Booleans:
         """Which damaged items begin like the message that is read."""
         records = np.zeros(len(items.kind), bool)
         if (message := self._message) is None:
@@ -224,14 +223,14 @@ def _bytes(data: Bytes, items: Items, index: int) -> bytes:
     return data[items.start[index] : items.start[index] + items.length[index]].tobytes()
 
 
-def _numbers(counted: Truths, first: int) -> Integers:
+def _numbers(counted: Booleans, first: int) -> Integers:
     """The number of each item if the first one counted has number `first`, (n,)."""
     if counted.all():
         return np.arange(first, first + len(counted))
     return np.asarray(np.cumsum(counted) + (first - 1))
 
 
-def _add_others(account: Account, data: Bytes, items: Items, own: Truths) -> None:
+def _add_others(account: Account, data: Bytes, items: Items, own: Booleans) -> None:
     """Count all other messages, by name."""
     kind, code = items.kind, items.code
     others = ((kind == IMU) | (kind == UNPARSED)) & ~own

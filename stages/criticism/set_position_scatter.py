@@ -26,7 +26,6 @@ from stages.criticism.finding_rows import TableRow, finding_id, member_rows
 from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.rivals import MAX_LOG_ODDS, members_of
 from stages.criticism.selection import Selection
-from stages.criticism.temperature_selection import log_evidence
 
 CAUSE = "position_scatter"
 TRIED = 1.5  # of the stated sigma: where this is not likelier, none is sought
@@ -117,7 +116,7 @@ def select_beside_scatter(
         return stated, None
     wider = select(scatter.campaign)
     causes = len(wider[0].named.causes) + 1 - len(stated[0].named.causes)
-    odds = log_evidence(wider[0]) - log_evidence(stated[0]) + causes * float(np.log(level))
+    odds = wider[0].log_evidence - stated[0].log_evidence + causes * float(np.log(level))
     named = members_of(wider[0])
     rivals = tuple(one for one in members_of(stated[0]) if one not in named)
     if odds < (-MAX_LOG_ODDS if rivals else 0.0):

@@ -15,10 +15,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize
 
-Array = NDArray[np.float64]
+from inertial.arrays import Array
 
 ONE_SIDED = 2.706  # rise of the deviance at the one-sided limit of 95 %
 MIN_VALUES = 2

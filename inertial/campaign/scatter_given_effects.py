@@ -5,16 +5,15 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.gyroscope_observations import RateSegment, StaticRate
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.multi_position import SCATTER_RANGE
-from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
-from inertial.estimation.variance_components import (
+from inertial.estimation.scatter_and_random_walk import (
     MIN_DEVIANCE_DROP,
     ScatterFit,
     WalkSearch,
@@ -22,10 +21,9 @@ from inertial.estimation.variance_components import (
     walk_search,
     with_scatter,
 )
+from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
-
-Array = NDArray[np.float64]
 
 PRIOR_SIZE = 1e4  # prior sigma of an effect that was named, in its typical sizes
 

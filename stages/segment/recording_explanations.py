@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 from itertools import combinations, groupby
 
 import numpy as np
-from numpy.typing import NDArray
 
+from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import (
     PERMUTATIONS,
@@ -37,8 +37,6 @@ from stages.segment.steps import (
 )
 from stages.segment.windows import Binned
 
-Array = NDArray[np.float64]
-
 MIN_RATE_SHARE = 0.05  # of the slowest planned rate: what counts as motion
 MIN_GAIN = 2  # observations more that agree with the plan, in place of as many that do not
 MIN_UPRIGHT_SHARE = 0.9  # share of the vertical in an axis that points up
@@ -49,7 +47,7 @@ MIN_GAIN_OF_BOTH = 3  # the same, for both sensors of one log: it may have had a
 
 
 @dataclass(frozen=True)
-class Explained:
+class ExplainedRecording:
     """The windows, each with where its manoeuvres are.
 
     `everywhere`: axes that are exchanged or reversed in all logs; `misread`: logs whose
@@ -115,7 +113,7 @@ def explain(
     *,
     with_sense: bool,
     gyros_confirmed: bool,
-) -> Explained:
+) -> ExplainedRecording:
     """Find every manoeuvre; where the plan is not found, by what explains clearly more of it.
 
     First what may have happened to the campaign as a whole: names or places of two manoeuvres
@@ -152,7 +150,7 @@ def explain(
     signs = earth_seen(case.located, case.everywhere, earth_rate)
     right = sum(located.agreeing[0] for located in plain.located)
     after, total = np.sum([(0, 0), *(located.agreeing for located in case.located)], axis=0)
-    return Explained(
+    return ExplainedRecording(
         case.located,
         signs,
         case.everywhere,
@@ -172,7 +170,7 @@ def explained_of(
     *,
     with_sense: bool = False,
     gyros_confirmed: bool = False,
-) -> tuple[Array, Explained]:
+) -> tuple[Array, ExplainedRecording]:
     """What the gyros read at rest, (3,), rad/s, and where the manoeuvres are; as `explain`."""
     level, scatter = _rest_level(binned)
     rates = [abs(m.rate) for m in plan if m.rate]

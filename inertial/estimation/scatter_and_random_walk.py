@@ -15,14 +15,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize, minimize_scalar
 
+from inertial.arrays import Array
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.estimation.switch_ons import SwitchOns
 
-Array = NDArray[np.float64]
 Deviance = Callable[[float], float]  # as a function of one size
 
 MIN_CONSISTENT_P_VALUE = 0.01  # below it the residuals are larger than the noise

@@ -14,13 +14,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, minimize
 
+from inertial.arrays import Array, Booleans
 from inertial.estimation.type_mean import Mixture, TableMeans
-
-Array = NDArray[np.float64]
-Booleans = NDArray[np.bool_]
 
 LEVELS = ("type", "table", "imu", "campaign")
 FLAT = 1e8  # variance of the mean of a type that is free, in variances of the values

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
 from inertial.campaign.effect_sizes import sizes_of_result
-from inertial.campaign.explanations import Explained
+from inertial.campaign.explanations import ExplainedFindings
 from inertial.campaign.hypotheses import Findings
 from inertial.campaign.records import Row, rows_of
 from inertial.effects import KNOWN, TEMPERATURE_MODELS
@@ -28,7 +28,10 @@ def by_result(effects: Iterable[Row], results: Sequence[SensorResult]) -> list[R
 
 
 def sentences(
-    explained: Sequence[Explained], findings: Findings, before: Sequence[Row], now: Sequence[Row]
+    explained: Sequence[ExplainedFindings],
+    findings: Findings,
+    before: Sequence[Row],
+    now: Sequence[Row],
 ) -> Iterator[tuple[str, str]]:
     """By finding the sentence of an effect of the catalogue, with its sizes `now`.
 
