@@ -12,10 +12,11 @@ import numpy as np
 from benchmarks import bound
 from benchmarks.campaign import document, performed
 from benchmarks.methods import EXPLAINED, JOINT, METHODS, Compared, of_all
-from benchmarks.parameters import KINDS, SENSORS, Array, truth, worst
+from benchmarks.parameters import KINDS, SENSORS, truth, worst
 from benchmarks.solving import Solved, run_again, solve, tables_for
 from benchmarks.tables import Table, digits
 from benchmarks.timing import HEADS, REMARK, Seconds, timed
+from inertial.arrays import Array
 
 SEEDS = range(1, 9)
 RUNS = 5  # of the estimation of each campaign

@@ -7,10 +7,11 @@ import numpy as np
 
 from benchmarks import sections
 from benchmarks.campaign import RATE
-from benchmarks.parameters import SENSORS, Array
+from benchmarks.parameters import SENSORS
 from benchmarks.processes import in_peers
 from benchmarks.solving import Solved
 from benchmarks.timing import Seconds
+from inertial.arrays import Array
 from laboratory import Recording
 
 Parameters = dict[str, Array]  # by sensor, (12,)
