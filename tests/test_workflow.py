@@ -393,13 +393,13 @@ def test_the_pages_of_several_campaigns_are_made_again_when_a_result_changes(
         shutil.rmtree(campaign.parent)
 
 
-def test_the_queries_of_the_readme_run_on_the_demo(
+def test_the_queries_of_the_page_on_usage_run_on_the_demo(
     workflow: Workflow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     duckdb = pytest.importorskip("duckdb")
     monkeypatch.chdir(workflow.data)
-    readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    queries = re.findall(r"^    -- .*\n((?:    .*\n)+?(?=\n))", readme, re.MULTILINE)
+    page = (ROOT / "docs/usage.md").read_text(encoding="utf-8")
+    queries = re.findall(r"^    -- .*\n((?:    .*\n)+?(?=\n|\Z))", page, re.MULTILINE)
     assert len(queries) == 4
     result, biases, causes, archive = (duckdb.sql(query).df() for query in queries)
     assert len(result) == 24 and result["sigma"].gt(0).all()
