@@ -240,8 +240,10 @@ class BlockResults:
         """The largest difference between the biases of two runs; that of the first is 0 here."""
         others = [i for c in self.selection.named.causes if c is not cause for i in c.columns]
         chosen = list(dict.fromkeys([*cause.columns, *others]))
-        values = self.selection.evidence.total.estimate(chosen)[0][: len(cause.columns)]
-        return float(np.ptp(np.vstack([np.zeros(3), values.reshape(-1, 3)]), axis=0).max())
+        evidence = self.selection.evidence
+        values = evidence.total.estimate(chosen)[0][: len(cause.columns)]
+        axes = np.array([evidence.names[i][-1] for i in cause.columns])
+        return max(float(np.ptp([0.0, *values[axes == axis]])) for axis in set(axes))
 
     def _long_runs(self) -> bool:
         """Whether a run holds so many manoeuvres that a scatter of these does not stand for it."""
