@@ -73,6 +73,11 @@ class CampaignData:
         return self.known["heading"].value
 
     @property
+    def without_heading(self) -> "CampaignData":
+        """The same as if no heading were stated."""
+        return replace(self, known={**self.known, "heading": Known(None, None)})
+
+    @property
     def position_sigma(self) -> float:
         """Sigma of the attitude of a set position, rad."""
         return self.known["position"].scatter
@@ -184,6 +189,8 @@ def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
         data = CampaignData(
             plan, done, tables.blocks, noise, tables.given, mount, clocks, shared, solution
         )
+        if solution is not None and solution.knows_azimuth:  # whatever heading is stated
+            data = data.without_heading
         if solution is not None and solution.free and solution.accelerometer is not None:
             data = with_attitudes(data, solution.accelerometer)
         result.append(data)

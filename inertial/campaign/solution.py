@@ -8,7 +8,7 @@ import pandas as pd
 
 from inertial.arrays import Array
 from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
-from inertial.estimation.gyroscope_observations import Earth, Position
+from inertial.estimation.gyroscope_observations import TABLE, Earth, Position
 from inertial.estimation.switch_ons import covering
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
@@ -49,6 +49,11 @@ class Solution:
         gyro, accelerometer = of("gyro", self.gyro), of("accel", self.accelerometer)
         return replace(self, gyro=gyro, accelerometer=accelerometer)
 
+    @property
+    def knows_azimuth(self) -> bool:
+        """Whether the gyros tell the azimuth of the table, so that none was known."""
+        return (TABLE, "horizontal", 0) in self.position_parameters
+
     def upright(self, m: Manoeuvre) -> Array:
         """The direction that points up at the start of a manoeuvre, its tilt included, (3,)."""
         assert m.up is not None  # a manoeuvre without it is not simulated
@@ -66,7 +71,7 @@ class Solution:
             return position.north
         axes, name = level_axes(position.up), position.name
         if position.mark is not None:
-            axes, name = (position.mark, cross(position.up, position.mark)), "the table"
+            axes, name = (position.mark, cross(position.up, position.mark)), TABLE
         parts = [self.position_parameters.get((name, "horizontal", i), np.nan) for i in (0, 1)]
         return np.asarray((parts[0] * axes[0] + parts[1] * axes[1]) / self.site.earth_level)
 

@@ -1,15 +1,13 @@
 """A table whose heading is not what it is taken to be."""
 
-from dataclasses import replace
-
 from inertial.arrays import Array
-from inertial.physics.effect import Effect, Parameter, Truth, known_earth, usually
+from inertial.physics.effect import Parameter, Truth, TurnedEarthRate, known_earth, usually
 from inertial.physics.motion import Motion, cross
 from inertial.text.messages import _
 from inertial.text.units import DEGREE
 
 
-class HeadingError(Effect):
+class HeadingError(TurnedEarthRate):
     """ω += Δψ up × ω_level: viewed from above, north lies Δψ further counter-clockwise of the mark.
 
     Told by the level gyros at rest. Where no heading is stated the gyros tell the azimuth
@@ -25,9 +23,9 @@ class HeadingError(Effect):
     sizes = usually(DEGREE)
     thinkable = 180.0
 
-    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+    def parts(self, truth: Truth, motion: Motion) -> tuple[Array, Array]:
         _, level = known_earth(truth, motion)
-        return replace(truth, rate=truth.rate + values[0] * cross(motion.up, level))
+        return level, cross(motion.up, level)
 
     def blind(self, motion: Motion) -> str:
         return "" if motion.surveyed.any() else _("No heading of the table is stated.")

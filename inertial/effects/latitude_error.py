@@ -1,18 +1,16 @@
 """A latitude that is not that of the site."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.physics.effect import Effect, Parameter, Truth, known_earth, usually
+from inertial.physics.effect import Parameter, Truth, TurnedEarthRate, known_earth, usually
 from inertial.physics.motion import Motion
 from inertial.physics.site import EARTH_RATE
 from inertial.text.messages import _
 from inertial.text.units import DEGREE
 
 
-class LatitudeError(Effect):
+class LatitudeError(TurnedEarthRate):
     """ω += Δφ (ω_e cosφ up − ω_e sinφ north): the upward part grows, the level part shrinks.
 
     Told from g-sensitivity, which also goes with up and down, by the level part alone, and that
@@ -26,9 +24,8 @@ class LatitudeError(Effect):
     sizes = usually(0.02 * DEGREE)
     thinkable = 1000.0
 
-    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+    def parts(self, truth: Truth, motion: Motion) -> tuple[Array, Array]:
         upward, level = known_earth(truth, motion)
         up_rate = np.sum(upward * motion.up, axis=1, keepdims=True)
         level_rate = np.sqrt(np.maximum(EARTH_RATE**2 - up_rate**2, 0.0))
-        change = level_rate * motion.up - up_rate / level_rate * level
-        return replace(truth, rate=truth.rate + values[0] * change)
+        return upward + level, level_rate * motion.up - up_rate / level_rate * level

@@ -45,6 +45,7 @@ from inertial.arrays import Array, Booleans
 from inertial.estimation.bias_instability import wave, waves_within
 from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.gyroscope_observations import (
+    TABLE,
     Earth,
     Position,
     RateSegment,
@@ -63,8 +64,8 @@ UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
 DELAY_SIGMA = 0.05  # s
 ECCENTRICITY_SIGMA = 1e-4  # rad, 20 arcsec
 CLOCK = "clock"  # kind of the error of the rate of a log's clock
-DELAY: Name = ("encoder delay", "the table")
-WAVES: tuple[Name, Name] = (("encoder sine", "the table"), ("encoder cosine", "the table"))
+DELAY: Name = ("encoder delay", TABLE)
+WAVES: tuple[Name, Name] = (("encoder sine", TABLE), ("encoder cosine", TABLE))
 MAX_BLOCKS_PER_PASS = 4000  # so that the memory does not grow with the length of a segment
 
 
@@ -74,7 +75,7 @@ def horizontal_names(position: Position) -> tuple[Name, ...]:
         return ()
     if not position.is_known:
         return tuple((f"earth {i}", position.name) for i in (0, 1, 2))
-    name = "the table" if position.mark is not None else position.start or position.name
+    name = TABLE if position.mark is not None else position.start or position.name
     return tuple((f"level {i}", name) for i in (0, 1))
 
 

@@ -10,6 +10,7 @@ from inertial.estimation.random_walk import Stretch
 from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 
 EARTH_UP = ("earth", "up")  # the name of the unknown: the upward component
+TABLE = "the table"  # the position that all share whose mark is known, and no heading
 
 
 @dataclass(frozen=True)

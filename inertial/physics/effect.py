@@ -291,3 +291,33 @@ def known_earth(truth: Truth, motion: Motion) -> tuple[Array, Array]:
     earth = truth.rate - motion.omega
     upward = np.sum(earth * motion.up, axis=1, keepdims=True) * motion.up
     return upward, np.where(motion.surveyed[:, None], earth - upward, 0.0)
+
+
+LARGE_ANGLE = 0.02  # rad, from which 1 − cos is no longer left out
+
+
+class TurnedEarthRate(Effect):
+    """The earth's rate, turned in the local frame by an angle that is its only parameter.
+
+    Of an angle v the part e that turns, and d, e a quarter of a turn on, become
+    v (d sin ψ − e (1 − cos ψ)) / ψ: a rotation in proportion to v, and exact where v is ψ = `at`,
+    about which it is then estimated again. Without a ψ it is that of a small angle.
+    """
+
+    def parts(self, truth: Truth, motion: Motion) -> tuple[Array, Array]:
+        """The part that turns, and the same a quarter of a turn on; body axes, (n, 3), rad/s."""
+        raise NotImplementedError
+
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        turning, onwards = self.parts(truth, motion)
+        about = self.at or 0.0
+        along = -np.sin(about / 2) * np.sinc(about / 2 / np.pi)  # −(1 − cos ψ)/ψ
+        across = np.sinc(about / np.pi)  # sin ψ/ψ
+        return replace(truth, rate=truth.rate + values[0] * (across * onwards + along * turning))
+
+    def about(self, angle: float) -> Self:
+        """The effect as it is near an angle, rad."""
+        return self.fixed(angle) if abs(angle) > LARGE_ANGLE else self
+
+    def as_named(self, values: Mapping[str, float]) -> Effect:
+        return self.about(values.get(self.parameters[0].name, 0.0))

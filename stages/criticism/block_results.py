@@ -137,7 +137,7 @@ class BlockResults:
                 "named": cause is not None and cause.verdict in NAMED,
                 "verdict": cause.verdict if cause else "",
                 "snr": cause.snr if cause else None,
-                "scan_value": effect.at,
+                "scan_value": effect.at if effect.scan else None,
                 "scan_unit": effect.scan.unit if effect.scan and effect.at is not None else None,
                 "sentence": sentence,
             },

@@ -19,7 +19,7 @@ from inertial.model_selection.evidence import Evidence, SearchedEffect, searched
 from inertial.model_selection.naming import causes, law_of, with_given
 from inertial.model_selection.scatter_tests import ScatterTests, named_share, scatter_tests
 from inertial.model_selection.search import finer, to_refine
-from inertial.physics.effect import Effect
+from inertial.physics.effect import LARGE_ANGLE, Effect, TurnedEarthRate
 from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import (
     biases_of_runs,
@@ -164,6 +164,12 @@ def _select(
         if min_snr:
             break
         min_snr = MIN_THIRD_SEARCH_SNR
+    for _round in range(MAX_ROUNDS):
+        if not (found := _about_what_was_found(named, families)):
+            break
+        families |= found
+        equations, rest, searched = _evidence_given(campaign, families, noise_degrees, given)
+        named = causes(rest, searched, law)
     thinkable = _Thinkable(named, rest, searched, families)
     if unthinkable := thinkable.heads_without:
         possible = [effect for effect in effects if effect.name not in unthinkable]
@@ -178,6 +184,23 @@ def _select(
         named, searched = with_given(equations, named, before), [*searched, *before]
         families |= {effect.name: (effect,) for effect in given}
     return Selection(campaign, (), equations, searched, families, named, limits)
+
+
+def _about_what_was_found(
+    named: NamedCauses, families: Mapping[str, Sequence[Effect]]
+) -> dict[str, tuple[Effect, ...]]:
+    """The named turns of the earth's rate, about the angle that was found where it is another.
+
+    Equations that are linear about a small one take 1 − cos for other effects.
+    """
+    found: dict[str, tuple[Effect, ...]] = {}
+    for cause in named.causes:
+        effect = families[cause.effect][0] if cause.effect in families else None
+        if isinstance(effect, TurnedEarthRate):
+            angle = float(cause.values[0])
+            if abs(angle - (effect.at or 0.0)) > LARGE_ANGLE:
+                found[effect.name] = (effect.about(angle),)
+    return found
 
 
 @dataclass(frozen=True)

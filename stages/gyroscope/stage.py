@@ -17,6 +17,7 @@ from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from stages.gyroscope.declared import DECLARED
 from stages.gyroscope.free_positions import add_free_gyros
+from stages.gyroscope.stated_heading import without_wrong_heading
 
 CURES = {
     "bias": _("neither a rest nor a turn there and back shows it: add a rest"),
@@ -40,6 +41,8 @@ def gyroscope(
     collected = Estimates("gyroscope")
     raised: list[Finding] = []
     for data in mounts:
+        data, wrong = without_wrong_heading(data)
+        raised += [wrong] if wrong else []
         estimates, inputs = collected.on(data.mount), data.gyro_inputs
         raised += add_free_gyros(estimates, data)
         if inputs.is_empty:

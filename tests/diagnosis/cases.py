@@ -265,6 +265,27 @@ CASES: tuple[Case, ...] = (
         hidden=effect(latitude_error={"error_deg": 2.0}),
     ),
     Case(
+        "latitude-far-off",  # 1 − cos of which is no earth rate left out
+        there_and_back,
+        (cause({"latitude_error"}, "gyro", alone=True),),
+        gyro=CONDITIONAL | LIMITED,
+        hidden=effect(latitude_error={"error_deg": 9.0}),
+    ),
+    Case(
+        "heading-off",
+        there_and_back,
+        (cause({"heading_error"}, "gyro", alone=True),),
+        gyro=CONDITIONAL | LIMITED,
+        hidden=effect(heading_error={"error_deg": 10.0}),
+    ),
+    Case(
+        "heading-opposite",
+        there_and_back,
+        (cause({"heading_error"}, "gyro"),),
+        gyro=CONDITIONAL | LIMITED,
+        hidden=effect(heading_error={"error_deg": 170.0}),
+    ),
+    Case(
         "latitude-of-the-other-hemisphere",
         there_and_back,
         (cause({"latitude_sign"}, "gyro"),),

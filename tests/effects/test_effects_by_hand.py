@@ -290,6 +290,15 @@ def test_sites_that_are_wrong_by_their_own_formulas():
     gyro, _ = acted("heading_error", [wrong], moved, SITE)
     elsewhere = truth_of(replace(moved, north=north), SITE)
     np.testing.assert_allclose(gyro, elsewhere.rate - truth.rate, atol=1e-10)
+    # About an angle that is large they are exact there.
+    far = 0.7
+    gyro, _ = acted("latitude_error", [far], moved, SITE, at=far)
+    there = truth_of(moved, Site(GRAVITY, *earth_rate(30 * DEGREE + far)))
+    np.testing.assert_allclose(gyro, there.rate - truth.rate, atol=1e-18)
+    north = Rotation.from_rotvec(far * UP).apply(moved.north)
+    gyro, _ = acted("heading_error", [far], moved, SITE, at=far)
+    elsewhere = truth_of(replace(moved, north=north), SITE)
+    np.testing.assert_allclose(gyro, elsewhere.rate - truth.rate, atol=1e-18)
     gyro, _ = acted("earth_rate_omitted", [1.0], moved, SITE)
     np.testing.assert_allclose(gyro, truth_of(moved, STILL).rate - truth.rate, atol=1e-18)
     _, accel = acted("gravity_error", [1e-3], moved, SITE)
