@@ -85,7 +85,10 @@ class CampaignData:
     @property
     def reference(self) -> Reference:
         """What the static positions of the accelerometers are compared with."""
-        return Reference(self.gravity.number, self.gravity.scatter, self.position_sigma)
+        known = (self.gravity.number, self.gravity.scatter, self.position_sigma)
+        if self.solution is None:
+            return Reference(*known)
+        return Reference(*known, free=self.solution.off_positions(self.position_sigma))
 
     @property
     def rate_sigma(self) -> float:

@@ -250,8 +250,8 @@ class Campaign:
     @property
     def reference(self) -> Reference:
         """What static positions are compared with."""
-        gravity = self.gravity
-        return Reference(gravity.number, gravity.scatter, self.position_sigma, self.axis_sigma)
+        known = (self.gravity.number, self.gravity.scatter, self.position_sigma, self.axis_sigma)
+        return Reference(*known, self.solution.off_positions(self.position_sigma))
 
     def system(
         self,

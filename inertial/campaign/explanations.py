@@ -203,6 +203,7 @@ EXPLANATIONS = (
     Explanation(
         ("gravity_error",), _is("wrong_scale_factor", "gravity_error", *MISFITS), same_sensor
     ),
+    Explanation(("latitude_error",), _is("gravity_error"), anywhere),
     # A table that moves: the readings are right, the position is not the planned one.
     Explanation(
         ("table_moving", "impact"),
@@ -238,9 +239,22 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
     )
 
 
+def is_of_wrong_place(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Whether gravity was replaced by that of a latitude which the gyros contradict."""
+    wrong = cause.named and cause.cause == "latitude_error"
+    return wrong and other.cause == "gravity_error" and other.repair is not None
+
+
+def has_own_error(cause: Hypothesis) -> bool:
+    """Whether it is a position off by degrees, whose attitude is an unknown of the result."""
+    return cause.stage == POSITIONS and int(cause.row["severity"]) < MIN_SPOILING
+
+
 def _set_right_by_another(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether a repair of its own sets the other right, so that the cause alone does not."""
     if other.repair is None or other.repair["state"] not in SET_RIGHT:
+        return False
+    if is_of_wrong_place(cause, other):  # so it was not right
         return False
     return cause.repair is None or cause.repair["id"] != other.repair["id"]
 
@@ -270,7 +284,12 @@ def _same_mount(cause: Hypothesis, other: Hypothesis) -> bool:
 
 
 def _explains_position(cause: Hypothesis, other: Hypothesis) -> bool:
-    """A static position off the others: any effect of the accelerometers may look so."""
+    """A static position off the others: any effect of the accelerometers may look so.
+
+    None does where it is off by degrees.
+    """
+    if has_own_error(other):
+        return False
     if cause.stage == MODEL:
         off = not set(POSITION_OFF).isdisjoint(cause.causes)
         return cause.sensor in (None, other.sensor) or off

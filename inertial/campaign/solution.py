@@ -5,10 +5,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
+from scipy.spatial.transform import Rotation
 
 from inertial.arrays import Array
 from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
 from inertial.estimation.gyroscope_observations import TABLE, Earth, Position
+from inertial.estimation.position_outlier import is_off
 from inertial.estimation.switch_ons import covering
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
@@ -54,13 +56,22 @@ class Solution:
         """Whether the gyros tell the azimuth of the table, so that none was known."""
         return (TABLE, "horizontal", 0) in self.position_parameters
 
+    def off_positions(self, position_sigma: float) -> frozenset[str]:
+        """The positions that are off by far more than the sigma, rad, of the planned attitudes."""
+        tilts: dict[str, list[float]] = {}
+        for (position, quantity, _component), value in self.position_parameters.items():
+            if quantity == "tilt":
+                tilts.setdefault(position, []).append(value)
+        sizes = {position: float(np.linalg.norm(own)) for position, own in tilts.items()}
+        return frozenset(one for one, size in sizes.items() if is_off(size, position_sigma))
+
     def upright(self, m: Manoeuvre) -> Array:
         """The direction that points up at the start of a manoeuvre, its tilt included, (3,)."""
         assert m.up is not None  # a manoeuvre without it is not simulated
         tilt = np.zeros(3)
         for i, axis in enumerate(level_axes(m.up)):
             tilt = tilt + self.position_parameters.get((m.position, "tilt", i), 0.0) * axis
-        return np.asarray(m.up + cross(tilt, m.up))
+        return np.asarray(Rotation.from_rotvec(tilt).apply(m.up))
 
     def north(self, position: Position) -> Array:
         """The direction of the horizontal earth rate in body axes, relative to the known size.

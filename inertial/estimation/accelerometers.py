@@ -3,8 +3,8 @@
     mean reading = M · (g u + δ × g u) + bias + noise
 
 u is the upward direction in body axes; δ the tilt of the position, with the sigma of the table; g
-one unknown with the sigma of gravity. Of a large tilt δ is the sine, and what its
-cosine takes from g u follows from the reading itself (`_versed`).
+one unknown with the sigma of gravity. That is linear in δ, so by hand it is set up about the tilt
+that the reading shows: g u (1 − cos δ), and the products of δ with cross terms, are not small then.
 """
 
 from collections.abc import Hashable, Mapping, Sequence
@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from inertial.arrays import Array
 from inertial.estimation.drifting_equations import DriftingEquations
@@ -36,6 +37,7 @@ PRIOR_SIGMA = np.append(np.ones(9), np.full(3, 10.0))
 ITERATIONS = 3  # linearisations about the last result
 BIAS = 9  # column of the first of the three biases
 MAX_RANDOM_WALK = 2e-3  # m/s²/√s, 10 mg/√h: a hundred times that of the poorest sensors
+FREE_TILT = 0.2  # rad, sigma of the tilt of a position of which nothing is known
 SCATTER_BOUNDS = (1e-7, 1.0)  # m/s², between static positions beyond the noise
 
 
@@ -63,18 +65,23 @@ class StaticForce:
 class Reference(NamedTuple):
     """What static positions are compared with: gravity, m/s², and the planned attitudes, rad.
 
-    `axis_sigma`: of what tilts with the axis of the table, where it is not that of the positions.
+    `axis_sigma`: of what tilts with the axis of the table, where it is not that of the positions;
+    `free`: positions that are off by so much that they tell nothing of their attitude.
     """
 
     gravity: float
     gravity_sigma: float
     position_sigma: float
     axis_sigma: float | None = None
+    free: frozenset[str] = frozenset()
 
     def sigma_of(self, tilts: Sequence[Name]) -> dict[Name, float]:
         """The sigma of each of these unknowns."""
         axis = self.position_sigma if self.axis_sigma is None else self.axis_sigma
-        return {name: axis if name[0] in OF_AXIS else self.position_sigma for name in tilts}
+        set_sigma = {
+            name: FREE_TILT if name in self.free else self.position_sigma for _, name in tilts
+        }
+        return {name: axis if name[0] in OF_AXIS else set_sigma[name[1]] for name in tilts}
 
 
 def weighted(
@@ -246,22 +253,23 @@ def linear_rows(
     """
     s = len(prior)
     ups = np.array([static.up for static in statics])
-    along = ups @ about.matrix.T
+    since = _since_switch_on(statics, gravity * ups, about, gravity * position_sigma)
+    means = np.array([static.mean for static in statics])
+    shown = _shown_tilts(statics, ups, about, means - since)
+    forces: Array = gravity * Rotation.from_rotvec(shown).apply(ups)
     rows = np.zeros((len(statics), 3, s + len(TILTS) + len(OF_AXIS) + 1))
     for row in range(3):
-        rows[:, row, 3 * row : 3 * row + 3] = gravity * ups
+        rows[:, row, 3 * row : 3 * row + 3] = forces
         rows[:, row, 9 + row] = 1.0
-    rows[:, :, UNKNOWNS] = along
+    rows[:, :, UNKNOWNS] = forces @ about.matrix.T / gravity
     rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
     felt = [static.felt for static in statics]
     rows[felt, :, UNKNOWNS + 1 : s] = about.matrix @ rows[felt, :, UNKNOWNS + 1 : s]
     tilts = tilt_axes(statics)
     for i in range(tilts.shape[1]):
-        rows[:, :, s + i] = cross(tilts[:, i], gravity * ups) @ about.matrix.T
-    means = np.array([static.mean for static in statics])
-    since = _since_switch_on(statics, gravity * ups, about, gravity * position_sigma)
-    versed = _versed(statics, ups, about, means - since)
-    rows[:, :, -1] = means + gravity * (1 + versed)[:, None] * along
+        rows[:, :, s + i] = cross(tilts[:, i], forces) @ about.matrix.T
+    # M times gravity is in the columns of both, and the tilts are the whole ones.
+    rows[:, :, -1] = means + (forces + cross(shown, forces)) @ about.matrix.T
     rows[:, :, -1] -= rows[:, :, :s] @ prior
     return rows
 
@@ -303,24 +311,25 @@ def _since_switch_on(
     return since
 
 
-def _versed(statics: Sequence[StaticForce], ups: Array, about: Triad, means: Array) -> Array:
-    """1 − cos of the angle from the planned upward direction to that of the `means`, (n,).
+def _shown_tilts(statics: Sequence[StaticForce], ups: Array, about: Triad, means: Array) -> Array:
+    """The tilts, as rotations from the planned upward directions to those of the `means`, (n, 3).
 
-    0 where it cannot be told yet. While the table turns, the pull at the lever arm would pass for a
-    tilt, which is that of the rests in the same position.
+    0 where they cannot be told yet. While the table turns, the pull at the lever arm would pass for
+    a tilt, which is that of the rests in the same position.
     """
-    force = np.linalg.solve(about.matrix, (means - about.bias).T).T
-    cosine = np.sum(force * ups, axis=1) / np.linalg.norm(force, axis=1)
-    versed = np.clip(1 - cosine / np.linalg.norm(ups, axis=1), 0.0, 1.0)
-    versed = np.nan_to_num(versed)
-    at_rest: dict[str, list[float]] = {}
-    for static, own in zip(statics, versed.tolist(), strict=True):
+    seen: Array = np.linalg.solve(about.matrix, (means - about.bias).T).T
+    across = cross(ups, seen)
+    sine, cosine = np.linalg.norm(across, axis=1), np.sum(ups * seen, axis=1)
+    with np.errstate(invalid="ignore"):
+        tilts = np.nan_to_num(across * (np.arctan2(sine, cosine) / sine)[:, None])
+    at_rest: dict[str, list[Array]] = {}
+    for static, own in zip(statics, tilts, strict=True):
         if not static.turning:
             at_rest.setdefault(static.position, []).append(own)
     for i, static in enumerate(statics):
         if static.turning:
-            versed[i] = np.mean(at_rest.get(static.position, [0.0]))
-    return np.asarray(versed)
+            tilts[i] = np.mean(at_rest.get(static.position, [np.zeros(3)]), axis=0)
+    return np.asarray(tilts)
 
 
 def triad_of(estimate: Estimate) -> Triad:

@@ -4,6 +4,9 @@ The tilts of each position in turn are fitted freely and the drop of chi-squared
 noise, with Bonferroni's correction for the number of positions. A reading up and a reading down
 with the same tilt change the same sum, so from six positions alone it may be either of two: all
 positions are listed that fit the readings nearly as well.
+
+A position that is off by degrees is no error to be linear in, and what it does resembles many an
+effect. Its attitude is taken as unknown where that explains most of what the others leave.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,7 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.accelerometers import Reference, StaticForce, equations
+from inertial.estimation.accelerometers import Reference, StaticForce, equations, weighted
+from inertial.estimation.least_squares import Estimate
+from inertial.estimation.position_tilt import TILTS
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.triad import UNKNOWNS
@@ -21,6 +26,11 @@ from inertial.physics.motion import cross, level_axes
 
 FREE_TILT_SIGMA = 0.02  # rad, of a tilt that is fitted freely: a degree
 SIGNIFICANCE = 0.001  # accepted probability of a false alarm
+MIN_OFF, MIN_OFF_SIGMAS = np.radians(0.5), 20.0  # by which it is no small error, and of the table
+MAX_OFF = np.radians(15.0)  # more is another position
+MAX_OFF_POSITIONS = 3
+MAX_REST = 1 / 3  # of what is beyond noise: else the positions are not what is wrong
+MIN_CLEAR = 20.0  # of chi-squared, to the next position that it may be
 MIN_DROP_DIFFERENCE = 6.0  # of chi-squared, from best to excluded: 95 % of 2 degrees of freedom
 
 
@@ -94,6 +104,66 @@ def off_position(
         after.values[:UNKNOWNS] - before.values[:UNKNOWNS],
         p_value,
     )
+
+
+def is_off(tilt: float, position_sigma: float) -> bool:
+    """Whether a position is off by degrees, and by far more than the table's sigma, rad."""
+    return bool(tilt > max(MIN_OFF, MIN_OFF_SIGMAS * position_sigma))
+
+
+@dataclass(frozen=True)
+class FarOff:
+    """A position off by degrees: its tilt in body axes, (3,), rad, and the sigma of its size."""
+
+    position: str
+    tilt: Array
+    sigma: float
+
+
+def far_off(
+    statics: Sequence[StaticForce],
+    reference: Reference,
+    effect_sigma: Mapping[str, float] | None,
+    measured: MeasuredDrift,
+) -> list[FarOff]:
+    """The positions that are off by degrees, where these are what is wrong; else none.
+
+    Arguments as in `weighted`.
+    """
+    ups = {static.position: static.up for static in statics}
+
+    def freed(free: frozenset[str]) -> Estimate:
+        own = reference._replace(free=free)
+        return weighted(statics, own, effect_sigma=effect_sigma, measured=measured)
+
+    fitted = first = freed(frozenset())
+    found: list[str] = []
+    while len(found) < MAX_OFF_POSITIONS and _beyond(fitted) > MIN_CLEAR:
+        tried = {one: freed(frozenset({*found, one})) for one in ups if one not in found}
+        ranked = sorted(tried, key=lambda one: tried[one].chi_squared)
+        least, *others = (tried[one].chi_squared for one in ranked)
+        own = _tilt_of(tried[ranked[0]], ranked[0], ups[ranked[0]])
+        size = float(np.linalg.norm(own.tilt))
+        clear = size > MIN_OFF_SIGMAS * own.sigma and not (others and others[0] < least + MIN_CLEAR)
+        if not (clear and is_off(size, reference.position_sigma) and size < MAX_OFF):
+            break
+        found.append(ranked[0])
+        fitted = tried[ranked[0]]
+    if not found or _beyond(fitted) > MAX_REST * _beyond(first):
+        return []
+    return [_tilt_of(fitted, one, ups[one]) for one in found]
+
+
+def _beyond(fitted: Estimate) -> float:
+    """Chi-squared beyond its degrees of freedom."""
+    return max(fitted.chi_squared - fitted.degrees, 0.0)
+
+
+def _tilt_of(fitted: Estimate, position: str, up: Array) -> FarOff:
+    places = [fitted.names.index((kind, position)) for kind in TILTS]
+    values, sigmas = fitted.values[places], fitted.sigma[places]
+    across = float(np.abs(values) @ sigmas / np.linalg.norm(values))
+    return FarOff(position, values @ np.array(level_axes(up)), across)
 
 
 def _with_tilts(statics: Sequence[StaticForce], gravity: float, matrix: Array) -> list[StaticForce]:

@@ -301,23 +301,48 @@ class TurnedEarthRate(Effect):
 
     Of an angle v the part e that turns, and d, e a quarter of a turn on, become
     v (d sin ψ − e (1 − cos ψ)) / ψ: a rotation in proportion to v, and exact where v is ψ = `at`,
-    about which it is then estimated again. Without a ψ it is that of a small angle.
+    about which it is then estimated again. Without a ψ it is that of a small angle. `after`: the
+    turn, of an angle of its own, that goes before it, for the two do not commute.
     """
+
+    after: TurnedEarthRate | None = None
 
     def parts(self, truth: Truth, motion: Motion) -> tuple[Array, Array]:
         """The part that turns, and the same a quarter of a turn on; body axes, (n, 3), rad/s."""
         raise NotImplementedError
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
-        turning, onwards = self.parts(truth, motion)
+        before = truth
+        if self.after is not None:
+            before = self.after.moves(truth, motion, np.array([self.after.at or 0.0]))
+        turning, onwards = self.parts(before, motion)
         about = self.at or 0.0
         along = -np.sin(about / 2) * np.sinc(about / 2 / np.pi)  # −(1 − cos ψ)/ψ
         across = np.sinc(about / np.pi)  # sin ψ/ψ
         return replace(truth, rate=truth.rate + values[0] * (across * onwards + along * turning))
 
+    @property
+    def key(self) -> tuple[object, ...]:
+        return *super().key, None if self.after is None else self.after.at
+
     def about(self, angle: float) -> Self:
         """The effect as it is near an angle, rad."""
         return self.fixed(angle) if abs(angle) > LARGE_ANGLE else self
 
+    def following(self, other: TurnedEarthRate) -> Self:
+        """The effect after another turn."""
+        effect = copy(self)
+        effect.after = other
+        return effect
+
     def as_named(self, values: Mapping[str, float]) -> Effect:
         return self.about(values.get(self.parameters[0].name, 0.0))
+
+
+def in_sequence(effects: Sequence[Effect]) -> list[Effect]:
+    """The same effects; of two turns of the earth's rate the first follows the second."""
+    turns = [effect for effect in effects if isinstance(effect, TurnedEarthRate)]
+    if len(turns) != 2:
+        return list(effects)
+    first, second = sorted(turns, key=lambda turn: turn.name)
+    return [first.following(second) if effect is first else effect for effect in effects]

@@ -15,14 +15,14 @@ from inertial.campaign.static_positions import averaging_times
 from inertial.campaign.unknown_attitude import add_free_accelerometers
 from inertial.estimation import accelerometers, triad
 from inertial.estimation.accelerometers import Reference, StaticForce, equations, triad_of, weighted
-from inertial.estimation.position_outlier import OffPosition, off_position
+from inertial.estimation.position_outlier import FarOff, OffPosition, far_off, off_position
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.scatter_and_random_walk import MIN_CONSISTENT_P_VALUE
 from inertial.physics.forward import Triad
 from inertial.tables import AXES
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
-from inertial.text.numbers import fixed, significant
+from inertial.text.numbers import fixed, plus_minus, significant
 from inertial.text.parameters import PARTS
 from inertial.text.units import quantity
 from stages.accelerometer.declared import DECLARED
@@ -37,6 +37,7 @@ CURES = {
         "no rests differ enough along {axis}: add one with +{axis} up, one with -{axis} up"
     ),
 }
+OFF = "table_position_error"
 MIN_NOTABLE_SIGMA = 1.0  # sigmas of the estimate by which a term must move to be named
 WORDS = {
     "bias": _("bias of the {row} accelerometer"),
@@ -70,6 +71,9 @@ def accelerometer(
         stops = [position.force() for position in positions]
         rests = [*stops, *moving]
         drift = data.noise.drift("accel")
+        off = far_off(rests, reference, effect_sigma, drift)
+        reference = reference._replace(free=frozenset(one.position for one in off))
+        raised += [_far_off(one, data.mount) for one in off]
         fitted = accelerometers.fit(rests, reference, data.noise.degrees, effect_sigma, drift)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
         why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
@@ -118,9 +122,32 @@ def _position_findings(
         yield _finding(off, joint.sigma[: triad.UNKNOWNS], mount)
 
 
+def _far_off(off: FarOff, mount: str) -> Finding:
+    size = float(np.linalg.norm(off.tilt))
+    return Finding(
+        id="/".join(("accelerometer", with_mount(OFF, mount), off.position)),
+        cause=OFF,
+        mount=mount,
+        sensor="accel",
+        manoeuvre=off.position,
+        size=size,
+        unit="rad",
+        severity=1,
+        sentence=_(
+            "By the accelerometers the position {name} is off by {size}°, mostly about {axis}; the "
+            "others agree.",
+            name=off.position,
+            size=plus_minus(degrees(size), degrees(off.sigma)),
+            axis=AXES[int(np.argmax(np.abs(off.tilt)))],
+        ),
+        consequence=_("As it was planned it would move every parameter of the accelerometers."),
+        action=_("Set this position again and record it; or state its attitude as it was."),
+    )
+
+
 def _finding(off: OffPosition, sigma: Array, mount: str) -> Finding:
     """With the affected parameters; `sigma`: (12,), of the parameters without the scatter."""
-    cause, several = "table_position_error", len(off.positions) > 1
+    several = len(off.positions) > 1
     names = _(" or ").join(off.positions)
     axis = int(np.argmax(np.abs(off.about)))
     affected = [
@@ -130,8 +157,8 @@ def _finding(off: OffPosition, sigma: Array, mount: str) -> Finding:
     ]
     size = fixed(degrees(off.tilt), 4)
     return Finding(
-        id="/".join(("accelerometer", with_mount(cause, mount), off.positions[0])),
-        cause=cause,
+        id="/".join(("accelerometer", with_mount(OFF, mount), off.positions[0])),
+        cause=OFF,
         mount=mount,
         sensor="accel",
         manoeuvre=off.positions[0],

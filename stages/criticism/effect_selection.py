@@ -19,7 +19,7 @@ from inertial.model_selection.evidence import Evidence, SearchedEffect, searched
 from inertial.model_selection.naming import causes, law_of, with_given
 from inertial.model_selection.scatter_tests import ScatterTests, named_share, scatter_tests
 from inertial.model_selection.search import finer, to_refine
-from inertial.physics.effect import LARGE_ANGLE, Effect, TurnedEarthRate
+from inertial.physics.effect import LARGE_ANGLE, Effect, TurnedEarthRate, in_sequence
 from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import (
     biases_of_runs,
@@ -193,14 +193,15 @@ def _about_what_was_found(
 
     Equations that are linear about a small one take 1 − cos for other effects.
     """
-    found: dict[str, tuple[Effect, ...]] = {}
+    turns: list[Effect] = []
+    moved = False
     for cause in named.causes:
         effect = families[cause.effect][0] if cause.effect in families else None
         if isinstance(effect, TurnedEarthRate):
             angle = float(cause.values[0])
-            if abs(angle - (effect.at or 0.0)) > LARGE_ANGLE:
-                found[effect.name] = (effect.about(angle),)
-    return found
+            moved = moved or abs(angle - (effect.at or 0.0)) > LARGE_ANGLE
+            turns.append(effect.about(angle))
+    return {turn.name: (turn,) for turn in in_sequence(turns)} if moved else {}
 
 
 @dataclass(frozen=True)

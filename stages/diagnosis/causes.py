@@ -6,7 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from inertial.campaign.explanations import MIN_SPOILING, PER_RUN, ExplainedFindings
+from inertial.campaign.explanations import (
+    MIN_SPOILING,
+    PER_RUN,
+    ExplainedFindings,
+    has_own_error,
+    is_of_wrong_place,
+)
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,
@@ -78,7 +84,8 @@ class Cause:
     `moves`: largest shift of a parameter of the result that it causes or, undone, caused, in its
     sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns;
     `modelled`: those of them whose result has it in its model; `freed`: the manoeuvre whose own
-    error it is there; `turns`: by how many sigma one of its class turns a sensor's axes.
+    error it is there; `turns`: by how many sigma one of its class turns a sensor's axes; `spoilt`:
+    by how many sigma it moves the result of a sensor that nobody set right.
     """
 
     members: tuple[ExplainedFindings, ...]
@@ -91,6 +98,7 @@ class Cause:
     modelled: frozenset[str] = frozenset()
     freed: str | None = None
     turns: Mapping[str, float] = field(default_factory=dict)
+    spoilt: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, sensor: str) -> Cause:
         """What it is for the result of one sensor, with its consequences there."""
@@ -98,6 +106,8 @@ class Cause:
             replace(member, consequences=tuple(_of_sensor(member.consequences, sensor)))
             for member in self.members
         )
+        if sensor in self.spoilt:
+            return replace(self, members=members, cure=NONE, moves=self.spoilt[sensor])
         cure = MODELLED if sensor in self.modelled else self.cure
         moves = max(filter(None, (self.moves, self.turns.get(sensor))), default=self.moves)
         return replace(self, members=members, cure=cure, moves=moves)
@@ -250,13 +260,27 @@ class Evidence:
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
             done = HARMLESS
-        elif freed:
+        elif freed := freed or (main.manoeuvre if has_own_error(main) else None):
             done = OWN_ERROR.format(manoeuvre=freed)
         elif cure == NONE and modelled:
             done = ONLY_MODELLED.format(sensors=_(" and ").join(PLURAL[s] for s in modelled))
-        sensors = tuple(dict.fromkeys(result.sensor for result in own))
+        spoilt = self._by_gravity_of_wrong_place(members)
+        sensors = tuple(dict.fromkeys([*(result.sensor for result in own), *spoilt]))
         gain, turns = _gain(main, drop), {} if freed else _turns(main, own)
-        return Cause(members, sensors, cure, done, moves, drop, gain, modelled, freed, turns)
+        given = (members, sensors, cure, done, moves, drop, gain, modelled, freed, turns, spoilt)
+        return Cause(*given)
+
+    def _by_gravity_of_wrong_place(self, members: Sequence[ExplainedFindings]) -> dict[str, float]:
+        """By how many sigma the gravity of a latitude that is wrong moves the accelerometers."""
+        own = [result for (sensor, _), result in self.results.items() if sensor == "accel"]
+        repairs = [
+            other.repair
+            for member in members
+            for other in member.consequences
+            if other.repair is not None and is_of_wrong_place(member.cause, other)
+        ]
+        moved = [by for repair in repairs if (by := _moved_by(repair, own)) is not None]
+        return {"accel": max(moved)} if moved else {}
 
     def _own(self, cause: Hypothesis) -> Iterator[SensorResult]:
         """The results that a cause concerns: of its sensor, and where the model has its effect."""
@@ -294,7 +318,7 @@ class Evidence:
         if cause.cause == CLOCK and cause.sensor == "accel":
             return NONE, _moved_by_clock(1e-6 * abs(cause.row["size"]), own), None
         in_matrix = cause.stage == COUNTS and int(cause.row["severity"]) < SPOILS
-        if in_matrix or _rounds(cause):  # or in the covariance
+        if in_matrix or has_own_error(cause) or _rounds(cause):  # or in the covariance
             return MODELLED, None, None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]

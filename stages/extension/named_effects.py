@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from inertial.effects import KNOWN, LAWS
 from inertial.model_selection.size_after_selection import NOT_SELECTED, Selected, selected
-from inertial.physics.effect import Effect
+from inertial.physics.effect import Effect, in_sequence
 
 Row = Mapping[str, Any]
 
@@ -76,15 +76,20 @@ def named_of(
             first.setdefault(row["cause"], row["id"])
             if row["threshold"] is not None:
                 by_size[row["id"]] = selected(row["statistic"], row["degrees"], row["threshold"])
+    in_blocks = {
+        name: finding for name, finding in first.items() if KNOWN[name].sought_in == "blocks"
+    }
+    named = in_sequence(
+        [KNOWN[name].as_named(values.get(of, {})) for name, of in in_blocks.items()]
+    )
     return NamedEffects(
         tuple(
             replace(
-                _class_of(name, finding, values.get(finding, {}), of_class.get(finding, ())),
+                _class_of(effect, finding, of_class.get(finding, ())),
                 positions=tuple(places.get(finding, ())),
                 selected=by_size.get(finding, NOT_SELECTED),
             )
-            for name, finding in first.items()
-            if KNOWN[name].sought_in == "blocks"
+            for effect, finding in zip(named, in_blocks.values(), strict=True)
         ),
         {
             name: values.get(finding, {})
@@ -94,18 +99,15 @@ def named_of(
     )
 
 
-def _class_of(
-    name: str, finding: str, values: Mapping[str, float], rows: Sequence[Row]
-) -> NamedClass:
+def _class_of(named: Effect, finding: str, rows: Sequence[Row]) -> NamedClass:
     probability = {row["effect"]: row["probability"] for row in rows}
     others = [
         Member(KNOWN[effect], probability[effect])
         for effect in probability
         if effect in KNOWN
-        and effect != name
+        and effect != named.name
         and KNOWN[effect].sought_in == "blocks"
         # Of another law no shape is known.
         and effect not in LAWS
     ]
-    named = Member(KNOWN[name].as_named(values), probability.get(name))
-    return NamedClass(finding, (named, *others))
+    return NamedClass(finding, (Member(named, probability.get(named.name)), *others))

@@ -279,6 +279,31 @@ CASES: tuple[Case, ...] = (
         hidden=effect(heading_error={"error_deg": 10.0}),
     ),
     Case(
+        "heading-and-latitude-off",  # two turns that do not commute
+        there_and_back,
+        (cause({"heading_error"}, "gyro"), cause({"latitude_error"}, "gyro")),
+        gyro=CONDITIONAL | LIMITED,
+        hidden=effect(heading_error={"error_deg": 12.0}, latitude_error={"error_deg": -12.0}),
+    ),
+    Case(
+        "latitude-off-that-gravity-knows",  # so the gravity that was measured is doubted
+        there_and_back,
+        (cause({"latitude_error"}, "gyro"),),
+        accel=LOST,
+        gyro=CONDITIONAL | LIMITED,
+        hidden={
+            "campaign": {"site": {"latitude_deg": 21.5278}},
+            "truth": {"latitude_deg": 30.5278},
+        },
+    ),
+    Case(
+        "position-off-by-degrees",
+        short,
+        (cause(POSITION, "accel", None, "z-down"),),
+        accel=LIMITED,
+        hidden=set_off("z-down", "-z", 3.0 * 3600 * ARC_SECOND),
+    ),
+    Case(
         "heading-opposite",
         there_and_back,
         (cause({"heading_error"}, "gyro"),),
