@@ -317,7 +317,7 @@ def _shown_tilts(statics: Sequence[StaticForce], ups: Array, about: Triad, means
     0 where they cannot be told yet. While the table turns, the pull at the lever arm would pass for
     a tilt, which is that of the rests in the same position.
     """
-    seen: Array = np.linalg.solve(about.matrix, (means - about.bias).T).T
+    seen = (means - about.bias) @ np.linalg.inv(about.matrix).T
     across = cross(ups, seen)
     sine, cosine = np.linalg.norm(across, axis=1), np.sum(ups * seen, axis=1)
     with np.errstate(invalid="ignore"):
