@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.campaign.interpolated_gaps import gaps_of, sigma_of, weights_of
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.campaign.static_positions import (
@@ -22,112 +23,20 @@ from inertial.campaign.static_positions import (
 from inertial.estimation.gyroscope_observations import (
     Earth,
     EncoderWindow,
-    Gap,
     Position,
     RateSegment,
     StaticRate,
     SteadyRate,
     WholeTurn,
 )
-from inertial.estimation.spectrum import rate_deviation
+from inertial.estimation.turn_outliers import off_rate, off_ratio
 from inertial.physics.motion import cross
 from inertial.tables import GYRO
 from inertial.text.messages import _
+from inertial.text.numbers import significant
 
 if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
-
-# --- Interpolation of missing samples of a rotation, and the sigma of its angle ---
-#
-# In the steady part the angle is the mean recorded rate times the missing time, in a ramp the
-# integral of the straight line between the neighbouring blocks. Their noise is in the equations;
-# the other errors of the angle are:
-#
-# - the mean rate while samples are missing differs from the recorded one: by the stated sigma of
-#   the table's rate, or by the variation in the data, whichever is larger. It is the same
-#   for all gaps of a rotation, and does not average out;
-# - an oscillation of the case faster than a block appears in the scatter of samples only: the
-#   recorded part may end at any phase of it;
-# - in a ramp the acceleration may change between the neighbouring blocks: the straight line is
-#   wrong by up to a quarter of the change of rate between them.
-
-
-def gaps_of(part: Blocks) -> list[Gap]:
-    """The gaps between the k blocks of a turn, interpolated from the neighbouring blocks."""
-    seconds, steady = part.seconds, part.steady
-    gaps = []
-    for i in np.flatnonzero(part.missing).tolist():
-        lost = float(part.missing[i])
-        shares = np.zeros(len(part))
-        if steady[i - 1] and steady[i]:
-            shares[steady] = lost / seconds[steady].sum()
-        else:
-            # The straight line through the means of both blocks, at the middle of the gap.
-            weight = (seconds[i - 1] + lost) / (seconds[i - 1] + 2 * lost + seconds[i])
-            shares[i - 1 : i + 1] = lost * np.array([1 - weight, weight]) / seconds[i - 1 : i + 1]
-        gaps.append(Gap(i, lost, shares))
-    return gaps
-
-
-def weights_of(part: Blocks) -> Array:
-    """The weights of the k blocks of a turn in its sums, (k,), so that these have no gaps."""
-    return np.ones(len(part)) + sum((gap.shares for gap in gaps_of(part)), np.zeros(1))
-
-
-def sigma_of(
-    part: Blocks,
-    gaps: Sequence[Gap],
-    about: Array,
-    name: str,
-    noise: NoiseLevels,
-    rate_sigma: float,
-) -> float:
-    """The sigma of the interpolated angle of all gaps together, rad, without noise.
-
-    Parameters
-    ----------
-    about : (3,), axis of the turn; `name` of its manoeuvre
-    rate_sigma : relative, of the table's rate
-    """
-    if not gaps:
-        return 0.0
-    seconds, steady = part.seconds, part.steady
-    rate = np.nan_to_num(part.gyro) @ about
-    elapsed = np.cumsum(seconds + part.missing) - seconds / 2
-    density = np.nan_to_num(noise.of(name, "steady", GYRO))
-    oscillation = _oscillation(name, noise, about, float(seconds.sum() / part.counts.sum()))
-    # An oscillation slower than one period in a block is visible in the blocks.
-    longest = float(np.median(seconds)) / (2 * np.pi)
-    variance = sum(2 * (oscillation * min(gap.seconds, longest)) ** 2 for gap in gaps)
-
-    steady_gaps = [gap for gap in gaps if steady[gap.before - 1] and steady[gap.before]]
-    if steady_gaps:
-        longest_gap = max(steady_gaps, key=lambda gap: gap.seconds)
-        deviation = rate_deviation(
-            rate[steady],
-            seconds[steady],
-            elapsed[steady],
-            np.flatnonzero(steady) < longest_gap.before,
-            longest_gap.seconds,
-            float(np.linalg.norm(about * density)),
-        )
-        stated = rate_sigma * abs(float(np.average(rate[steady], weights=seconds[steady])))
-        variance += (max(deviation, stated) * sum(gap.seconds for gap in steady_gaps)) ** 2
-    change = np.abs(np.diff(rate)) / np.diff(elapsed)  # rad/s², from block to block
-    for gap in gaps:
-        if not any(gap is other for other in steady_gaps):
-            largest = change[max(gap.before - 2, 0) : gap.before + 1].max()
-            interval = elapsed[gap.before] - elapsed[gap.before - 1]
-            variance += (largest * interval / 4 * gap.seconds) ** 2
-    return float(np.sqrt(variance))
-
-
-def _oscillation(name: str, noise: NoiseLevels, about: Array, step: float) -> float:
-    """Scatter of the samples of the steady part about the axis beyond white noise, rad/s."""
-    white = noise.of(name, "steady", GYRO) ** 2 / step
-    excess = np.maximum(np.nan_to_num(noise.of_samples(name, "steady", GYRO) ** 2 - white), 0.0)
-    return float(np.sqrt(about**2 @ excess))
-
 
 # --- Windows of the angle of a turn, by the table's encoder ---
 
@@ -191,7 +100,8 @@ class Rotation:
 
     `begun`: whether the rest before it is in its record; one that is recorded in part and has
     none begins at another azimuth than that of the set position. `clock_sigma`: of the rate of the
-    clock of its log, relative.
+    clock of its log, relative; `off_ratio`: to its stated rate or angle, where by the other turns
+    it was another.
     """
 
     plan: Manoeuvre
@@ -200,6 +110,7 @@ class Rotation:
     refusal: str  # empty where it can be used
     begun: bool = True
     clock_sigma: float = 0.0
+    off_ratio: float | None = None
 
     @property
     def steady(self) -> Blocks:
@@ -292,7 +203,7 @@ class GyroInputs:
 def gyro_inputs(data: "CampaignData") -> GyroInputs:
     """Gather the static positions and rate segments of one mount."""
     positions, left_out = data.gyro_positions
-    recorded = list(_recorded_turns(data))
+    recorded = _without_others(list(_recorded_turns(data)), data.noise)
     usable = [rotation for rotation in recorded if not rotation.refusal]
     given = (data.noise, data.heading, data.rate_sigma)
     shared = data.shared_clock
@@ -340,6 +251,56 @@ def _recorded_turns(data: "CampaignData") -> Iterator[Rotation]:
             clock = data.clocks.get(m.log)
             timed = 0.0 if clock is None else clock.sigma
             yield Rotation(m, done, part, refusal_of(m, done, part), m.name in begun, timed)
+
+
+def _without_others(rotations: Sequence[Rotation], noise: NoiseLevels) -> list[Rotation]:
+    """The turns; one is refused that by the others was at another rate, or by another angle."""
+    result = list(rotations)
+    axes: dict[tuple[float, ...], list[int]] = {}
+    whole: list[int] = []
+    for place, turn in enumerate(rotations):
+        if turn.refusal:
+            continue
+        if turn.plan.recorded == "steady" and not turn.by_encoder:
+            axes.setdefault(tuple(np.abs(turn.plan.axis).round(3).tolist()), []).append(place)
+        elif turn.done.complete:
+            whole.append(place)
+    for places in axes.values():
+        runs = [rotations[i] for i in places]
+        stated, read, sigma = np.transpose([_rates(run, noise) for run in runs])
+        if (found := off_rate(stated, read, sigma)) is not None:
+            number, rate = found
+            ratio = rate / float(stated[number])
+            why = _("by the other runs it turned at {read} °/s, not at {stated} °/s")
+            result[places[number]] = _refused(runs[number], why, runs[number].plan.rate, ratio)
+    turned = [(rotations[i].done.angle, rotations[i].plan.angle) for i in whole]
+    ratios = np.array([angle / planned for angle, planned in turned if angle and planned])
+    if len(ratios) == len(whole) and (one := off_ratio(ratios)) is not None:
+        ratio = float(ratios[one] / np.median(ratios))
+        why = _("by the other turns it turned by {read}°, not by {stated}°")
+        place = whole[one]
+        result[place] = _refused(rotations[place], why, rotations[place].plan.angle, ratio)
+    return result
+
+
+def _rates(run: Rotation, noise: NoiseLevels) -> tuple[float, float, float]:
+    """Stated and read about the axis, without its sign, and the sigma, rad/s."""
+    m, part = run.plan, run.steady
+    sign = 1.0 if m.axis.sum() > 0 else -1.0
+    density = float(np.max(noise.of(m.name, "steady", GYRO)))
+    read = float(m.axis @ mean_rate(part))
+    return sign * (m.rate or 0.0), sign * read, density / float(part.seconds.sum()) ** 0.5
+
+
+def _refused(one: Rotation, why: str, stated: float | None, ratio: float) -> Rotation:
+    said = degrees(stated or 0.0)
+    why = why.format(read=significant(ratio * said, 4), stated=significant(said, 4))
+    return replace(one, refusal=why, off_ratio=ratio)
+
+
+def mean_rate(part: Blocks) -> Array:
+    """The mean reading of the gyros in some blocks, rad/s, (3,)."""
+    return np.asarray(np.average(part.gyro, weights=part.counts, axis=0))
 
 
 def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
@@ -427,7 +388,7 @@ def steady_rate_of(
         rate_sigma=abs(m.rate) * rate_sigma if m.rate_sigma is None else m.rate_sigma,
         seconds=part.seconds,
         elapsed=ends - part.seconds / 2,
-        mean=np.average(part.gyro, weights=part.counts, axis=0),
+        mean=mean_rate(part),
         sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(part.seconds.sum()),
     )
 

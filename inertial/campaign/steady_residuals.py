@@ -120,11 +120,15 @@ class SteadyTurn:
 
 
 def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
-    """The steady parts of all turns of one mount; none where its gyros are not determined."""
+    """The steady parts of all turns of one mount; none where its gyros are not determined.
+
+    Of a turn that was another than stated nothing is simulated that it could be compared with.
+    """
     gyro = data.result.gyro
     if gyro is None:
         return []
-    planned = {m.name: m for m in data.plan if m.do == "turn"}
+    others = {r.plan.name for r in data.gyro_inputs.recorded if r.off_ratio is not None}
+    planned = {m.name: m for m in data.plan if m.do == "turn" and m.name not in others}
     inverse = np.linalg.inv(gyro.matrix)
     steady_parts = []
     for name, rows in by_turn(simulated, ["time", *GYRO, *RESIDUALS, *OF_FORCE]):

@@ -64,7 +64,9 @@ WALK_AT_REST = _(
     "their noise within single static stretches shows it, and the differences between the "
     "stretches no more than that."
 )
-WALK_CONSEQUENCE = _("The sigmas of all parameters allow for it.")
+WALK_CONSEQUENCE = _(
+    "The sigmas of all parameters allow for it; the biases are those at the middle of the campaign."
+)
 REPEAT = _(
     "Record the positions once more, in another order, to distinguish a random walk from others."
 )

@@ -319,7 +319,7 @@ class Evidence:
             return NONE, _moved_by_clock(1e-6 * abs(cause.row["size"]), own), None
         in_matrix = cause.stage == COUNTS and int(cause.row["severity"]) < SPOILS
         if in_matrix or has_own_error(cause) or _rounds(cause):  # or in the covariance
-            return MODELLED, None, None
+            return LEFT_OUT if in_matrix and cause.manoeuvre else MODELLED, None, None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
         if cause.cause == "gap":

@@ -9,8 +9,8 @@ from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.gyroscope_methods import add_formulas, add_turn_and_stop
-from inertial.campaign.rate_segments import GyroInputs
-from inertial.campaign.records import omissions
+from inertial.campaign.rate_segments import GyroInputs, Rotation
+from inertial.campaign.records import omissions, with_mount
 from inertial.campaign.static_positions import averaging_times
 from inertial.estimation import gyroscopes
 from inertial.tables.stage import Stage, Tables
@@ -19,6 +19,7 @@ from stages.gyroscope.declared import DECLARED
 from stages.gyroscope.free_positions import add_free_gyros
 from stages.gyroscope.stated_heading import without_wrong_heading
 
+OFF_RATE, OFF_ANGLE = "wrong_rate", "turn_angle_error"
 CURES = {
     "bias": _("neither a rest nor a turn there and back shows it: add a rest"),
     "matrix": _(
@@ -45,6 +46,7 @@ def gyroscope(
         raised += [wrong] if wrong else []
         estimates, inputs = collected.on(data.mount), data.gyro_inputs
         raised += add_free_gyros(estimates, data)
+        raised += [_another_turn(r, data.mount) for r in inputs.recorded if r.off_ratio is not None]
         if inputs.is_empty:
             estimates.add_nothing("joint", omissions(inputs.left_out))
             continue
@@ -66,6 +68,27 @@ def gyroscope(
         if stops_between_turns(data.plan):
             add_turn_and_stop(estimates, inputs, fitted.scatter)
     return {**collected.tables(), "findings": table_of(raised)}
+
+
+def _another_turn(turn: Rotation, mount: str) -> Finding:
+    assert turn.off_ratio is not None
+    steady = turn.plan.recorded == "steady"
+    cause, angle = OFF_RATE if steady else OFF_ANGLE, abs(turn.plan.angle or 0.0)
+    return Finding(
+        id="/".join(("gyroscope", with_mount(cause, mount), turn.plan.name)),
+        cause=cause,
+        mount=mount,
+        sensor="gyro",
+        manoeuvre=turn.plan.name,
+        size=turn.off_ratio if steady else (turn.off_ratio - 1) * angle,
+        unit="1" if steady else "rad",
+        severity=1,
+        sentence=_("{name}: {why}.", name=turn.plan.name, why=turn.refusal),
+        consequence=_("Taken as stated its scale factor would be wrong, so it is left out."),
+        action=_("Correct the rate of the plan, or see what the table did.")
+        if steady
+        else _("Correct the angle of the plan, or see what the table did."),
+    )
 
 
 def _channels(inputs: GyroInputs) -> Booleans:
