@@ -3,8 +3,10 @@
     mean reading = M · (g u + δ × g u) + bias + noise
 
 u is the upward direction in body axes; δ the tilt of the position, with the sigma of the table; g
-one unknown with the sigma of gravity. That is linear in δ, so by hand it is set up about the tilt
-that the reading shows: g u (1 − cos δ), and the products of δ with cross terms, are not small then.
+one unknown with the sigma of gravity. That is linear in δ, so it is set up about the tilt that the
+reading shows, where that may be one of the position: by hand g u (1 − cos δ), and the products of δ
+with cross terms, are not small. What else tilts the case is an effect, linear in its angle, and
+what the cosine of that takes from g u follows from the reading.
 """
 
 from collections.abc import Hashable, Mapping, Sequence
@@ -37,6 +39,7 @@ PRIOR_SIGMA = np.append(np.ones(9), np.full(3, 10.0))
 ITERATIONS = 3  # linearisations about the last result
 BIAS = 9  # column of the first of the three biases
 MAX_RANDOM_WALK = 2e-3  # m/s²/√s, 10 mg/√h: a hundred times that of the poorest sensors
+MAX_SHOWN = 5.0  # sigma of a position that a tilt may be to be its own
 FREE_TILT = 0.2  # rad, sigma of the tilt of a position of which nothing is known
 SCATTER_BOUNDS = (1e-7, 1.0)  # m/s², between static positions beyond the noise
 
@@ -208,7 +211,8 @@ def _drifting(
     names += [("effect", name) for name in effect_sigma]
     prior = np.concatenate([PRIOR, [reference.gravity], np.zeros(len(effect_sigma))])
     effects = list(effect_sigma)
-    rows = linear_rows(statics, reference.gravity, about, prior, effects, reference.position_sigma)
+    known = (reference.gravity, about, prior, effects)
+    rows = linear_rows(statics, *known, reference.position_sigma, reference.free)
     noise = np.hypot([static.sigma for static in statics], scatter)
     same: dict[Hashable, list[int]] = {}
     for i, key in enumerate(keys):
@@ -246,16 +250,21 @@ def linear_rows(
     prior: Array,
     effects: Sequence[str],
     position_sigma: float = np.inf,
+    free: frozenset[str] = frozenset(),
 ) -> Array:
     """Coefficients of the s shared unknowns and of four tilts, and the observed, (n, 3, s + 5).
 
-    `position_sigma`: of the planned attitudes, rad.
+    `position_sigma`: of the planned attitudes, rad, but of those that are `free`.
     """
     s = len(prior)
     ups = np.array([static.up for static in statics])
     since = _since_switch_on(statics, gravity * ups, about, gravity * position_sigma)
     means = np.array([static.mean for static in statics])
     shown = _shown_tilts(statics, ups, about, means - since)
+    small = np.linalg.norm(shown, axis=1) <= MAX_SHOWN * position_sigma
+    own = small | np.array([static.position in free for static in statics])
+    versed = np.where(own, 0.0, 1 - np.cos(np.linalg.norm(shown, axis=1)))
+    shown[~own] = 0.0
     forces: Array = gravity * Rotation.from_rotvec(shown).apply(ups)
     rows = np.zeros((len(statics), 3, s + len(TILTS) + len(OF_AXIS) + 1))
     for row in range(3):
@@ -269,7 +278,8 @@ def linear_rows(
     for i in range(tilts.shape[1]):
         rows[:, :, s + i] = cross(tilts[:, i], forces) @ about.matrix.T
     # M times gravity is in the columns of both, and the tilts are the whole ones.
-    rows[:, :, -1] = means + (forces + cross(shown, forces)) @ about.matrix.T
+    changed = forces * (1 + versed)[:, None] + cross(shown, forces)
+    rows[:, :, -1] = means + changed @ about.matrix.T
     rows[:, :, -1] -= rows[:, :, :s] @ prior
     return rows
 
