@@ -118,6 +118,61 @@ def test_a_turn_the_wrong_way_is_found_and_refused(tmp_path):
     assert np.isnan(scale["value"])
 
 
+def rotated(*degrees):
+    """What motions through these angles about z show, with a rest of 20 s before each."""
+    zero, up = np.zeros(3), np.array([0, 0, 9.8])
+    rest = Observation(False, 20.0, up, zero, zero, zero)
+    shown = []
+    for angle in np.radians(degrees):
+        rate = np.array([0, 0, angle / 10.0])
+        shown += [rest, Observation(True, 10.0, up, rate, 10.0 * rate, zero)]
+    return [*shown, rest]
+
+
+def planned_turns(*degrees):
+    """Turns about z, which is up."""
+    nothing = dict.fromkeys(field.name for field in fields(Manoeuvre))
+    z = np.array([0.0, 0.0, 1.0])
+    turn = nothing | {"do": "turn", "recorded": "whole", "log": "log", "up": z, "about": z}
+    return [Manoeuvre(**turn | {"name": f"{k}", "angle": np.radians(d)})
+            for k, d in enumerate(degrees)]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("planned", "done", "places"),
+    [
+        # A change of position, then the turn, once as planned and once the other way.
+        ((360, -360), (5, 360, -360), (3, 5)),
+        ((360, -360), (5, -360, -360), (3, 5)),
+        ((360, -360), (90, -360, -360), (3, 5)),
+        # One of two was not done: the other one is as planned, and not this one the other way.
+        ((360, -360), (5, -360), (1, 3)),
+        ((360, -360), (5, 360), (3, None)),
+        # The log ends in a turn, and the table went back without plan.
+        ((360, 360), (360, -360, 200), (1, 5)),
+    ],
+)
+def test_a_whole_turn_the_other_way_is_the_turn_and_a_small_motion_is_not(planned, done, places):
+    found = match(planned_turns(*planned), rotated(*done))
+    assert tuple(found.values()) == places
+
+
+def test_one_turn_of_a_long_log_the_wrong_way_is_the_only_finding(tmp_path):
+    document = session()
+    plan = document["campaign"]["plan"]
+    # Before it the table goes from up-z to down-z, and a little about the axis of the turn.
+    (turn,) = (one for one in plan if one["id"] == "down-z-forward")
+    turn["degrees"] = -360
+    document["misstated"] = {"plan": {"down-z-forward": {"degrees": 360}}}
+    results = recorded(document, tmp_path)
+    (finding,) = results["segment/findings"].to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("wrong_direction", "down-z-forward")
+    assert finding["size"] == pytest.approx(-1, abs=2e-3)
+    assert "in place of 360°" in finding["sentence"]
+    assert "state degrees: -360 for down-z-forward" in finding["action"]
+    assert performed(results).drop("down-z-forward")["complete"].all()
+
+
 def test_a_count_of_the_wrong_unit_is_named(tmp_path):  # T3, what S0's own log says of its IMU
     document = chain.demo()
     document["campaign"]["plan"] = [

@@ -209,8 +209,20 @@ class WrongDirection(PlanDetector):
                 "methods.",
                 fixed=fixed((deviation.size - 1) * 100, 0),
             ),
-            _("Correct the sign of degrees or rate, or the axes of the gyros."),
+            _what_to_state(deviation.size, recorded, i),
         )
+
+
+def _what_to_state(ratio: float, recorded: Recorded, i: int) -> str:
+    """What the plan should have of a turn against it; `ratio`: recorded over planned."""
+    if abs(ratio + 1) > recorded.tolerance or not np.isfinite(recorded.angle[i]):
+        return _("Correct the sign of degrees or rate, or the axes of the gyros.")
+    return _(
+        "If the table was turned so, state degrees: {degrees} for {name}; otherwise correct the "
+        "axes of the gyros.",
+        degrees=f"{-float(np.degrees(recorded.angle[i])):.10g}",
+        name=recorded.name[i],
+    )
 
 
 def ratio_of(recorded: Recorded, i: int) -> float:

@@ -26,6 +26,10 @@ FAR_LESS = 0.5  # by which share a rest at that angle fits less than one in the 
 MAX_AXIS_ANGLE = np.radians(45)  # and a turn about another axis than the planned one, as by hand
 MIN_RECORDED_SHARE = 0.9  # share of the planned direction in the axes that are recorded, to show it
 WRONG_SENSE_SCORE = 0.01  # score of a turn against the planned direction
+# The same of one by the planned angle: more than that of a small motion the right way, or of a
+# quarter of the turn between two positions; two of them less than that of one turn as planned.
+WHOLE_WRONG_SENSE_SCORE = 0.3
+MAX_WHOLE_DIFFERENCE = 0.1  # of the planned angle, up to which it is by that angle
 
 
 def align(scores: Array) -> list[int | None]:
@@ -96,8 +100,8 @@ def points(forces: Array, up: Array) -> Booleans:
 def turn_scores(turned: Array, about: Array, planned: float | None) -> Array:
     """How well motions fit a planned turn: by angle, rad, or rate, rad/s, (n,).
 
-    A turn in the wrong direction is still the turn, unless a better one is there; a turn about
-    another axis is not.
+    A turn in the wrong direction is still the turn, unless a better one is there; by the planned
+    angle, it is rather the turn than a small part of it is. A turn about another axis is not.
 
     Parameters
     ----------
@@ -112,6 +116,8 @@ def turn_scores(turned: Array, about: Array, planned: float | None) -> Array:
         ratio = angle / planned
         forward = np.where(ratio > 0.005, np.maximum(1.0 - np.abs(1.0 - ratio), 0.02), 0.0)
         scores = np.where(ratio < -0.5, WRONG_SENSE_SCORE, forward)
+        whole = np.abs(ratio + 1.0) <= MAX_WHOLE_DIFFERENCE
+        scores = np.where(whole, WHOLE_WRONG_SENSE_SCORE, scores)
     other_axis = np.abs(angle) < np.cos(MAX_AXIS_ANGLE) * np.linalg.norm(own, axis=1)
     return np.where(other_axis, 0.0, scores)
 
