@@ -77,6 +77,14 @@ def count_size(sensor: str, key: str, factor: float) -> Edit:
     return edit
 
 
+def in_one_log(document: Document) -> None:
+    """All manoeuvres one after another, and the changes of position between them, 10 s each."""
+    for one in document["campaign"]["plan"]:
+        del one["log"]
+    document["campaign"]["log"] = "session.asc"
+    document["handling"]["change_s"] = 10
+
+
 def noisy(document: Document) -> None:
     """Gyros that do not see the earth turn: 3 °/√h is 40 °/h over a rest of 20 s."""
     document["noise"]["angle_random_walk_deg_sqrt_h"] = 3.0
@@ -133,6 +141,11 @@ SET_RIGHT = {
     ),
     "degrees read as radians": (
         [count_size("gyro", "count_rad", degrees(1))],
+        "count_size/gyro",
+        "wrong_scale_factor",
+    ),
+    "degrees read as radians in one log": (
+        [count_size("gyro", "count_rad", degrees(1)), in_one_log],
         "count_size/gyro",
         "wrong_scale_factor",
     ),

@@ -157,6 +157,20 @@ def test_a_whole_turn_the_other_way_is_the_turn_and_a_small_motion_is_not(planne
     assert tuple(found.values()) == places
 
 
+@pytest.mark.parametrize("unit", [180 / np.pi, np.pi / 180, 1000.0, 0.25])
+def test_turns_in_another_unit_are_not_the_changes_of_position(unit):
+    """A change by 90° before each turn is, in the wrong unit, as near to its plan or nearer."""
+    plan, done = planned_turns(360, -360, 720, -180), np.array([90, 360, 45, -360, 720, -90, -180])
+    assert list(match(plan, rotated(*done)).values()) == [3, 7, 9, 13]
+    assert list(match(plan, rotated(*unit * done)).values()) == [3, 7, 9, 13]
+
+
+def test_changes_of_position_alone_are_no_turns_in_another_unit():
+    """They are not all by one share of the planned angles; what is nearest is taken for each."""
+    found = match(planned_turns(360, -360, 360), rotated(90, 45, 90))
+    assert found == {"0": 1, "1": None, "2": 5}
+
+
 def test_one_turn_of_a_long_log_the_wrong_way_is_the_only_finding(tmp_path):
     document = session()
     plan = document["campaign"]["plan"]

@@ -30,6 +30,8 @@ WRONG_SENSE_SCORE = 0.01  # score of a turn against the planned direction
 # quarter of the turn between two positions; two of them less than that of one turn as planned.
 WHOLE_WRONG_SENSE_SCORE = 0.3
 MAX_WHOLE_DIFFERENCE = 0.1  # of the planned angle, up to which it is by that angle
+MIN_SCALED_TURNS = 2  # turns of a window that show one ratio to their plan, in another unit
+MIN_SCALE_RATIO = 1.5  # a ratio that the score of a turn as it is planned does not allow for
 
 
 def align(scores: Array) -> list[int | None]:
@@ -185,23 +187,93 @@ def match(
 ) -> dict[str, int | None]:
     """For each manoeuvre of a window its stretch, None where it is not found."""
     sought = [m for m in manoeuvres if m.do != "positions"]
-    moves = np.array([o.moves for o in observed], np.bool_)
-    seconds = np.array([o.seconds for o in observed], np.float64)
-    forces, rates, turned = (
-        np.array([getattr(o, name) for o in observed], np.float64).reshape(-1, 3)
-        for name in ("force", "rate", "turned")
-    )
-
-    def scores_of(m: Manoeuvre) -> Array:
-        if m.do == "rest":
-            return np.where(moves, 0.0, rest_scores(seconds, m.seconds, forces, m.up))
-        steady = m.recorded == "steady"
-        own, planned = (rates, m.rate) if steady else (turned, m.angle)
-        return np.where(moves, turn_scores(own, m.axis, planned), 0.0)
-
-    scores = np.array([scores_of(m) for m in sought], np.float64)
-    places = align(scores.reshape(len(sought), len(observed)))
+    seen = _Seen.of(observed)
+    places = align(seen.scores(sought))
+    turns = [k for k, m in enumerate(sought) if m.do == "turn"]
+    if len(turns) >= MIN_SCALED_TURNS:
+        ratios = seen.ratios([sought[k] for k in turns])
+        found = [
+            0.0 if places[k] is None else row[places[k]]
+            for k, row in zip(turns, ratios, strict=True)
+        ]
+        if np.count_nonzero(_by_the_plan(np.array(found))) < len(turns) / 2:
+            places = _by_one_ratio(seen, sought, turns, ratios) or places
     return {m.name: place for m, place in zip(sought, places, strict=True)}
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """What the n stretches of a window show, as arrays: (n,), and (n, 3) as of Observation."""
+
+    moves: Booleans
+    seconds: Array
+    forces: Array
+    rates: Array
+    turned: Array
+
+    @classmethod
+    def of(cls, observed: Sequence[Observation]) -> "_Seen":
+        forces, rates, turned = (
+            np.array([getattr(o, name) for o in observed], np.float64).reshape(-1, 3)
+            for name in ("force", "rate", "turned")
+        )
+        moves = np.array([o.moves for o in observed], np.bool_)
+        return cls(moves, np.array([o.seconds for o in observed], float), forces, rates, turned)
+
+    def turn(self, m: Manoeuvre) -> tuple[Array, float | None]:
+        """What is compared of a turn: rates or angles, (n, 3), and the planned one."""
+        return (self.rates, m.rate) if m.recorded == "steady" else (self.turned, m.angle)
+
+    def ratios(self, turns: Sequence[Manoeuvre]) -> Array:
+        """Every stretch over the plan of each of m turns, (m, n); 1 where nothing is planned."""
+        rows = []
+        for m in turns:
+            own, planned = self.turn(m)
+            rows.append(np.nan_to_num(own) @ m.axis / planned if planned else np.ones(len(own)))
+        return np.array(rows)
+
+    def scores(self, sought: Sequence[Manoeuvre], ratio: float = 1.0) -> Array:
+        """How well each of m manoeuvres fits each stretch, (m, n).
+
+        `ratio`: by how many times the gyros read too much.
+        """
+        rows = [self._scores(m, ratio) for m in sought]
+        return np.array(rows, np.float64).reshape(len(sought), len(self.moves))
+
+    def _scores(self, m: Manoeuvre, ratio: float) -> Array:
+        if m.do == "rest":
+            return np.where(
+                self.moves, 0.0, rest_scores(self.seconds, m.seconds, self.forces, m.up)
+            )
+        own, planned = self.turn(m)
+        return np.where(self.moves, turn_scores(own / ratio, m.axis, planned), 0.0)
+
+
+def _by_the_plan(ratios: Array) -> Booleans:
+    sizes = np.abs(ratios)
+    return np.asarray((sizes > 1 / MIN_SCALE_RATIO) & (sizes < MIN_SCALE_RATIO))
+
+
+def _by_one_ratio(
+    seen: _Seen, sought: Sequence[Manoeuvre], turns: Sequence[int], ratios: Array
+) -> list[int | None] | None:
+    """The places where every turn is the same multiple of its plan, as in another unit.
+
+    Of all that moves in a long log the changes of position are then as near to the plan as the
+    turns are, or nearer. None where no ratio has all turns to within MAX_WHOLE_DIFFERENCE.
+    `ratios`: of the turns, which are numbers among the manoeuvres, as of _Seen.
+    """
+    first = np.abs(ratios[0, seen.moves])
+    for ratio in np.sort(first[(first > 0) & ~_by_the_plan(first)])[::-1]:
+        near = seen.moves & (np.abs(ratios / ratio - 1) <= MAX_WHOLE_DIFFERENCE)
+        if near.any(axis=1).all():
+            places = align(seen.scores(sought, float(ratio)))
+            found = [places[k] for k in turns]
+            if all(
+                place is not None and own[place] for place, own in zip(found, near, strict=True)
+            ):
+                return places
+    return None
 
 
 def motion(binned: Binned, stretches: Sequence[BinStretch], place: int) -> tuple[int, int]:
