@@ -40,6 +40,7 @@ from inertial.detectors.temperatures import (
 )
 from inertial.detectors.turns_against_plan import (
     IncompleteTurn,
+    SampleRateByTurns,
     WrongDirection,
     WrongRate,
     WrongTimeUnitOfTurns,
@@ -101,6 +102,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     SignFlipAgainstPlan(),
     WrongScaleOfTurns(),
     WrongTimeUnitOfTurns(),
+    SampleRateByTurns(),
     ManoeuvreSwapped(),
     ManoeuvreMissing(),
     WrongDirection(),

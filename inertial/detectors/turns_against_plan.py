@@ -60,6 +60,86 @@ class WrongTimeUnitOfTurns(PlanDetector):
         )
 
 
+MIN_ALIKE_TURNS = 3  # that show another rate of the samples: two may be cut off alike
+MAX_TIME_SPREAD = 0.02  # of the ratios of the times of turns to their plan, and of their rates
+
+
+def time_ratio(recorded: Recorded) -> float | None:
+    """By how many times all turns take longer than planned at the planned rate.
+
+    None where they do not, or by thousands, as in another unit.
+    """
+    rate, angle = turn_ratios(recorded)
+    known = np.isfinite(rate) & np.isfinite(angle)
+    if np.count_nonzero(known) < MIN_ALIKE_TURNS or thousands_longer(recorded):
+        return None
+    rate, longer = rate[known], angle[known] / rate[known]
+    ratio = float(np.median(longer))
+    as_planned = np.abs(rate - 1).max() <= MAX_RATIO_SPREAD
+    alike = ratio > 0 and np.abs(longer / ratio - 1).max() <= MAX_TIME_SPREAD
+    off = abs(ratio - 1) > recorded.tolerance
+    return ratio if as_planned and alike and off else None
+
+
+class SampleRateByTurns(PlanDetector):
+    """All turns go at the planned rate, and by one ratio farther, or less far, than planned.
+
+    Cause: samples are counted by a rate at which they were not taken, or the clock of the logger
+    runs fast or slow. Rates are read as they are, so every angle, which is a rate times a time, is
+    off by that ratio.
+    """
+
+    name = "rate_off"
+    source = "125 samples per second, read as 100: 450° in a turn of 360°, at the planned rate"
+    severity = 3
+    sensor = "gyro"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        ratio = time_ratio(recorded)
+        if ratio is not None:
+            rate, angle = turn_ratios(recorded)
+            number = int(np.count_nonzero(np.isfinite(rate) & np.isfinite(angle)))
+            yield Deviation(None, "", ratio, self.sensor, count=number)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        ratio, stated = deviation.size, 1 / recorded.given.interval
+        assert ratio is not None
+        rate, angle = turn_ratios(recorded)
+        i = int(np.flatnonzero(np.isfinite(rate) & np.isfinite(angle))[0])
+        far, planned = np.degrees([recorded.moved[i], recorded.angle[i]]).tolist()
+        samples = _("the samples were taken {ratio} times as fast", ratio=significant(ratio, 3))
+        state = _("the rate at which they were taken")
+        if np.isfinite(stated):
+            taken = significant(stated * ratio, 3)
+            samples = _(
+                "{taken} samples were taken per second where {stated} are stated",
+                taken=taken,
+                stated=significant(stated),
+            )
+            state = f"rate_hz: {taken}"
+        return Description(
+            _(
+                "All {count} turns go at the planned rate, and {ratio} times as far as planned "
+                "({name}: {far}° in place of {planned}°): as if {samples}.",
+                count=deviation.count,
+                ratio=significant(ratio, 4),
+                name=recorded.name[i],
+                far=fixed(far, 2),
+                planned=fixed(planned, 0),
+                samples=samples,
+            ),
+            _(
+                "Angles of turns, durations, drifts and noise densities are off by this factor; no "
+                "angle fits the plan, so the turns are left out."
+            ),
+            _(
+                "Nothing is changed. State {state}, or correct the time of the logs; if the table "
+                "did turn so far, correct degrees in the plan.",
+                state=state,
+            ),
+        )
+
+
 class IncompleteTurn(PlanDetector):
     """A turn that was not recorded from rest to rest, or not to the planned angle.
 
@@ -75,7 +155,7 @@ class IncompleteTurn(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        if thousands_longer(recorded):
+        if thousands_longer(recorded) or time_ratio(recorded) is not None:
             return
         common = common_turn_ratio(recorded)
         _, angle = turn_ratios(recorded)
@@ -134,7 +214,8 @@ def _if_taken(recorded: Recorded, i: int) -> str:
     if seconds > 0 and abs(planned - read) > 0:
         said[0] += _(", bias by {fixed} °/s", fixed=fixed(abs(planned - read) / (2 * seconds), 4))
     rounded = round(read)
-    if rounded and abs(read / rounded - 1) < 0.5:
+    too_far = abs(read) > abs(planned)  # no part of the planned angle, which one might round
+    if rounded and abs(read / rounded - 1) < 0.5 and not too_far:
         said.append(
             _(
                 "rounded to {rounded}°, {wrong_by}",

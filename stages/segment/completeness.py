@@ -321,11 +321,7 @@ def _from_rest_to_rest(turned: _Turned, tolerance: float) -> Performed:
     lacking = missing.angle if bridged else m.angle - angle if m.angle is not None else None
     why = _(", and ").join([*lost, *reasons])
     sentence = _("{of} recorded{remark}: {why}", of=of, remark=turned.remark, why=why)
-    sentence += (
-        _("; {signed}° are missing.", signed=fixed(degrees(lacking), 2))
-        if lacking is not None
-        else "."
-    )
+    sentence += _lacking_in_words(lacking, m)
     if bridged:
         sentence += _(" The rate before and after gives them, so the joint estimate uses the turn.")
     return Performed(
@@ -341,6 +337,15 @@ def _from_rest_to_rest(turned: _Turned, tolerance: float) -> Performed:
         bridged,
         lost=not reasons,
     )
+
+
+def _lacking_in_words(lacking: float | None, m: Manoeuvre) -> str:
+    """The end of a sentence: what a turn lacks of its planned angle, or how far beyond it it is."""
+    if lacking is None:
+        return "."
+    if m.angle and lacking * m.angle < 0:
+        return _("; it is {beyond}° too far.", beyond=fixed(abs(degrees(lacking)), 2))
+    return _("; {signed}° are missing.", signed=fixed(degrees(lacking), 2))
 
 
 def with_clipped(done: Performed, clipped: Mapping[str, Booleans]) -> Performed:

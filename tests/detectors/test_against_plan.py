@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import degrees
+from pathlib import Path
 from typing import Any
 
 import chain
@@ -309,6 +310,53 @@ def test_an_incomplete_turn_says_what_a_wrong_angle_would_cost():
     share = 1e6 * (degrees(turn["angle"]) / -360 - 1)
     thin = finding["consequence"].replace("\u202f", "").replace("−", "-")
     assert f"wrong by {share:.0f} ppm ({share / 2:.0f} ppm in a pair" in thin
+
+
+@pytest.mark.parametrize("name", ["x-forward", "z-backward"])
+def test_a_turn_that_goes_too_far_lacks_nothing(name):
+    document = chain.short()
+    (turn,) = (one for one in document["campaign"]["plan"] if one["id"] == name)
+    planned = turn["degrees"]
+    turn["degrees"] = 1.25 * planned
+    document["misstated"] = {"plan": {name: {"degrees": planned}}}
+    results = run(document)
+    (finding,) = found_in(results).to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("incomplete_turn", name)
+    beyond = abs(degrees(performed(results).loc[name, "angle"]) - planned)
+    assert beyond == pytest.approx(90, abs=0.3)
+    assert finding["sentence"].endswith(f"it is {beyond:.2f}° too far.")
+    assert "missing" not in finding["sentence"] and "rounded" not in finding["consequence"]
+
+
+def counted_by_100_hz(rate: float, folder: Path) -> chain.Results:
+    """The short campaign in columns without stamps, with turns of two angles, sampled at `rate`."""
+    document = chain.short()
+    document["receiver"] |= {"message": "columns", "line_end": "lf", "rate_hz": rate}
+    document["campaign"]["instrument"] = {"name": "simulated", "rate_hz": 100}
+    for one in document["campaign"]["plan"]:
+        if one["do"] == "turn" and one["up"] == "+y":
+            one["degrees"] *= 2
+    campaign = chain.simulate(document, folder / "campaign") / "campaign.yaml"
+    text = campaign.read_text()
+    assert "time: {column: time, unit: s}" in text
+    campaign.write_text(text.replace("time: {column: time, unit: s}", "time: {rate_hz: 100}"))
+    return chain.run(campaign.parent, folder / "derived", "segment")
+
+
+@pytest.mark.parametrize("rate", [125, pytest.param(50, marks=pytest.mark.slow)])
+def test_samples_that_are_counted_by_another_rate_are_one_finding(rate, tmp_path):
+    """Rates are read as they are, and every angle is off by the same ratio."""
+    results = counted_by_100_hz(rate, tmp_path)
+    (finding,) = found_in(results).to_dict("records")
+    assert (finding["cause"], finding["sensor"], finding["count"]) == ("rate_off", "gyro", 6)
+    assert finding["size"] == pytest.approx(rate / 100, rel=2e-3)
+    assert f"as if {rate}" in finding["sentence"] and f"rate_hz: {rate}" in finding["action"]
+    assert performed(results)["found"].all()
+
+
+def test_samples_that_are_counted_by_their_rate_raise_nothing(tmp_path):
+    results = counted_by_100_hz(100, tmp_path)
+    assert found_in(results).empty and performed(results)["complete"].all()
 
 
 @pytest.mark.parametrize(("line", "samples"), [(500, 60), (330, 100)], ids=["steady", "ramp"])
