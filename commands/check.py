@@ -19,7 +19,7 @@ from pathlib import Path
 
 from commands.no_result import NoResult, no_results
 from inertial import tables
-from inertial.campaign.explanations import ExplainedFindings, compete
+from inertial.campaign.explanations import ExplainedFindings, circumstances, compete
 from inertial.campaign.hypotheses import Findings, hypotheses
 from inertial.campaign.records import Performed, performed_of, rows_of
 from inertial.tables.declared import read_declared
@@ -48,13 +48,14 @@ INDENT = " " * 4
 @dataclass(frozen=True)
 class Recording:
     """What gets no result; causes, the worst first; what was performed of each manoeuvre; refused
-    lines by log.
+    lines by log; what is said of the recording beside its causes, for it is no fault.
     """
 
     without: Sequence[NoResult]
     causes: Sequence[ExplainedFindings]
     performed: Sequence[Performed]
     refused: dict[str, int]
+    remarks: Sequence[str] = ()
 
     @property
     def spoiled(self) -> bool:
@@ -99,7 +100,8 @@ def recording_of(derived: Path) -> Recording:
     severities = _severities(derived / "diagnosis/causes.parquet")
     explained = [_as_diagnosed(each, severities) for each in compete(list(hypotheses(findings)))]
     causes = sorted(explained, key=_worst_first)
-    return Recording(list(no_results(derived)), causes, list(performed.values()), refused)
+    remarks = [row["sentence"] for row in circumstances(rows_of(findings.segment_findings))]
+    return Recording(list(no_results(derived)), causes, list(performed.values()), refused, remarks)
 
 
 def _severities(diagnosed: Path) -> dict[tuple[str, str], int]:
@@ -175,6 +177,7 @@ def _recorded(recording: Recording, campaign: str) -> str:
         )
         for log, lines in recording.refused.items()
     ]
+    sentences += recording.remarks
     return "\n".join(_wrapped(shortened(sentence, 300)) for sentence in sentences)
 
 

@@ -7,10 +7,11 @@ import chain
 import numpy as np
 import pytest
 
+import laboratory
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.rests_and_motions import BinStretch
 from stages.segment import windows
-from stages.segment.matching import Observation, match, rest_part
+from stages.segment.matching import Observation, divide, locate, match, rest_part
 
 
 def performed(results: chain.Results):
@@ -305,3 +306,100 @@ def test_a_rest_keeps_clear_of_motion_however_long_the_bins_are(bin_seconds, mar
     )
     part = rest_part(one, BinStretch(moves=False, first=30, after=90), "rest", margin)
     assert (part.first, part.after) == (first, after)
+
+
+MARKS = {"x": "yz", "y": "zx", "z": "xy"}
+
+
+def by_azimuths(without: tuple[str, ...] = ()) -> dict:
+    """Four azimuths on each of six faces, in one log, but for rests that are not done."""
+    document = chain.short()
+    document["receiver"] |= {"message": "columns", "line_end": "lf"}
+    document["campaign"]["instrument"] = {"name": "simulated", "rate_hz": 100}
+    document["campaign"]["plan"] = [
+        {"id": f"{up}-{k}", "do": "rest", "up": up, "mark": sign + mark, "seconds": 20}
+        for up in (way + axis for axis in "xyz" for way in "+-")
+        for k, (sign, mark) in enumerate((s, m) for s in "+-" for m in MARKS[up[1]])
+        if f"{up}-{k}" not in without
+    ]
+    document["campaign"]["log"] = "session.csv"
+    document["campaign"]["table"]["heading_deg"] = 20
+    document["handling"]["change_s"] = 8
+    return document
+
+
+def of_accelerometers(text: str) -> str:
+    """The columns of the gyros are not read."""
+    start = text.index("gyro: {columns")
+    return text[:start] + text[text.index("accelerometer: {columns") :]
+
+
+def test_turns_that_accelerometers_do_not_see_leave_the_rests_of_the_plan():
+    recording = laboratory.perform(laboratory.specify(by_azimuths()))
+    results = chain.in_memory(recording, "diagnosis", edit=of_accelerometers)
+    done, rests = performed(results), results["segment/segments"].set_index("manoeuvre")
+    assert done["found"].all() and len(rests) == 24
+    # Where they were, one every 28 s, but for a part of the time of a change: none shows it better.
+    np.testing.assert_allclose(rests["from_s"], 28.0 * np.arange(24), atol=4)
+    (finding,) = results["segment/findings"].to_dict("records")
+    assert (finding["cause"], finding["count"], finding["size"]) == ("rests_divided", 6, 24)
+    assert "+x-0, +x-1, +x-2, +x-3" in finding["sentence"]
+    # It is no fault, and nothing is said of gyros but that there are none.
+    assert results["diagnosis/causes"].empty
+    first, second = results["diagnosis/verdict"].to_dict("records")
+    assert (first["sensor"], first["verdict"]) == ("accel", "usable")
+    assert second["sentence"] == "Gyros: none is recorded."
+
+
+def test_gyros_that_are_recorded_show_the_turns_between():
+    recording = laboratory.perform(laboratory.specify(by_azimuths()))
+    results = chain.in_memory(recording, "segment")
+    assert performed(results)["found"].all() and results["segment/findings"].empty
+
+
+def still(forces, seconds):
+    """A log of accelerometers alone in bins of 0.1 s, with z up, that nothing is seen to move."""
+    time = 0.1 * np.arange(round(10 * seconds))
+    nothing = np.full((len(time), 3), np.nan)
+    level = np.array([0, 0, 9.8]) + forces(time)
+    window = windows.Window("log", 0, len(time), [])
+    edges = np.arange(len(time) + 1)
+    return windows.Binned(window, edges, nothing, level, np.full(len(time), 0.1), time, time)
+
+
+def planned_rests(*seconds):
+    nothing = dict.fromkeys(field.name for field in fields(Manoeuvre))
+    rest = nothing | {"do": "rest", "log": "log", "up": np.array([0.0, 0.0, 1.0])}
+    return [Manoeuvre(**rest | {"name": f"{k}", "seconds": s}) for k, s in enumerate(seconds)]
+
+
+def parts(binned, plan):
+    division = divide(binned, np.zeros(3), 0.01, 0.001)
+    located = locate(division, manoeuvres=plan)
+    places = [located.place(m) for m in plan]
+    return [None if p is None else (located.stretches[p].first, located.stretches[p].after)
+            for p in places]  # fmt: skip
+
+
+def test_a_still_stretch_is_divided_at_equal_distances_where_no_reading_shows_more():
+    noise = np.random.default_rng(7).standard_normal((1000, 3))
+    quiet = still(lambda time: 1e-4 * noise, 100)
+    # Three rests of 20 s in 100 s, and 20 s between them.
+    assert parts(quiet, planned_rests(20, 20, 20)) == [(0, 200), (400, 600), (800, 1000)]
+
+
+def test_another_tilt_divides_a_still_stretch_where_it_begins():
+    """The second position is off by 1 mrad, and begins at 30 s: equal distances are 20 s off."""
+    noise = np.random.default_rng(7).standard_normal((1000, 3))
+    tilted = still(
+        lambda time: 1e-4 * noise + np.outer((time > 30) & (time < 55), [9.8e-3, 0, 0]), 100
+    )
+    first, second, third = parts(tilted, planned_rests(20, 20, 20))
+    assert first[1] <= 301 and third[0] >= 549
+    assert second[0] >= 300 and second[1] <= 551
+
+
+def test_a_rest_for_which_a_still_stretch_has_no_time_is_missing():
+    noise = np.random.default_rng(7).standard_normal((500, 3))
+    quiet = still(lambda time: 1e-4 * noise, 50)
+    assert parts(quiet, planned_rests(20, 20, 20)).count(None) == 1

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from inertial.campaign.hypotheses import LAW, MAX_CARRYING, MODEL, POSITIONS, Hypothesis
+from inertial.campaign.records import Row
 from inertial.sensors import SENSORS
 
 Where = Callable[[Hypothesis, Hypothesis], bool]
@@ -81,7 +82,7 @@ _KIND = {
     for name in names
 }
 # What a recording shows of its circumstances: no fault; whether it matters follows from the model.
-CIRCUMSTANCES = ("temperature_drift",)
+CIRCUMSTANCES = ("temperature_drift", "rests_divided")
 MAX_WALK_P = 0.005  # as of all names together, of a random walk that is a cause and no mere noise
 PER_RUN = ("accel_bias_per_log", "gyro_bias_per_log")
 MISFITS = ("unexplained", "unknown_structure")
@@ -237,6 +238,11 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
         for rule in EXPLANATIONS
     )
+
+
+def circumstances(findings: Sequence[Row]) -> Iterator[Row]:
+    """Those of some findings that tell of circumstances, and are no fault."""
+    yield from (row for row in findings if row["cause"] in CIRCUMSTANCES)
 
 
 def is_of_wrong_place(cause: Hypothesis, other: Hypothesis) -> bool:

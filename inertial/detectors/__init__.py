@@ -13,7 +13,12 @@ from inertial.detectors.dead_axis import DeadAxis
 from inertial.detectors.gap import Gap
 from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.impact import Impact
-from inertial.detectors.manoeuvres_against_plan import ManoeuvreMissing, ManoeuvreSwapped, ShortRest
+from inertial.detectors.manoeuvres_against_plan import (
+    ManoeuvreMissing,
+    ManoeuvreSwapped,
+    RestsDivided,
+    ShortRest,
+)
 from inertial.detectors.misread_axes_and_signs import (
     AxisSwap,
     AxisSwapAgainstPlan,
@@ -109,5 +114,6 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     IncompleteTurn(),
     WrongRate(),
     ShortRest(),
+    RestsDivided(),
     TemperatureMisstated(),
 )

@@ -15,7 +15,7 @@ from inertial.signal.plan_detector import (
     rivals_in_words,
 )
 from inertial.text.messages import _
-from inertial.text.numbers import fixed, significant
+from inertial.text.numbers import counted, fixed, significant
 from inertial.text.parameters import AXES
 
 SAME_REST_COSINE = float(np.cos(np.radians(1)))  # of two rests with no move between
@@ -268,4 +268,42 @@ class ShortRest(PlanDetector):
                 times=times,
             ),
             _("It is used with the sigma that it has. Record it whole."),
+        )
+
+
+class RestsDivided(PlanDetector):
+    """Rests of one direction in one still stretch, which the plan alone divides.
+
+    Cause: accelerometers do not see a turn about the vertical, and no gyro is recorded. It is no
+    fault: each rest has its planned time; a part of a turn that is taken for rest adds nothing but
+    what a lever arm makes of its rate, and of another tilt, and none that the readings show.
+    """
+
+    name = "rests_divided"
+    source = "four azimuths on each of six faces, accelerometers alone: 24 positions in 6 stretches"
+    unit = "positions"
+    sensor = "accel"
+    severity = 1
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        if recorded.divided:
+            number = sum(len(names) for names in recorded.divided)
+            yield Deviation(None, "", float(number), self.sensor, count=len(recorded.divided))
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        assert deviation.size is not None
+        return Description(
+            _(
+                "{rests} of the plan lie in stretches in which nothing is seen to move, "
+                "{stretches} in all, of which the first has {names}: no gyro is recorded, and "
+                "accelerometers do not see a turn about the vertical.",
+                rests=counted(round(deviation.size), "rest"),
+                stretches=deviation.count,
+                names=", ".join(recorded.divided[0]),
+            ),
+            _(
+                "Each stretch is divided by the planned times, at equal distances or where its "
+                "readings vary clearly less. A part of the turns between may be within a rest."
+            ),
+            _("Nothing need be done. Where the times are known, state the span of each rest."),
         )

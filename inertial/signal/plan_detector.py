@@ -118,7 +118,7 @@ class Recorded:
     gyro_signs: (3,), +1 right and −1 wrong, by the earth rate, 0 where it does not show.
     misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of
     the gyros that were undone, restated: rates of the plan. reversed: turns that are taken the
-    other way.
+    other way. divided: the rests of each still stretch that only the plan divides.
     tolerance: accepted difference of an angle or a rate from the plan's, 1.
     """
 
@@ -159,6 +159,7 @@ class Recorded:
     rescaled: Sequence[Rescaled] = ()
     restated: Sequence[Rescaled] = ()
     reversed: Sequence[Reversed] = ()
+    divided: Sequence[Sequence[str]] = ()
 
     @property
     def explained(self) -> set[str]:

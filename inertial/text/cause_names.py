@@ -98,6 +98,7 @@ NAMES = {
     "manoeuvre_missing": _("missing manoeuvre"),
     "manoeuvre_swapped": _("exchanged manoeuvres"),
     "rate_off": _("another sample rate"),
+    "rests_divided": _("rests that only the plan divides"),
     "sign_flip": _("reversed sign"),
     "size_effect": _("size effect of the accelerometers"),
     "status_invalid": _("invalid status"),

@@ -21,6 +21,7 @@ DECLARED = Declared(
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "masks": From("quality", tables.MASKS),
         "gaps": From("quality", tables.GAPS),
+        "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
         "segments": From("segment", tables.SEGMENTS),
         "manoeuvres": From("segment", tables.MANOEUVRES),
         "tolerances": From("plan", tables.TOLERANCES),

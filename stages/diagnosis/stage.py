@@ -15,7 +15,7 @@ from stages.diagnosis.declared import DECLARED
 from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.sizes_of_causes import by_result, sentences, sizes
 from stages.diagnosis.temperature_curves import curve_rows
-from stages.diagnosis.verdict import NOT_USABLE, Verdict, verdict
+from stages.diagnosis.verdict import NOT_USABLE, Verdict, not_recorded, verdict
 
 
 def diagnosis(
@@ -27,6 +27,7 @@ def diagnosis(
     swept: pd.DataFrame,
     noise_alone: bool,
     tolerances: pd.DataFrame,
+    channel_statistics: pd.DataFrame,
 ) -> Tables:
     """Causes, consequences, members of classes, the result with its covariance, the verdict.
 
@@ -38,6 +39,7 @@ def diagnosis(
     effects : of criticism: sizes of the effects
     swept : of criticism: changes with temperature of what one attitude shows
     noise_alone : whether the campaign is a recording of the noise
+    channel_statistics : of the logs, by which it is known what is recorded
     """
     explained = list(compete(list(hypotheses(findings))))
     results = list(estimated.results(explained))
@@ -49,8 +51,12 @@ def diagnosis(
         frozenset(curves),
     )
     causes = evidence.causes(explained)
+    recorded = _recorded(channel_statistics)
+    results.sort(key=lambda result: result.sensor not in recorded)
     verdicts = [
         verdict(result, causes, _range(swept, result.sensor, result.mount), only_noise=noise_alone)
+        if result.sensor in recorded
+        else not_recorded(result.sensor)
         for result in results
     ]
     by_criticism = rows_of(effects)
@@ -83,6 +89,12 @@ def diagnosis(
             for result, given in zip(results, verdicts, strict=True)
         ],
     }
+
+
+def _recorded(channel_statistics: pd.DataFrame) -> set[str]:
+    """The sensors of which a log has readings; all of them where none has."""
+    there = channel_statistics["smallest"].notna()
+    return set(channel_statistics["sensor"][there]) or set(channel_statistics["sensor"])
 
 
 def _members(cause: Cause, findings: Findings) -> Iterator[Row]:

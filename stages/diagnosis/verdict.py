@@ -111,6 +111,11 @@ def verdict(
     )
 
 
+def not_recorded(sensor: str) -> Verdict:
+    """Of a sensor that the campaign does not have: there is nothing to be judged."""
+    return Verdict(NOT_USABLE, _("{sensors}: none is recorded.", sensors=HEADINGS[sensor]))
+
+
 def _names(causes: Sequence[Cause], remark: Callable[[Cause], str] | None = None) -> str:
     """The causes in words, each with a remark; of many the first, what is harmless last."""
     causes = sorted(causes, key=_harmless)

@@ -122,6 +122,7 @@ def recorded_of(
         rescaled=undone.rescaled,
         restated=undone.restated,
         reversed=undone.reversed,
+        divided=[names for located in explained.located for names in located.divided],
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from inertial.campaign.explanations import circumstances
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
@@ -148,6 +149,8 @@ def parts(tables: Tables) -> Iterator[Part]:
     own = {row["id"]: findings_of(tables, row) for row in rows if in_recording(tables, row)}
     if not own:
         yield Paragraph(_("None: nothing is wrong in the recording and its segments."), "good")
+    for row in circumstances(tables.rows("segment_findings")):
+        yield Paragraph(f"{row['sentence']} {row['consequence']} {row['action']}")
     shown = evidence(tables, [each for found in own.values() for each in found[:MOST_SHOWN]])
     for row in (row for row in rows if row["id"] in own):
         yield Heading(title_of(tables, row), f"evidence/{row['id']}")

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 from math import degrees
 
+from inertial.sensors import CHANNELS, COLUMNS
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import (
@@ -89,9 +90,21 @@ MOST_CONSEQUENCES = 8
 
 @once
 def worst(tables: Tables) -> str:
-    """The verdict of the campaign: the worst of its sensors."""
-    given = {row["verdict"] for row in tables.rows("verdict")}
+    """The verdict of the campaign: the worst of its sensors that are recorded."""
+    recorded = _recorded(tables)
+    given = {row["verdict"] for row in tables.rows("verdict") if row["sensor"] in recorded}
     return next((level for level in LEVELS if level in given), "not_usable")
+
+
+def _recorded(tables: Tables) -> frozenset[str]:
+    """The sensors of which a manoeuvre has readings; all of them where none has."""
+    blocks = tables.frame("blocks")
+    there = {
+        sensor
+        for sensor, own in COLUMNS.items()
+        if blocks[list(CHANNELS[own])].notna().any(axis=None)
+    }
+    return frozenset(there or COLUMNS)
 
 
 def verdict_sentences(tables: Tables) -> Iterator[str]:
@@ -272,7 +285,7 @@ SECTION = outline.Section(
     _("What is wrong, and what was done"),
     _("Each cause once, with its consequences: how sure and how large it is, and its cure."),
     "",
-    (*FINDING_TABLES, "campaign", "known", "clocks"),
+    (*FINDING_TABLES, "campaign", "known", "clocks", "blocks"),
     parts,
 )
 
