@@ -248,6 +248,26 @@ def test_nothing_is_wrong(clean: list[Results], tmp_path: Path, capsys) -> None:
     ]
 
 
+def test_what_is_no_fault_is_said_once_and_is_no_cause(
+    clean: list[Results], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = copied(clean[0], tmp_path / "data")
+    nothing = dict.fromkeys(column.name for column in tables.FINDINGS.columns)
+    told = {"id": "segment/rests_divided", "cause": "rests_divided", "sensor": "accel"}
+    told |= {"sentence": "24 rests lie in 6 stretches.", "consequence": "", "action": ""}
+    told |= {"mount": "", "count": 6, "size": 24.0, "unit": "positions", "severity": 1}
+    path = data / f"derived/{NAME}/segment/findings.parquet"
+    path.unlink()
+    write_once(tables.FINDINGS, path, tables.FINDINGS.frame([nothing | told]))
+    assert check(data) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "demo: 12 of 12 manoeuvres found, 12 complete.",
+        "24 rests lie in 6 stretches.",
+        "",
+        "No cause of a fault was found in this recording.",
+    ]
+
+
 def test_lines_that_cannot_be_read_are_not_passed_over(
     clean: list[Results], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

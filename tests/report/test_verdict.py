@@ -52,6 +52,18 @@ def test_each_sensor_has_its_sentence_on_the_page_and_in_the_text() -> None:
         assert as_text(made).count(sentence) == 1
 
 
+def test_a_sensor_that_is_not_recorded_is_not_the_verdict_of_the_campaign() -> None:
+    made = synthetic.brief()
+    made["verdict"] = made["verdict"].assign(
+        verdict=made["verdict"]["sensor"].map({"accel": "usable", "gyro": "not_usable"})
+    )
+    read = dict.fromkeys((f"accel_{axis}" for axis in "xyz"), 0.1)
+    blocks = pd.DataFrame([read]).reindex(columns=list(tables.BLOCKS.empty().columns))
+    assert "Verdict: usable All" in as_text(made | {"blocks": blocks})
+    both = blocks.assign(gyro_x=0.1)
+    assert "Verdict: not usable" in as_text(made | {"blocks": both})
+
+
 def test_each_cause_has_one_card_that_answers_every_question() -> None:
     made = synthetic.brief()
     found = cards(made)
