@@ -18,6 +18,7 @@ from inertial.text.units import DEGREE
 
 CAUSE = "heading_error"
 MIN_ANGLE = 15 * DEGREE  # less criticism finds, beside what else may be wrong
+MAX_P_VALUE = 1e-6  # of the fit with the stated heading
 MIN_SIGMAS = 10.0
 MAX_REST = 1 / 3  # of what the stated heading leaves beyond noise: else more than it is wrong
 
@@ -27,8 +28,10 @@ def without_wrong_heading(data: CampaignData) -> tuple[CampaignData, Finding | N
     stated = data.heading
     if stated is None or data.gyro_inputs.is_empty:
         return data, None
-    free = data.without_heading
-    with_stated, fitted = _joint(data), _joint(free)
+    with_stated, free = _joint(data), data.without_heading
+    if with_stated.p_value(data.noise.degrees) > MAX_P_VALUE:
+        return data, None
+    fitted = _joint(free)
     column = {name: i for i, name in enumerate(fitted.names)}
     own = [column[name] for k in (0, 1) if (name := (f"level {k}", TABLE)) in column]
     if not own or not fitted.determined[own].all():
