@@ -262,8 +262,8 @@ def _without_others(rotations: Sequence[Rotation], noise: NoiseLevels) -> list[R
         if turn.refusal:
             continue
         if turn.plan.recorded == "steady" and not turn.by_encoder:
-            axes.setdefault(tuple(np.abs(turn.plan.axis).round(3).tolist()), []).append(place)
-        elif turn.done.complete:
+            axes.setdefault(_line_of(turn), []).append(place)
+        elif turn.plan.recorded == "whole" and turn.done.complete:
             whole.append(place)
     for places in axes.values():
         runs = [rotations[i] for i in places]
@@ -275,12 +275,18 @@ def _without_others(rotations: Sequence[Rotation], noise: NoiseLevels) -> list[R
             result[places[number]] = _refused(runs[number], why, runs[number].plan.rate, ratio)
     turned = [(rotations[i].done.angle, rotations[i].plan.angle) for i in whole]
     ratios = np.array([angle / planned for angle, planned in turned if angle and planned])
-    if len(ratios) == len(whole) and (one := off_ratio(ratios)) is not None:
+    lines = [_line_of(rotations[i]) for i in whole]
+    if len(ratios) == len(whole) and (one := off_ratio(ratios, lines)) is not None:
         ratio = float(ratios[one] / np.median(ratios))
         why = _("by the other turns it turned by {read}°, not by {stated}°")
         place = whole[one]
         result[place] = _refused(rotations[place], why, rotations[place].plan.angle, ratio)
     return result
+
+
+def _line_of(turn: Rotation) -> tuple[float, ...]:
+    """Its axis, whichever way it points."""
+    return tuple(np.abs(turn.plan.axis).round(3).tolist())
 
 
 def _rates(run: Rotation, noise: NoiseLevels) -> tuple[float, float, float]:

@@ -7,8 +7,10 @@ goes as fast the other way.
 
 Turns by an angle read as many times that as the scale factors are, which are alike or nearly so:
 one that reads otherwise, by far more than the others differ, was another turn. An asymmetry of a
-gyro would move two of them, each as far.
+gyro would move two of them, each as far; a scale factor all turns about its axis.
 """
+
+from collections.abc import Hashable, Sequence
 
 import numpy as np
 
@@ -41,11 +43,16 @@ def off_rate(stated: Array, read: Array, sigma: Array) -> tuple[int, float] | No
     return max(found)[1:] if found else None
 
 
-def off_ratio(ratios: Array) -> int | None:
-    """The number of the turn whose recorded over stated angle, (n,), is off; None where none is."""
+def off_ratio(ratios: Array, axes: Sequence[Hashable]) -> int | None:
+    """The number of the turn whose recorded over stated angle is off; None where none is.
+
+    ratios, axes : of the n turns
+    """
     if len(ratios) <= MIN_OTHERS:
         return None
     one = int(np.argmax(np.abs(ratios - np.median(ratios))))
+    if list(axes).count(axes[one]) < 2:
+        return None
     others = np.delete(ratios, one)
     off = abs(ratios[one] - np.median(others))
     spread = max(float(np.abs(others - np.median(others)).max()), LEAST_SPREAD)

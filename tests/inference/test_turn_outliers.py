@@ -40,7 +40,10 @@ def test_two_of_four_runs_may_be_off_so_neither_is():
 
 def test_the_turn_by_another_angle_is_told_and_an_asymmetry_is_none():
     scales = 1 + np.array([5e-4, 5e-4, -2e-4, -2e-4, 3e-4, 3e-4])
-    assert off_ratio(scales) is None
-    assert off_ratio(scales * [1, 1, 1, 350 / 360, 1, 1]) == 3
-    assert off_ratio(scales + np.array([0, 0, 0.014, -0.014, 0, 0])) is None
-    assert off_ratio(scales * [1, 1, 1, 1 + 1e-3, 1, 1]) is None  # criticism weighs so little
+    assert off_ratio(scales, "xxyyzz") is None
+    assert off_ratio(scales * [1, 1, 1, 350 / 360, 1, 1], "xxyyzz") == 3
+    assert off_ratio(scales * [1, 1, 1, 350 / 360, 1, 1], "xxzyzz") is None  # or it is the scale
+    assert off_ratio(scales + np.array([0, 0, 0.014, -0.014, 0, 0]), "xxyyzz") is None
+    assert (
+        off_ratio(scales * [1, 1, 1, 1 + 1e-3, 1, 1], "xxyyzz") is None
+    )  # criticism weighs so little
