@@ -100,7 +100,8 @@ def test_a_sensor_that_the_diagnosis_leaves_not_usable_has_no_result(
     data: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Though nothing is wrong with the recording: its residuals have a structure without a name."""
-    row = {"mount": "", "method": "joint", "condition": None, "reason": "as a test has it"}
+    row = {"mount": "", "method": "joint", "condition": None, "recorded": True}
+    row["reason"] = "as a test has it"
     sentences = {"gyro": "Gyros: structure without a name. Not usable.", "accel": "Usable."}
     verdicts = [
         row | {"sensor": sensor, "verdict": verdict, "sentence": sentences[sensor]}

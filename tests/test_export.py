@@ -102,6 +102,7 @@ def verdict(mount: str, sensor: str, **changes: Any) -> dict[str, Any]:
         "verdict": "usable",
         "sentence": "Nothing is wrong.",
         "method": "joint",
+        "recorded": True,
         "condition": None,
         "reason": "no effect was named",
         **changes,

@@ -1,7 +1,7 @@
 """Repairs of a recording, candidates for the result, and the diagnosis: causes and verdict."""
 
 from inertial.tables.shared import BODY, MOUNT
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
 
 SENSOR = Column("sensor", TEXT, "", "accel or gyro, where one is concerned", nullable=True)
 AXIS = Column("axis", TEXT, "", BODY, nullable=True)
@@ -204,10 +204,11 @@ CONSEQUENCES = Table(
 )
 VERDICTS = Table(
     "verdicts",
-    1,
+    2,
     (
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
+        Column("recorded", TRUTH, "", "whether a log has readings of it"),
         Column("verdict", TEXT, "", "usable, usable_within_limits, on_condition, or not_usable"),
         Column("sentence", SENTENCE, "", "the verdict in words, the cause first"),
         Column("method", TEXT, "", "method of the result: joint, extended, or mixture"),

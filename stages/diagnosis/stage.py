@@ -80,6 +80,7 @@ def diagnosis(
             {
                 "mount": result.mount,
                 "sensor": result.sensor,
+                "recorded": result.sensor in recorded,
                 "verdict": given.verdict,
                 "sentence": given.sentence,
                 "method": result.chosen.method,

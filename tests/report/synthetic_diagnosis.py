@@ -99,6 +99,7 @@ def verdicts() -> Rows:
         {
             "sensor": sensor,
             "mount": "",
+            "recorded": True,
             "verdict": "usable_within_limits" if sensor == "gyro" else "usable",
             "sentence": SENTENCES[sensor],
             "method": "extended" if sensor == "gyro" else "joint",

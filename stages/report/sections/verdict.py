@@ -6,7 +6,6 @@ from collections import Counter
 from collections.abc import Iterator
 from math import degrees
 
-from inertial.sensors import CHANNELS, COLUMNS
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import (
@@ -91,20 +90,8 @@ MOST_CONSEQUENCES = 8
 @once
 def worst(tables: Tables) -> str:
     """The verdict of the campaign: the worst of its sensors that are recorded."""
-    recorded = _recorded(tables)
-    given = {row["verdict"] for row in tables.rows("verdict") if row["sensor"] in recorded}
+    given = {row["verdict"] for row in tables.rows("verdict") if row["recorded"]}
     return next((level for level in LEVELS if level in given), "not_usable")
-
-
-def _recorded(tables: Tables) -> frozenset[str]:
-    """The sensors of which a manoeuvre has readings; all of them where none has."""
-    blocks = tables.frame("blocks")
-    there = {
-        sensor
-        for sensor, own in COLUMNS.items()
-        if blocks[list(CHANNELS[own])].notna().any(axis=None)
-    }
-    return frozenset(there or COLUMNS)
 
 
 def verdict_sentences(tables: Tables) -> Iterator[str]:
