@@ -15,6 +15,7 @@ CLEAR = ("found", "one_of_class")
 JUMP, BESIDE = {"size_micro_g": [80, 0, 0], "at_s": 1000}, {"k2_micro_g_g2": [0, 200, 0]}
 
 
+@pytest.mark.slow
 def test_a_second_jump_is_no_shift_of_the_case_and_no_size_effect():
     """±40 µg on x for 100 s on average: once they were a jump, a shift by 11″ and 4 mm."""
     recording = laboratory.perform(laboratory.specify(chain.demo(seed=3, effects={})))
