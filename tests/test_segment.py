@@ -11,7 +11,8 @@ import laboratory
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.rests_and_motions import BinStretch
 from stages.segment import windows
-from stages.segment.matching import Observation, divide, locate, match, rest_part
+from stages.segment.located import divide, locate
+from stages.segment.matching import Observation, match, rest_part
 
 
 def performed(results: chain.Results):

@@ -15,7 +15,8 @@ from inertial.tables import CHANNELS
 from inertial.text.messages import _
 from inertial.text.numbers import fixed
 from inertial.text.units import STANDARD_GRAVITY
-from stages.segment.matching import AS_NAMED, Located, motion
+from stages.segment.located import AS_NAMED, Located
+from stages.segment.matching import motion
 from stages.segment.recording_explanations import ExplainedRecording
 from stages.segment.windows import Binned, rate_about
 

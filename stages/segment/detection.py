@@ -24,7 +24,8 @@ from inertial.signal.plan_detector import (
     Swapped,
 )
 from inertial.tables import STATIC_PHASES
-from stages.segment.matching import AS_PLANNED, Located, Part, motion
+from stages.segment.located import AS_PLANNED, Located
+from stages.segment.matching import Part, motion
 from stages.segment.recording_explanations import ExplainedRecording, unlike
 from stages.segment.steps import BY_GRAVITY, Exchanged, axes_step, exchange_step
 

@@ -15,16 +15,8 @@ from inertial.signal.axis_permutations import (
     simplicity,
 )
 from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA, rest_level
-from stages.segment.matching import (
-    AS_NAMED,
-    AS_PLANNED,
-    Axes,
-    Division,
-    Located,
-    Observation,
-    divide,
-    locate,
-)
+from stages.segment.located import AS_NAMED, AS_PLANNED, Axes, Division, Located, divide, locate
+from stages.segment.matching import Observation
 from stages.segment.steps import (
     ALL_REVERSED,
     Exchanged,

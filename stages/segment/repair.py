@@ -21,7 +21,7 @@ from inertial.signal.plan_detector import Misread, Rescaled, Reversed, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from stages.segment.detection import Undone, in_order, misread_in, swapped_in
-from stages.segment.matching import AS_NAMED, AS_PLANNED
+from stages.segment.located import AS_NAMED, AS_PLANNED
 from stages.segment.recording_explanations import (
     ExplainedRecording,
     explained_of,

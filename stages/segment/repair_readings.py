@@ -25,7 +25,8 @@ from inertial.signal.scale_factor import (
     factors_near,
 )
 from inertial.text.messages import _
-from stages.segment.matching import AS_NAMED, Located, motion
+from stages.segment.located import AS_NAMED, Located
+from stages.segment.matching import motion
 from stages.segment.recording_explanations import ExplainedRecording
 from stages.segment.steps import BY_GRAVITY, Step, axes_step
 from stages.segment.windows import Binned

@@ -23,15 +23,8 @@ from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, Recording, compare, recorded_of
 from stages.segment.encoder import ByEncoder, plan_by_encoder, without_unused
-from stages.segment.matching import (
-    AS_NAMED,
-    Located,
-    Part,
-    between_parts,
-    position_parts,
-    rest_part,
-    turn_parts,
-)
+from stages.segment.located import AS_NAMED, Located
+from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
 from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken
 from stages.segment.windows import Bins, Selection, Window, windows
