@@ -5,7 +5,6 @@ from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inertial.arrays import Array, Booleans
 from inertial.campaign.campaign_data import CampaignData
@@ -15,13 +14,14 @@ from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
-from inertial.tables import ACCEL, STATIC_PHASES
+from inertial.tables import ACCEL
 from inertial.text.messages import _
 
 # --- One static position, a rotation block by block, a rotation sample by sample ---
 
 
 EQUAL = np.ones(3)
+MIN_BEND = 0.002  # rad/s, of the rate within a block; less is a ramp without a corner
 
 
 def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion:
@@ -45,9 +45,7 @@ def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion
     return replace(rest, surveyed=surveyed, tumbled=tumbled[None])
 
 
-def in_blocks(
-    data: CampaignData, m: Manoeuvre, turn: RateSegment, phase: NDArray[Any], time: Array
-) -> Motion:
+def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
     """A rotation in the k blocks of its sums, with the angles that the gyros measured."""
     solution, set_position = data.result.since(m.switch_on), position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(set_position)
@@ -57,24 +55,36 @@ def in_blocks(
         turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned, 1 / turn.density
     )
     rate = angle / turn.seconds
-    acceleration = np.diff(_between(rate, phase)) / turn.seconds
+    acceleration = np.diff(_between(rate, turn.seconds)) / turn.seconds
     blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
     return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
 
 
-def _between(rate: Array, phase: NDArray[Any]) -> Array:
+def _between(rate: Array, seconds: Array) -> Array:
     """The rate between the k blocks of a turn and at its ends, where it is at rest, (k + 1,).
 
-    Within a phase it is the mean of its neighbours. Where one begins the acceleration jumps, and
-    the rate is that of the rest or of the steady part.
+    It continues straight from the blocks on both sides, or, near the corner of a ramp, from those
+    on the side away from it.
     """
-    still, steady = np.isin(phase, STATIC_PHASES), phase == "steady"
-    edges = (rate[1:] + rate[:-1]) / 2
-    known = np.where(still, 0.0, rate)
-    for side in (slice(None, -1), slice(1, None)):
-        own = (phase[1:] != phase[:-1]) & (still | steady)[side]
-        edges = np.where(own, known[side], edges)
+    slope, bend = bends(rate, seconds)
+    before = rate[:-1] + slope[:-2] * seconds[:-1] / 2
+    behind = rate[1:] - slope[2:] * seconds[1:] / 2
+    more_before = bend[:-3] - bend[3:]
+    edges = np.select(
+        [more_before > MIN_BEND, more_before < -MIN_BEND], [behind, before], (before + behind) / 2
+    )
     return np.concatenate([[0.0], edges, [0.0]])
+
+
+def bends(rate: Array, seconds: Array) -> tuple[Array, Array]:
+    """The slope of the rate across each edge of the k blocks of a turn, (k + 1,), rad/s², and by
+
+    how much the rate bends in the rest before it, in each block, in the rest behind, (k + 2,),
+    rad/s.
+    """
+    length = np.pad(seconds, 1, "edge")
+    slope = np.diff(np.pad(rate, 1)) / ((length[1:] + length[:-1]) / 2)
+    return slope, np.abs(np.diff(np.pad(slope, 1))) * length
 
 
 def at_rate(data: CampaignData, m: Manoeuvre, steady: SteadyRate, time: Array) -> Motion:
@@ -251,7 +261,7 @@ class CampaignMotions:
     def turning(self, rotation: Rotation, turn: RateSegment) -> Motion:
         """A rotation from rest to rest in its blocks."""
         blocks = rotation.blocks
-        motion = in_blocks(self._data, rotation.plan, turn, blocks.phase, self._time_of(blocks))
+        motion = in_blocks(self._data, rotation.plan, turn, self._time_of(blocks))
         return self._placed(rotation.plan.name, motion, rotation.blocks, turn)
 
     def at_rate(self, rotation: Rotation, steady: SteadyRate) -> Motion:

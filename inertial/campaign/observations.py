@@ -10,7 +10,14 @@ from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.equations_by_hand import ByHand, motion_of
-from inertial.campaign.motions import CampaignMotions, Merged, mean_motions, positions_of
+from inertial.campaign.motions import (
+    MIN_BEND,
+    CampaignMotions,
+    Merged,
+    bends,
+    mean_motions,
+    positions_of,
+)
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.accelerometers import StaticForce
@@ -21,7 +28,8 @@ from inertial.tables import ACCEL
 
 MIN_PIECE_S = 30.0  # s, duration of a piece of a static position
 MAX_PIECES = 100  # pieces of all static positions together
-MERGED_BLOCKS = 5  # blocks of a rotation in one mean of the accelerometers, whose input is slow
+# Blocks of a rotation in one mean of the accelerometers, whose input is slow: as preferred.
+MERGED_BLOCKS = (5, 4, 6, 3, 7)
 
 
 def campaign_of(data: CampaignData) -> Campaign:
@@ -129,8 +137,9 @@ def _turning(
     assert m.up is not None  # else the turn is refused
     turned = (m.axis, motion.angle, motion.rate * seconds)
     ups = mean_turned(m.up, *turned)
-    pieces = [range(first, after, MERGED_BLOCKS) for first, after in pairwise(edges)]
-    starts = [start for piece in pieces for start in piece]
+    _, bend = bends(motion.rate, seconds)
+    beside = np.fmax(bend[1:], bend[:-1])
+    starts = [start for piece in pairwise(edges) for start in _merged(beside, *piece)]
     merged = Merged(seconds, starts)
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
     density = np.where(steady, levels[0], np.fmax(*levels))
@@ -147,3 +156,18 @@ def _turning(
     return [
         (m.name, rest, at) for rest, at in zip(rests, mean_motions(motion, merged), strict=True)
     ]
+
+
+def _merged(bend: Array, first: int, after: int) -> list[int]:
+    """The first of the blocks in each mean of those in [first, after).
+
+    Between two means the rate is the one between two blocks, which is not known beside the corner
+    of a ramp: there one mean would have a part of the angular acceleration of the other.
+
+    bend : by how much the rate bends beside the edges of the blocks, rad/s
+    """
+    starts = [first]
+    while after - starts[-1] > max(MERGED_BLOCKS):
+        places = starts[-1] + np.array(MERGED_BLOCKS)
+        starts.append(int(places[np.argmin(np.fmax(bend[places], MIN_BEND))]))
+    return starts
