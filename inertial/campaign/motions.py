@@ -21,7 +21,7 @@ from inertial.text.messages import _
 
 
 EQUAL = np.ones(3)
-MIN_BEND = 0.002  # rad/s, of the rate within a block; less is a ramp without a corner
+MIN_BEND = 0.002  # rad/s, off a straight line in a block; less is a ramp without a corner
 
 
 def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion:
@@ -55,36 +55,28 @@ def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) 
         turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned, 1 / turn.density
     )
     rate = angle / turn.seconds
-    acceleration = np.diff(_between(rate, turn.seconds)) / turn.seconds
+    acceleration = np.diff(between_blocks(rate, turn.seconds)[0]) / turn.seconds
     blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
     return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
 
 
-def _between(rate: Array, seconds: Array) -> Array:
+def between_blocks(rate: Array, seconds: Array) -> tuple[Array, Array]:
     """The rate between the k blocks of a turn and at its ends, where it is at rest, (k + 1,).
 
     It continues straight from the blocks on both sides, or, near the corner of a ramp, from those
-    on the side away from it.
-    """
-    slope, bend = bends(rate, seconds)
-    before = rate[:-1] + slope[:-2] * seconds[:-1] / 2
-    behind = rate[1:] - slope[2:] * seconds[1:] / 2
-    more_before = bend[:-3] - bend[3:]
-    edges = np.select(
-        [more_before > MIN_BEND, more_before < -MIN_BEND], [behind, before], (before + behind) / 2
-    )
-    return np.concatenate([[0.0], edges, [0.0]])
-
-
-def bends(rate: Array, seconds: Array) -> tuple[Array, Array]:
-    """The slope of the rate across each edge of the k blocks of a turn, (k + 1,), rad/s², and by
-
-    how much the rate bends in the rest before it, in each block, in the rest behind, (k + 2,),
-    rad/s.
+    on the side away from it. The second: how far the blocks beside it are off a straight line,
+    (k + 1,), rad/s; if they are, a corner may be so near that the rate is another.
     """
     length = np.pad(seconds, 1, "edge")
     slope = np.diff(np.pad(rate, 1)) / ((length[1:] + length[:-1]) / 2)
-    return slope, np.abs(np.diff(np.pad(slope, 1))) * length
+    bend = np.abs(np.diff(np.pad(slope, 1))) * length  # of the rest before, the blocks, the rest
+    before = rate[:-1] + slope[:-2] * seconds[:-1] / 2
+    behind = rate[1:] - slope[2:] * seconds[1:] / 2
+    earlier, later = bend[:-3], bend[3:]
+    straighter = [later < earlier - MIN_BEND, earlier < later - MIN_BEND]
+    edges = np.select(straighter, [behind, before], (before + behind) / 2)
+    off = np.fmin(bend[1:-2], bend[2:-1])
+    return np.pad(edges, 1), np.pad(off, 1)
 
 
 def at_rate(data: CampaignData, m: Manoeuvre, steady: SteadyRate, time: Array) -> Motion:

@@ -14,7 +14,7 @@ from inertial.campaign.motions import (
     MIN_BEND,
     CampaignMotions,
     Merged,
-    bends,
+    between_blocks,
     mean_motions,
     positions_of,
 )
@@ -137,9 +137,8 @@ def _turning(
     assert m.up is not None  # else the turn is refused
     turned = (m.axis, motion.angle, motion.rate * seconds)
     ups = mean_turned(m.up, *turned)
-    _, bend = bends(motion.rate, seconds)
-    beside = np.fmax(bend[1:], bend[:-1])
-    starts = [start for piece in pairwise(edges) for start in _merged(beside, *piece)]
+    _, off = between_blocks(motion.rate, seconds)
+    starts = [start for piece in pairwise(edges) for start in _merged(off, *piece)]
     merged = Merged(seconds, starts)
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
     density = np.where(steady, levels[0], np.fmax(*levels))
@@ -158,16 +157,16 @@ def _turning(
     ]
 
 
-def _merged(bend: Array, first: int, after: int) -> list[int]:
+def _merged(off: Array, first: int, after: int) -> list[int]:
     """The first of the blocks in each mean of those in [first, after).
 
-    Between two means the rate is the one between two blocks, which is not known beside the corner
-    of a ramp: there one mean would have a part of the angular acceleration of the other.
+    Between two means the rate must be known: else one of them would have a part of the angular
+    acceleration of the other.
 
-    bend : by how much the rate bends beside the edges of the blocks, rad/s
+    off : how far the blocks beside the start of each are off a straight line, rad/s
     """
     starts = [first]
     while after - starts[-1] > max(MERGED_BLOCKS):
         places = starts[-1] + np.array(MERGED_BLOCKS)
-        starts.append(int(places[np.argmin(np.fmax(bend[places], MIN_BEND))]))
+        starts.append(int(places[np.argmin(np.fmax(off[places], MIN_BEND))]))
     return starts

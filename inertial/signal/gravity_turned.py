@@ -21,7 +21,7 @@ from inertial.signal.axis_permutations import Permutation
 from inertial.signal.scatter import MAD_TO_SIGMA
 
 SPAN_S = 0.5  # over which a change of the force is compared with the gyros
-MIN_TURNED = 0.05  # rad, within it: less tells nothing
+MIN_TURNED = 0.05  # rad, of the gyros and of the force, within it: less tells nothing
 MIN_SPANS, MAX_SPANS = 20, 20_000
 MIN_ENTRY_SIGMA = 10.0  # sigmas of the entries of G that decide
 MAX_ENTRY_SIGMA = 0.15  # of any entry
@@ -107,5 +107,10 @@ def _spans(forces: Array, rates: Array, step: float) -> tuple[Array, Array]:
     of_level = -np.einsum("s,nsir->nir", share, across)
     of_both = np.broadcast_to(steps * step * np.eye(3), of_level.shape)
     change = f[:, -1] - f[:, 0]
-    there = np.isfinite(of_matrix).all(axis=(1, 2)) & (np.linalg.norm(whole, axis=1) > MIN_TURNED)
+    across_both = np.linalg.norm(np.cross(f[:, 0], f[:, -1]), axis=1)
+    along = np.einsum("nc,nc->n", f[:, 0], f[:, -1])
+    moved = (np.linalg.norm(whole, axis=1) > MIN_TURNED) & (
+        np.arctan2(across_both, along) > MIN_TURNED
+    )
+    there = np.isfinite(of_matrix).all(axis=(1, 2)) & moved
     return np.concatenate([of_matrix, of_bias, of_level, of_both], axis=2)[there], change[there]
