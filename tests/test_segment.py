@@ -9,7 +9,7 @@ import pytest
 
 import laboratory
 from inertial.campaign.records import Manoeuvre
-from inertial.signal.rests_and_motions import BinStretch
+from inertial.signal.rests_and_motions import BinStretch, slow_motion
 from stages.segment import windows
 from stages.segment.located import divide, locate
 from stages.segment.matching import Observation, match, rest_part
@@ -404,3 +404,22 @@ def test_a_rest_for_which_a_still_stretch_has_no_time_is_missing():
     noise = np.random.default_rng(7).standard_normal((500, 3))
     quiet = still(lambda time: 1e-4 * noise, 50)
     assert parts(quiet, planned_rests(20, 20, 20)).count(None) == 1
+
+
+def test_a_table_set_a_degree_further_between_two_turns_moves():
+    """1.5° in 8 s is at most 0.35 °/s, a fiftieth of a turn at 20 °/s, and no rest."""
+    rng, bins, step = np.random.default_rng(4), 400, 0.1
+    time = step * np.arange(bins)
+    s = np.clip((time - 15) / 8, 0, 1)
+    rate = 1.5 / 8 * 30 * s**2 * (1 - s) ** 2  # °/s, of a minimum-jerk motion
+    still = 0.003 * rng.standard_normal((bins, 3)) + [0.02, -0.5, 0.1]
+    moved = slow_motion(np.radians(still + np.outer(rate, [0, 1, 0])), step)
+    assert moved is not None
+    assert 15 < step * moved[0] < 16.5 and 21.5 < step * moved[1] < 23
+    for quiet in (
+        still,
+        still + np.outer(0.3 * np.sin(2 * np.pi * 1.3 * time), [1, 0, 0]),  # vibrates
+        still + np.outer(0.2 * np.exp(-time / 10), [1, 0, 0]),  # warms up
+        still + np.outer(0.1 * (time > 20), [0, 0, 1]),  # its bias jumps
+    ):
+        assert slow_motion(np.radians(quiet), step) is None

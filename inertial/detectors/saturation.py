@@ -44,6 +44,7 @@ MAX_BEYOND = 1.25  # times the stated range, which is nominal: what readings of 
 MIN_EXCESS_SIGMA = 5.0  # of readings in a count, for the scatter of their number
 MAX_STRAYED_COUNTS = 4.0  # of the sum of readings at a limit: rounding, and the least dips below
 MIN_FILLED_SHARE = 0.7  # of the counts from the median to the extreme: what noise fills of them
+MAX_NOISE_SIGMA = 6.0  # from the median of steady readings: beyond it is the ramp beside them
 
 
 def pile_at_top(
@@ -74,13 +75,16 @@ def pile_at_top(
     if len(pile) < 2:
         return none, 1.0
     # Where the noise is less than a count, a steady turn stands at one value by right.
-    if _noise_beside(values, pile) < MIN_NOISE_COUNTS * width * count:
+    scatter = _noise_beside(values, pile)
+    if scatter < MIN_NOISE_COUNTS * width * count:
         return none, 1.0
     places = np.unique(
         np.clip(pile[:, None] + np.arange(-SIDE_READINGS, SIDE_READINGS + 1), 0, len(values) - 1)
     )
-    if _steady(values[places], most, count, width):
-        chance = TESTS * _by_the_other_side(values[places], most, count, width)
+    near = values[places]
+    near = near[near > np.median(near) - MAX_NOISE_SIGMA * scatter]  # not the ramp to a steady turn
+    if _steady(near, most, count, width):
+        chance = TESTS * _by_the_other_side(near, most, count, width)
     elif np.count_nonzero(np.diff(pile) == 1) >= len(pile) / 2 - 1:
         chance = TESTS * _by_what_is_below(values, most, count, width)
     else:

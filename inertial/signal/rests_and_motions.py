@@ -14,6 +14,7 @@ MIN_STRETCH_S = 0.3  # s, a motion or a rest shorter than this is none, or a ten
 MAX_KNOCK_TILT = np.radians(5.0)  # rad: an IMU that is knocked stands again as it stood
 BINS_BESIDE = 3  # whose mean is the direction of gravity before and after
 MAX_SLOW_END_S = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
+MIN_SLOW_TURN = np.radians(0.05)  # rad, of a motion below what counts as motion
 # In m/s², change of the specific force that counts as motion where no gyro is recorded
 MIN_FORCE_CHANGE = 0.1
 
@@ -126,6 +127,33 @@ def with_slow_ends(
 def _length(true: Booleans) -> int:
     """How many are true from the first on."""
     return int(np.logical_and.accumulate(true).sum())
+
+
+def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
+    """The bins of a still stretch from the first in which it turns slowly to that behind the last.
+
+    A table that is set a degree further takes seconds, below what counts as motion. It begins and
+    ends at rest, and stands otherwise then, as no vibration and no drift of a bias does.
+
+    Parameters
+    ----------
+    rates : (k, 3), rad/s, NaN where not recorded
+    """
+    there = np.isfinite(rates)
+    if not there.any():
+        return None
+    away = np.where(there, rates - np.ma.median(np.ma.array(rates, mask=~there), axis=0), 0.0)
+    scatter = MAD_TO_SIGMA * np.median(np.abs(away), axis=0)
+    above = np.linalg.norm(away, axis=1) > MIN_MOTION_SIGMA * float(np.linalg.norm(scatter))
+    turning = [
+        run
+        for run in _runs(above)
+        if run.moves
+        and run.first > 0
+        and run.after < len(rates)
+        and np.linalg.norm(away[run.first : run.after].sum(axis=0)) * bin_seconds > MIN_SLOW_TURN
+    ]
+    return (turning[0].first, turning[-1].after) if turning else None
 
 
 def _runs(moves: Booleans) -> list[BinStretch]:

@@ -10,6 +10,7 @@ from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.rests_and_motions import (
     BinStretch,
+    slow_motion,
     steady_part,
 )
 from stages.segment.windows import Binned
@@ -311,18 +312,24 @@ def between_parts(rests: Sequence[Part]) -> Iterator[Part]:
             yield Part(name, BETWEEN, before.log, before.after, behind.first)
 
 
-def _first_of(rest: BinStretch, room: int, shared: bool) -> int:
+def _first_of(binned: Binned, rest: BinStretch, room: int, shared: bool) -> int:
     """Where the rest before a turn begins; the turn before it, if any, has the first half."""
+    moved = slow_motion(binned.rates[rest.first : rest.after], binned.bin_seconds)
+    if moved:
+        return min(rest.first + moved[1] + room, rest.after)
     if shared:
         return (rest.first + rest.after) // 2
     return min(rest.first + (room if rest.first > 0 else 0), rest.after)
 
 
-def _after_of(rest: BinStretch, room: int, shared: bool, bins: int) -> int:
+def _after_of(binned: Binned, rest: BinStretch, room: int, shared: bool) -> int:
     """Where the rest after a turn ends; the turn behind it, if any, has the second half."""
+    moved = slow_motion(binned.rates[rest.first : rest.after], binned.bin_seconds)
+    if moved:
+        return max(rest.first + moved[0] - room, rest.first)
     if shared:
         return (rest.first + rest.after) // 2
-    return max(rest.after - (room if rest.after < bins else 0), rest.first)
+    return max(rest.after - (room if rest.after < binned.bins else 0), rest.first)
 
 
 def turn_parts(
@@ -343,9 +350,9 @@ def turn_parts(
     free = [place + side not in taken for side in (-1, 1)]
     before, behind = 0, binned.bins
     if not binned.window.alone and place > 0:
-        before = _first_of(stretches[place - 1], room, place - 2 in taken)
+        before = _first_of(binned, stretches[place - 1], room, place - 2 in taken)
     if not binned.window.alone and place + 1 < len(stretches):
-        behind = _after_of(stretches[place + 1], room, place + 2 in taken, binned.bins)
+        behind = _after_of(binned, stretches[place + 1], room, place + 2 in taken)
 
     phases: list[tuple[str, int, int]] = []
     if free[0] and first > 0:

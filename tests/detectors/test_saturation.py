@@ -5,7 +5,7 @@ import pytest
 from on_a_table import BIAS, RATE, profile, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
 
-from inertial.detectors.saturation import Saturation, _by_the_other_side
+from inertial.detectors.saturation import Saturation, _by_the_other_side, pile_at_top
 
 
 def found(values, **of_log):
@@ -180,3 +180,18 @@ def test_the_chance_of_a_pile_is_no_smaller_than_it_happens():
         chances.append(_by_the_other_side(values, values.max(), 1.0))
     for level in (0.1, 0.01, 0.001):
         assert np.mean(np.array(chances) < level) <= level + 3 * np.sqrt(level / 600)
+
+
+def test_the_ramp_beside_a_steady_turn_is_no_noise_of_it():
+    """At 50 Hz few readings lie on a ramp; with them the noise looked wider below than above."""
+    rng = np.random.default_rng(1)
+    piles = 0
+    for _ in range(4000):
+        top = rng.uniform(1500, 2500)
+        ramp = np.arange(0, top, top / rng.uniform(30, 90))
+        steady, still = np.full(rng.integers(300, 900), top), np.zeros(300)
+        scatter = rng.uniform(0.9, 2.5)
+        rate = np.concatenate([still, ramp, steady, ramp[::-1], still])
+        values = np.rint(rate + scatter * rng.standard_normal(len(rate)))
+        piles += len(pile_at_top(values, values.max(), 1.0, scatter)[0]) > 0
+    assert not piles
