@@ -180,10 +180,12 @@ class Motion:
 
     @property
     def since_middle(self) -> Array:
-        """Time since the middle of the visit, (n,), s; 0 without a clock."""
+        """Time since the middle of the visit, (n,), s; without a clock by the stretches before."""
         place = np.cumsum(np.diff(self.visit, prepend=self.visit[0]) != 0)
-        middle = np.bincount(place, self.time) / np.bincount(place)
-        return np.asarray(np.nan_to_num(self.time - middle[place]))
+        elapsed = np.cumsum(self.seconds) - self.seconds / 2
+        time = np.where(np.isfinite(self.time), self.time, elapsed)
+        middle = np.bincount(place, time) / np.bincount(place)
+        return np.asarray(time - middle[place])
 
 
 def without_north(motion: Motion) -> str:

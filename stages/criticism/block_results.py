@@ -239,13 +239,17 @@ class BlockResults:
             yield "cause_positions", row | {"position": position, "statistic": statistic}
 
     def _between_runs(self, cause: Cause) -> float:
-        """The largest difference between the biases of two runs; that of the first is 0 here."""
+        """The largest difference between the biases of two runs that are determined; that of the
+
+        first is 0 here.
+        """
         others = [i for c in self.selection.named.causes if c is not cause for i in c.columns]
         chosen = list(dict.fromkeys([*cause.columns, *others]))
         evidence = self.selection.evidence
         values = evidence.total.estimate(chosen)[0][: len(cause.columns)]
         axes = np.array([evidence.names[i][-1] for i in cause.columns])
-        return max(float(np.ptp([0.0, *values[axes == axis]])) for axis in set(axes))
+        runs = [np.append(values[axes == axis], 0.0) for axis in set(axes)]
+        return max(float(np.nanmax(own) - np.nanmin(own)) for own in runs)
 
     def _long_runs(self) -> bool:
         """Whether a run holds so many manoeuvres that a scatter of these does not stand for it."""

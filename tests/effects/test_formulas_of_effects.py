@@ -74,6 +74,10 @@ def test_time_since_the_middle_of_a_visit():
     motion = stretches(time, np.ones(5), np.full(5, np.nan))
     motion = replace(motion, visit=np.array([0.0, 0.0, 0.0, 1.0, 1.0]))
     np.testing.assert_allclose(motion.since_middle, [-1.0, 0.0, 1.0, -2.0, 2.0])
+    # Logs that share no clock have no time, but a turn is one: else the speed of the table is a
+    # scale factor of the gyros.
+    unknown = replace(motion, time=np.full(5, np.nan), seconds=np.array([1.0, 1.0, 1.0, 4.0, 4.0]))
+    np.testing.assert_allclose(unknown.since_middle, [-1.0, 0.0, 1.0, -2.0, 2.0])
 
 
 def test_gyros_mounted_askew_show_the_rate_of_the_earth_as_well():
