@@ -34,8 +34,8 @@ def select_beside_drift(
     kept = measured
     selection, tested = select(kept)
     for sensor in SENSORS:
-        if not measured.drifts[sensor]:
-            continue
+        if not measured.drifts[sensor] or not selection.evidence.sensors:
+            continue  # without equations nothing is likelier
         without = kept.without_drift_at_rest([sensor])
         other, other_tested = select(without)
         odds = _log_evidence(other, level) - _log_evidence(selection, level)
