@@ -352,6 +352,19 @@ def test_turns_that_accelerometers_do_not_see_leave_the_rests_of_the_plan():
     assert second["sentence"] == "Gyros: none is recorded."
 
 
+def test_three_rests_of_accelerometers_that_walk_have_no_result_and_no_exception():
+    document = by_azimuths()
+    rests = [{"id": f"{axis}-up", "do": "rest", "up": f"+{axis}", "seconds": 300} for axis in "xyz"]
+    document["campaign"]["plan"] = rests
+    document["noise"]["accelerometer_random_walk_m_s2_sqrt_h"] = 0.05
+    recording = laboratory.perform(laboratory.specify(document))
+    results = chain.in_memory(recording, "diagnosis", edit=of_accelerometers)
+    first, _second = results["diagnosis/verdict"].to_dict("records")
+    assert (first["sensor"], first["verdict"]) == ("accel", "not_usable")
+    assert first["sentence"] == "Accelerometers: Not usable: no parameter is determined."
+    assert results["noise/levels"]["random_walk"].max() > 0  # which no equation can be without
+
+
 def test_gyros_that_are_recorded_show_the_turns_between():
     recording = laboratory.perform(laboratory.specify(by_azimuths()))
     results = chain.in_memory(recording, "segment")
