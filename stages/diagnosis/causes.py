@@ -289,7 +289,7 @@ class Evidence:
                 continue
             if self._in_turns(cause) and sensor == "accel":
                 continue  # no mean of theirs is of a turn
-            of_both = cause.sensor is None or MOUNTING_SHIFT in cause.causes
+            of_both = cause.sensor is None or _may_be_shift(cause)
             of_both = of_both or sensor in {rival["sensor"] for rival in cause.rivals}
             of_both = of_both or any(name.startswith(sensor) for name in cause.causes & {*PER_RUN})
             if of_both or cause.sensor == sensor or cause.causes & result.effects.keys():
@@ -355,6 +355,15 @@ class Evidence:
             # What manoeuvres differ by is in the sigmas, so the shift is measured in these.
             return (MODELLED if modelled else NONE), largest, max(drops, default=None)
         return NONE, largest, None
+
+
+def _may_be_shift(cause: Hypothesis) -> bool:
+    """Whether it is a shift in the fixture, or one of a class with it.
+
+    What the residuals of one sensor are no more than consistent with, those of the other are
+    tested for themselves.
+    """
+    return MOUNTING_SHIFT in cause.causes and cause.cause != UNKNOWN_STRUCTURE
 
 
 def _rounds(cause: Hypothesis) -> bool:

@@ -7,6 +7,7 @@ import pytest
 
 from inertial.campaign.explanations import compete
 from inertial.campaign.hypotheses import Hypothesis
+from stages.diagnosis.causes import _may_be_shift
 
 APPLIED = {"state": "applied", "axis": None}
 RIVAL = {"state": "rival", "axis": None}
@@ -184,3 +185,10 @@ def test_every_finding_is_told_once():
     ]
     told = [other.id for each in compete(many) for other in each.consequences]
     assert sorted(told) == sorted(one.id for one in many)
+
+
+def test_residuals_of_the_gyros_that_a_shift_might_explain_are_no_fault_of_the_accelerometers():
+    shift = ("mounting_shift", "gyro_bias_jump")
+    assert _may_be_shift(effect("mounting_shift", "gyro", "one_of_class", *shift))
+    assert _may_be_shift(effect("gyro_bias_jump", "gyro", "one_of_class", *shift))
+    assert not _may_be_shift(effect("unknown_structure", "gyro", "unknown_structure", *shift))
