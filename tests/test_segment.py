@@ -12,7 +12,7 @@ from inertial.campaign.records import Manoeuvre
 from inertial.signal.rests_and_motions import BinStretch, slow_motion
 from stages.segment import windows
 from stages.segment.located import divide, locate
-from stages.segment.matching import Observation, match, rest_part
+from stages.segment.matching import Observation, match, rest_part, turn_parts
 
 
 def performed(results: chain.Results):
@@ -436,3 +436,40 @@ def test_a_table_set_a_degree_further_between_two_turns_moves():
         still + np.outer(0.1 * (time > 20), [0, 0, 1]),  # its bias jumps
     ):
         assert slow_motion(np.radians(quiet), step) is None
+
+
+def test_what_a_table_swings_on_after_a_turn_is_one_block_and_no_rest():
+    """1.7 Hz of 165″ about an axis across, which is gone to a third in 1.5 s (IEEE Std 1554)."""
+    step, fine = 0.1, 20
+    rng, time = np.random.default_rng(5), step / fine * (0.5 + np.arange(10_000))
+    stop = 23.0  # s, after two ramps of 1 s and 10 s at 20 °/s from 12 s on
+    rate = 20 * np.clip(np.minimum(time - 12, stop - time), 0, 1)
+    since = np.clip(time - stop, 0, None)
+    swing = 8e-4 * np.exp(-since / 1.5) * np.sin(2 * np.pi * 1.7 * since)
+    across = np.degrees(np.gradient(swing, time))
+    sensed = np.stack([0.3 * across, 0.95 * across, rate], axis=1)
+    rates = np.radians(sensed).reshape(-1, fine, 3).mean(axis=1)
+    rates += np.radians(0.003) * rng.standard_normal(rates.shape)
+    bins = len(rates)
+    window = windows.Window("log", 0, bins, [])
+    level, places = np.tile([0, 0, 9.8], (bins, 1)), step * np.arange(bins)
+    binned = windows.Binned(
+        window, np.arange(bins + 1), rates, level, np.full(bins, step), places, places
+    )
+    nothing = dict.fromkeys(field.name for field in fields(Manoeuvre))
+    up = np.array([0.0, 0.0, 1.0])
+    turn = Manoeuvre(
+        **nothing
+        | {"name": "turn", "do": "turn", "log": "log", "up": up, "about": up}
+        | {"angle": np.radians(220), "rate": np.radians(20)}
+    )
+    noise = 6 * np.radians(0.003) * np.sqrt(3)
+    division = divide(binned, np.zeros(3), np.radians(1), noise)
+    located = locate(division, manoeuvres=[turn])
+    made = turn_parts(binned, located.stretches, turn, located.matched, np.zeros(3), 0.4)
+    phases = {part.phase: (step * part.first, step * part.after) for part in made}
+    # 165″ at 1.7 Hz are 0.49 °/s at first, and as small as the noise of a bin after 4 to 7 s.
+    assert list(phases)[-3:] == ["spin-down", "settling", "rest-after"]
+    assert stop - 0.7 < phases["settling"][0] < stop
+    assert stop + 4 < phases["rest-after"][0] < stop + 8
+    assert phases["rest-before"][1] == pytest.approx(12, abs=0.6)

@@ -10,7 +10,13 @@ from inertial.campaign.masked_samples import Columns, pieces
 from inertial.campaign.records import Part, rows_of
 from inertial.tables.parquet import Stream
 
-OF_TURN = ("spin-up", "steady", "spin-down", "turning")  # phases in which the table turns
+OF_TURN = (
+    "spin-up",
+    "steady",
+    "spin-down",
+    "settling",
+    "turning",
+)  # phases in which the table turns
 
 
 @dataclass(frozen=True)

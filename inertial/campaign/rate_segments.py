@@ -91,7 +91,7 @@ def by_windows(segment: RateSegment, part: Blocks, angle_sigma: float) -> RateSe
 
 # --- The inputs of the equations of the gyros; rotations that cannot be used ---
 
-TURNING = ("spin-up", "steady", "spin-down", "turning")
+TURNING = ("spin-up", "steady", "spin-down", "settling", "turning")
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,9 @@ MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is
 MIN_STRETCH_S = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
 MAX_KNOCK_TILT = np.radians(5.0)  # rad: an IMU that is knocked stands again as it stood
 BINS_BESIDE = 3  # whose mean is the direction of gravity before and after
-MAX_SLOW_END_S = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
+MAX_SLOW_END_S = 10.0  # s, at most, in which a motion begins or ends below what counts as motion
+MIN_TURN_SHARE = 0.05  # of the rate of a turn: what is less is no part of it
+MAX_PAUSE_S = 0.3  # s, in which a table that swings on turns back
 MIN_SLOW_TURN = np.radians(0.05)  # rad, of a motion below what counts as motion
 # In m/s², change of the specific force that counts as motion where no gyro is recorded
 MIN_FORCE_CHANGE = 0.1
@@ -107,26 +109,31 @@ def with_slow_ends(
 ) -> list[BinStretch]:
     """The stretches, every motion with the bins beside it in which it begins and ends slowly.
 
-    A table that is moved smoothly stands nearly still for a second, and not yet quite. Such bins
-    are above the noise without a break; no rest gives more than a quarter of itself at each end.
+    A table that is moved smoothly stands nearly still for a second, and not yet quite; one that is
+    stopped swings on for some. Such bins are above the noise but for short breaks; no rest gives
+    more than a third of itself at each end.
     """
     moves = np.repeat([s.moves for s in found], [s.after - s.first for s in found])
+    most, pause = (round(seconds / bin_seconds) for seconds in (MAX_SLOW_END_S, MAX_PAUSE_S))
     for stretch in found:
-        most = min(round(MAX_SLOW_END_S / bin_seconds), (stretch.after - stretch.first) // 4)
-        if stretch.moves or not most:
+        length = min(most, (stretch.after - stretch.first) // 3)
+        if stretch.moves or not length:
             continue
         if stretch.first > 0:
-            ahead = above_noise[stretch.first : stretch.first + most]
-            moves[stretch.first : stretch.first + _length(ahead)] = True
+            ahead = above_noise[stretch.first : stretch.first + length]
+            moves[stretch.first : stretch.first + _length(ahead, pause)] = True
         if stretch.after < len(moves):
-            behind = above_noise[stretch.after - most : stretch.after]
-            moves[stretch.after - _length(behind[::-1]) : stretch.after] = True
+            behind = above_noise[stretch.after - length : stretch.after]
+            moves[stretch.after - _length(behind[::-1], pause) : stretch.after] = True
     return _runs(moves)
 
 
-def _length(true: Booleans) -> int:
-    """How many are true from the first on."""
-    return int(np.logical_and.accumulate(true).sum())
+def _length(true: Booleans, pause: int) -> int:
+    """How many are true from the first on, with as many beside them as a break may have."""
+    places = np.flatnonzero(true)
+    broken = np.flatnonzero(np.diff(places, prepend=-1) > pause + 1)
+    kept = places[: broken[0]] if len(broken) else places
+    return int(kept[-1]) + 1 if len(kept) else 0
 
 
 def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
@@ -179,3 +186,12 @@ def steady_part(rate: Array) -> tuple[int, int]:
         return 0, k
     # One bin at each end may hold a part of the ramp.
     return int(reached[0]) + 1, int(reached[-1])
+
+
+def stopped(rate: Array) -> int:
+    """The bin from which a turn about its axis is over, however long the table swings on.
+
+    `rate`: (k,), as of `steady_part`.
+    """
+    moves = np.flatnonzero(np.abs(rate) > MIN_TURN_SHARE * np.abs(np.median(rate)))
+    return int(moves[-1]) + 1 if len(moves) else len(rate)

@@ -8,8 +8,8 @@ from inertial.text.parameters import AXES
 ACCEL, GYRO = ([f"{sensor}_{axis}" for axis in AXES] for sensor in ("accel", "gyro"))
 STATIC_PHASES = ["rest", "rest-before", "rest-after"]  # in which the table is at rest
 PHASES = (
-    "rest; for a turn rest-before, spin-up, steady, spin-down, rest-after; by hand: turning;"
-    " from one rest of unknown attitude to the next: between"
+    "rest; for a turn rest-before, spin-up, steady, spin-down, settling, rest-after; by hand:"
+    " turning; from one rest of unknown attitude to the next: between"
 )
 CHANNEL_PARTS = {f"{sensor}_{axis}": (sensor, axis) for sensor in UNITS for axis in AXES}
 BODY = "body"  # axes x, y, z of the IMU's case, right-handed

@@ -49,6 +49,7 @@ PHASE_COLOUR = {
     "spin-up": "#fbe3b8",
     "steady": "#dcecf8",
     "spin-down": "#fbe3b8",
+    "settling": "#fbe3b8",
 }
 GRID_COLUMNS = 3
 COLUMN_GAP = 0.06  # inches to the right of a column of panels that belong to it

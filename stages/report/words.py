@@ -48,6 +48,7 @@ TERMS = {
     "rest-before": _("rest-before"),
     "sensor triad": _("sensor triad"),
     "site": _("the site with its gravity"),
+    "settling": _("settling"),
     "spin-down": _("spin-down"),
     "spin-up": _("spin-up"),
     "steady": _("steady"),
@@ -57,7 +58,7 @@ TERMS = {
     "turn": _("turn"),
     "unknown": _("unknown"),
 }
-PHASE = re.compile(r"\((rest-before|rest-after|spin-up|steady|spin-down)\)")
+PHASE = re.compile(r"\((rest-before|rest-after|spin-up|steady|spin-down|settling)\)")
 COUNTS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 
 

@@ -12,6 +12,7 @@ from inertial.signal.rests_and_motions import (
     BinStretch,
     slow_motion,
     steady_part,
+    stopped,
 )
 from stages.segment.windows import Binned
 
@@ -118,6 +119,8 @@ def turn_scores(turned: Array, about: Array, planned: float | None) -> Array:
     return np.where(other_axis, 0.0, scores)
 
 
+MIN_SETTLING_S = 1.0  # s, in which a table swings on after a turn
+SETTLING = "settling"  # the phase of a turn in which it does
 BETWEEN = "between"  # from a rest to the next, where attitudes are unknown: what carries them on
 
 
@@ -360,12 +363,17 @@ def turn_parts(
     if m.rate is None:
         phases.append(("turning", start, stop))
     else:
-        a, b = steady_part(binned.about(m.axis, level)[first:after])
+        rate = binned.about(m.axis, level)[first:after]
+        a, b = steady_part(rate)
         steady = (first + a, first + b)
+        settles = max(first + stopped(rate) - room, steady[1])
+        if stop - settles < binned.bins_in(MIN_SETTLING_S) + 2 * room:
+            settles = stop
         phases += [
             ("spin-up", start, steady[0]),
             ("steady", *steady),
-            ("spin-down", steady[1], stop),
+            ("spin-down", steady[1], settles),
+            ("settling", settles, stop),
         ]
     if free[1] and after < binned.bins:
         phases.append(("rest-after", stop, behind))

@@ -12,7 +12,7 @@ from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.static_positions import ENCODER
 from inertial.campaign.sums import EdgesOver, ExtremesOver, SumsOver, TimesOver
 from inertial.tables import STATIC_PHASES
-from stages.segment.matching import BETWEEN, Part
+from stages.segment.matching import BETWEEN, SETTLING, Part
 
 TRACE_POINTS = 1200  # per log, what a figure shows
 
@@ -93,6 +93,8 @@ class Blocks(SumsOver):
         for part in parts:
             seconds = rest_block if part.phase in STATIC_PHASES else turn_block
             length = max(1, round(seconds / clocks[part.log].step))
+            if part.phase == SETTLING:  # what swings on adds up to nothing
+                length = max(1, part.after - part.first)
             # A hand turns about ever other axes; records without a time are means.
             if part.phase == BETWEEN or clocks[part.log].duration is None:
                 length = 1
