@@ -205,6 +205,8 @@ EXPLANATIONS = (
         ("gravity_error",), _is("wrong_scale_factor", "gravity_error", *MISFITS), same_sensor
     ),
     Explanation(("latitude_error",), _is("gravity_error"), anywhere),
+    # What was recorded is no turn as planned, at whatever rate it is.
+    Explanation(("incomplete_turn",), _is("wrong_rate"), same_manoeuvre),
     # A table that moves: the readings are right, the position is not the planned one.
     Explanation(
         ("table_moving", "impact"),

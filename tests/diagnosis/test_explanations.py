@@ -192,3 +192,11 @@ def test_residuals_of_the_gyros_that_a_shift_might_explain_are_no_fault_of_the_a
     assert _may_be_shift(effect("mounting_shift", "gyro", "one_of_class", *shift))
     assert _may_be_shift(effect("gyro_bias_jump", "gyro", "one_of_class", *shift))
     assert not _may_be_shift(effect("unknown_structure", "gyro", "unknown_structure", *shift))
+
+
+def test_a_turn_that_was_not_recorded_has_no_rate_of_its_own():
+    cut = finding("segment", "incomplete_turn", "gyro", **of("z-back"))
+    rate = finding("segment", "wrong_rate", "gyro", **of("z-back"))
+    other = finding("segment", "wrong_rate", "gyro", **of("x-back"))
+    assert causes(cut, rate) == {"incomplete_turn": {"wrong_rate"}}
+    assert set(causes(cut, other)) == {"incomplete_turn", "wrong_rate"}
