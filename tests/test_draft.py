@@ -275,6 +275,44 @@ def test_text_as_programs_of_other_countries_write_it(tmp_path):
     assert results["segment/segments"]["manoeuvre"].nunique() >= log.positions
 
 
+# ---- what is no static position
+
+
+def at_rest(up: tuple[float, float, float], seconds: float, seed: int = 0) -> np.ndarray:
+    """Accelerometers (n, 3) at 100 Hz in one attitude, m/s²."""
+    noise = 0.02 * np.random.default_rng(seed).standard_normal((round(100 * seconds), 3))
+    return 9.8 * np.array(up) / np.linalg.norm(up) + noise
+
+
+FACES = [(0, 0, 1), (0, 0, -1), (0, 1, 0), (1, 0, 0)]
+
+
+def comments(folder: Path) -> str:
+    """What a draft says at its top, without the ends of lines."""
+    lines = (folder / "campaign.yaml").read_text(encoding="utf-8").splitlines()
+    return " ".join(" ".join(line.lstrip("# ") for line in lines if line[:1] == "#").split())
+
+
+def test_zeros_that_fill_a_log_up_are_no_static_position(tmp_path):
+    force = np.vstack([at_rest(FACES[i % 3], 5, i) for i in range(3)] + [np.zeros((400, 3))])
+    time = np.arange(len(force)) / 100
+    folder = drafted({"log.csv": "t,ax,ay,az\n" + written([time, force])}, tmp_path)
+    campaign = told(folder)
+    assert campaign["instrument"]["format"]["accelerometer"]["unit"] == "m/s2"
+    assert [m["up"] for m in campaign["plan"]] == ["+z", "-z", "+y"]
+    assert all(m["rows"][1] <= 1500 for m in campaign["plan"])
+    assert "gravity has one length" not in comments(folder)
+
+
+def test_static_positions_in_which_gravity_differs_are_asked_about(tmp_path):
+    force = np.vstack([at_rest(FACES[i], 5, i) * (1.25 if i == 2 else 1) for i in range(4)])
+    time = np.arange(len(force)) / 100
+    folder = drafted({"log.csv": "t,ax,ay,az\n" + written([time, force])}, tmp_path)
+    assert told(folder)["instrument"]["format"]["accelerometer"]["unit"] == "m/s2"
+    assert "in 4 static positions |f| is 9.8" in comments(folder)
+    assert "to 12.25, and gravity has one length" in comments(folder)
+
+
 # ---- what cannot be drafted
 
 

@@ -17,8 +17,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from commands.draft.gravity import sphere
 from commands.draft.raw_log import Name, RawLog
-from commands.draft.scales import sphere
 from inertial.arrays import Array
 from inertial.signal.signed_counts import bits_without_sign, signed
 from inertial.tables.errors import Refusal

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from commands.draft.gravity import Gravity, gravity_in
 from commands.draft.series import Divided, Still
 from inertial.arrays import Array
 from inertial.estimation.attitude import integrate
@@ -21,8 +22,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
 
-MIN_POINTS = 4  # static positions that show a centre
-MIN_SPREAD = 0.3  # of their directions, the least one to the largest
 MAX_UNIT_ERROR = 0.1  # of a reading in a unit: bias and scale factor
 MAX_COUNT_ERROR = 0.05  # of a usual count size
 MIN_TILT = np.radians(20)  # between two static positions, that shows the scale of the gyros
@@ -53,7 +52,7 @@ class Scale:
 
     `axes`: what takes the readings to the axes of the other sensor; `shares`: by how much each gyro
     turns gravity along these axes, relative to their mean, with sigma, (3, 2); empty if not seen;
-    `increments`: a reading is the integral of the unit over a sample.
+    `increments`: a reading is the integral of the unit over a sample; `doubt`: a question, or none.
     """
 
     unit: str
@@ -64,6 +63,7 @@ class Scale:
     axes: Permutation = AS_NAMED
     shares: tuple[tuple[float, float], ...] = ()
     increments: bool = False
+    doubt: str = ""
 
     @property
     def size(self) -> float:
@@ -77,20 +77,6 @@ class Scale:
             return values
         values = (values - self.zero) * self.size
         return np.asarray(values[:, list(self.axes.sources)] * np.array(self.axes.signs))
-
-
-def sphere(points: Array) -> tuple[Array, float, float]:
-    """Centre, (3,), radius and scatter of the sphere through points (n, 3).
-
-    About zero where the points do not show a centre.
-    """
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    centre = np.zeros(3)
-    if len(points) >= MIN_POINTS and spread[-1] > MIN_SPREAD * spread[0]:
-        design = np.column_stack([2 * points, np.ones(len(points))])
-        centre = np.linalg.lstsq(design, np.sum(points**2, axis=1), rcond=None)[0][:3]
-    lengths = np.linalg.norm(points - centre, axis=1)
-    return centre, float(np.sqrt(np.mean(lengths**2))), float(np.std(lengths))
 
 
 def are_counts(values: Array) -> bool:
@@ -110,11 +96,13 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
     """The unit of accelerometers, by their length at rest."""
     values = np.concatenate([own.series.accel for own in recordings])
     zero = zero_of(values)
-    rests = np.array([rest.accel for own in recordings for rest in own.rests])
-    if not len(rests):
-        rests = np.array([own.forces.mean(axis=0) for own in recordings])
-    _centre, length, _scatter = sphere(rests - zero)
-    seen = _("|f| at rest is {length}", length=significant(length))
+    found = gravity_in(recordings, zero)
+    return replace(_unit(found, values, recordings[0].series.accel_hz, zero), doubt=found.doubt)
+
+
+def _unit(found: Gravity, values: Array, rate: float, zero: float) -> Scale:
+    """The unit in which gravity has this length; `values`: (n, 3), at `rate`, Hz."""
+    length, seen = found.length, found.seen
     for of_gravity, unit, counts in (
         (STANDARD_GRAVITY, "m/s2", None),
         (1.0, "g", None),
@@ -125,7 +113,7 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
             counts is None and are_counts(values)
         ):
             return Scale(unit, counts, zero, seen, False)
-    step = 1 / recordings[0].series.accel_hz
+    step = 1 / rate
     for of_gravity, unit in ((STANDARD_GRAVITY, "m/s2"), (1.0, "g")):
         if abs(length / (of_gravity * step) - 1) < MAX_UNIT_ERROR and not are_counts(values):
             what = _("{seen}: increments over {step} s", seen=seen, step=significant(step))
@@ -153,10 +141,10 @@ class Turning:
 def turning(recordings: Sequence[Divided], force: Scale) -> Turning | None:
     """The factor of raw gyros by gravity's direction in motion; None where it hardly turns."""
     both = [own for own in recordings if len(own.series.gyro) and len(own.series.accel)]
-    rests = [rest.accel - force.zero for own in both for rest in own.rests]
-    if not rests:
+    if not any(own.rests for own in both):
         return None
-    centre, length, _scatter = sphere(np.array(rests))
+    gravity = gravity_in(both, force.zero)
+    centre, length = gravity.centre, gravity.length
     # Of rates in any unit the largest are made 1 rad/s, about as they are.
     speed = np.concatenate([np.linalg.norm(own.rates - own.level, axis=1) for own in both])
     one = float(np.quantile(speed, LARGE))
@@ -343,9 +331,7 @@ class Receiver:
 
 def receiver_of(recordings: Sequence[Divided], rate: float) -> Receiver:
     """The instrument of these counts at `rate`, Hz."""
-    rests = [rest.accel for own in recordings for rest in own.rests]
-    rests = rests or [own.forces.mean(axis=0) for own in recordings]
-    _centre, length, _scatter = sphere(np.array(rests))
+    length = gravity_in(recordings).length
     count = STANDARD_GRAVITY / length / rate
     seen = _("|f| at rest makes one count {count} m/s", count=significant(count))
     listed = YamlFile(INSTRUMENTS).content

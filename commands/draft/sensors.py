@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from commands.draft.columns import Columns, Triad, alike, columns_of, recorded_together, runs_of
+from commands.draft.gravity import sphere
 from commands.draft.raw_log import RawLog
 from commands.draft.scales import (
     Receiver,
@@ -15,7 +16,6 @@ from commands.draft.scales import (
     are_counts,
     gyro_scale,
     receiver_of,
-    sphere,
     turning,
 )
 from commands.draft.series import Divided, Series, divided

@@ -97,6 +97,8 @@ class Divided:
             if stretch.moves or seconds < min(MIN_REST_S, self.series.seconds / 2):
                 continue
             first, after = self.inside(stretch)
+            if len(self.series.accel) and not self.forces[first:after].any():
+                continue  # zeros that a recorder filled up with
             yield Still(
                 stretch.first,
                 stretch.after,

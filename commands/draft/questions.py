@@ -1,0 +1,70 @@
+"""What a draft has to ask: what no log says, and where logs contradict themselves."""
+
+from collections.abc import Iterator, Sequence
+
+from commands.draft.manoeuvres import Manoeuvre
+from commands.draft.sensors import Kind
+from commands.draft.timing import Timing
+from inertial.text.messages import _
+
+GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
+
+
+def questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
+    """A sentence for each."""
+    yield _("instrument, serial, date: which IMU is it, and when was it recorded?")
+    yield (
+        _("table: no turn has the steady rate of a table, so it was moved by hand; is that so?")
+        if by_hand
+        else _("table: which one, and how well are its positions, angles and rates known?")
+    )
+    yield _(
+        "site: at which latitude and height, or with which gravity? Until then scale factors of "
+        "accelerometers are known to {percent:.1f} % only.",
+        percent=100 * GRAVITY_SIGMA / GRAVITY,
+    )
+    for kind in kinds:
+        yield from _of_kind(kind)
+    if any(m.do == "turn" for m in plan):
+        yield _("degrees: were the turns as large as the round angles in the plan?")
+    if any(m.up for m in plan):
+        yield _(
+            "up: is the axis named in the plan the one that pointed up? A log that reads −g there "
+            "has the other sign."
+        )
+
+
+def _of_kind(kind: Kind) -> Iterator[str]:
+    """What logs of one kind leave open."""
+    if without_clock(kind.timing):
+        yield _(
+            "rate_hz: {log} has no clock; how many samples a second are there? Count sizes of "
+            "gyros go with the rate: draft it again with RATE=",
+            log=names_of_logs(kind),
+        )
+    if kind.gyro is not None and kind.gyro.axes.moved:
+        yield _(
+            "gyro.axes: in {log} the gyros turn gravity's direction as if {axes}; which sensor "
+            "is wired otherwise than the axes are named?",
+            log=names_of_logs(kind),
+            axes=kind.gyro.axes.in_words,
+        )
+    for word, scale in ((_("accelerometers"), kind.accel), (_("gyros"), kind.gyro)):
+        if scale is not None and scale.doubt:
+            yield _(
+                "{sensor} of {log}: {doubt}",
+                sensor=word,
+                log=names_of_logs(kind),
+                doubt=scale.doubt,
+            )
+
+
+def without_clock(timing: Timing) -> bool:
+    """Whether samples are counted at a rate that nothing states."""
+    return timing.guessed and timing.unit in (None, "sample")
+
+
+def names_of_logs(kind: Kind) -> str:
+    """The names of its files, of many the first."""
+    names = list(dict.fromkeys(log.path.name for part in kind.parts for log in part.logs))
+    return ", ".join(names[:4]) + (_(" and {more} more", more=len(names) - 4) if names[4:] else "")
