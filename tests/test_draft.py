@@ -313,6 +313,38 @@ def test_static_positions_in_which_gravity_differs_are_asked_about(tmp_path):
     assert "to 12.25, and gravity has one length" in comments(folder)
 
 
+# ---- files of three columns without names
+
+
+def test_files_that_look_alike_are_of_the_sensor_that_they_are_named_for(tmp_path):
+    rate = 0.03 + 0.002 * np.random.default_rng(1).standard_normal((500, 3))
+    logs = {f"accel_{i}.csv": written([at_rest(FACES[i], 5, i)]) for i in range(3)}
+    campaign = told(drafted(logs | {"gyro.csv": written([rate])}, tmp_path, rate=100))
+    first, second = campaign["formats"].values()
+    assert first["accelerometer"] == {"columns": [1, 2, 3], "unit": "m/s2"}
+    assert second["gyro"] == {"columns": [1, 2, 3], "unit": "rad/s"}
+    assert "gyro" not in first and "accelerometer" not in second
+    assert [m["format"] for m in campaign["plan"]] == ["format-1"] * 3 + ["format-2"]
+    told_of = comments(tmp_path / "data/raw/drafted")
+    assert "by the names of their files" in told_of and "by their names" not in told_of
+
+
+def test_files_that_look_alike_and_read_far_less_than_gravity_are_of_gyros(tmp_path):
+    rate = 0.03 + 0.002 * np.random.default_rng(1).standard_normal((500, 3))
+    logs = {f"{i}.csv": written([at_rest(FACES[i], 5, i)]) for i in range(3)}
+    folder = drafted(logs | {"3.csv": written([rate])}, tmp_path, rate=100)
+    first, second = told(folder)["formats"].values()
+    assert first["accelerometer"]["unit"] == "m/s2" and "accelerometer" not in second
+    assert second["gyro"]["columns"] == [1, 2, 3]
+    assert "gravity reads 9.8" in comments(folder)
+
+
+def test_a_file_named_for_a_magnetometer_is_none_of_accelerometers(tmp_path):
+    logs = {"acc.csv": written([at_rest(FACES[0], 5)]), "mag.csv": written([at_rest(FACES[1], 5)])}
+    with pytest.raises(Refusal, match="of another sensor"):
+        drafted(logs, tmp_path)
+
+
 # ---- what cannot be drafted
 
 

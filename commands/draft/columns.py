@@ -28,7 +28,6 @@ BIN_ROWS = 10  # of a short mean
 MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
 MIN_EXPLAINED = 0.3  # share of the change of each axis of a direction that the gyros must explain
 MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
-MIN_SHARED_TIME = 0.8  # of two logs of one recording, which were not begun at the same moment
 CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
 NAMED = {
@@ -76,6 +75,15 @@ def _with_sign(triad: Triad | None, group: Sequence[Sequence[RawLog]]) -> Triad 
 
 
 @dataclass(frozen=True)
+class Named:
+    """What sensor three columns are, accel or gyro, and what says so."""
+
+    sensor: str
+    evidence: str
+    guessed: bool
+
+
+@dataclass(frozen=True)
 class Columns:
     """What the columns of logs of one kind are, and what says so."""
 
@@ -116,58 +124,10 @@ def _grows(values: Array) -> bool:
     return bool(usual > 0 and np.mean(steps < 0) <= MAX_RESETS and alike.mean() >= 0.7)
 
 
-def runs_of(log: RawLog) -> list[RawLog]:
-    """A container of several matrices of one sensor holds as many recordings."""
-    matrices: dict[str, dict[Name, Array]] = {}
-    for name, values in log.columns.items():
-        matrices.setdefault(str(name).rpartition(".")[0], {})[name] = values
-    kinds = {_kind(matrix) for matrix in matrices}
-    alone = all(len(columns) == 3 for columns in matrices.values())
-    if len(matrices) < 2 or not alone or len(kinds) > 1 or not kinds <= {"accel", "gyro"}:
-        return [log]
-    return [replace(log, columns=columns) for columns in matrices.values()]
-
-
-def recorded_together(logs: Sequence[RawLog]) -> list[tuple[RawLog, ...]]:
-    """Logs of two sensors, each in a file of its own, that are one recording by their stamps.
-
-    They have the same stamps, or they name one sensor each and cover the same time.
-    """
-    groups: list[list[RawLog]] = []
-    for log in logs:
-        alone = [group for group in groups if len(group) == 1]
-        shared = [_shared(group[0], log) for group in alone]
-        best = int(np.argmax(shared)) if shared else 0
-        if shared and shared[best] > MIN_SHARED_TIME:
-            alone[best].append(log)
-        else:
-            groups.append([log])
-    return [tuple(group) for group in groups]
-
-
-def _shared(one: RawLog, other: RawLog) -> float:
-    """The share of the time of two logs that both cover; 0 where they are no pair of sensors."""
-    names = time_of(one), time_of(other)
-    if names[0] is None or names[1] is None:
-        return 0.0
-    ours, theirs = _finite(one.columns[names[0]]), _finite(other.columns[names[1]])
-    if np.array_equal(ours, theirs):
-        return 1.0
-    if names[0] != names[1] or {_only_sensor(one), _only_sensor(other)} != {"accel", "gyro"}:
-        return 0.0
-    both = min(ours.max(), theirs.max()) - max(ours.min(), theirs.min())
-    either = max(ours.max(), theirs.max()) - min(ours.min(), theirs.min())
-    return float(both / either)
-
-
-def _only_sensor(log: RawLog) -> str | None:
-    """The one sensor that the columns of a log name, or else its file does."""
-    named = {kind for name in log.columns if (kind := _kind(str(name)))} & {"accel", "gyro"}
-    return named.pop() if len(named) == 1 else None if named else _kind(log.path.stem)
-
-
-def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
+def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -> Columns:
     """What the columns of these logs are, which have the same; each may be of several files.
+
+    `sensor`: the one whose three columns are all, where something else says so.
 
     Raises
     ------
@@ -184,14 +144,19 @@ def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
         constant = {
             name
             for name in log.columns
-            if all(np.ptp(_finite(together[file].columns[name])) == 0 for together in group)
+            if all(np.ptp(finite(together[file].columns[name])) == 0 for together in group)
         }
         clocks = {name for name, values in log.columns.items() if _grows(values)}
         free = [n for n in log.columns if n not in clocks | constant]
         for rows in interleaved or (None,):
             candidates += [Triad(file, three, rows) for three in _threes(free)]
-    *both, evidence, guessed = _sensors(group, candidates)
-    accel, gyro = (_with_sign(triad, group) for triad in both)
+    if sensor is not None and candidates:
+        accel = candidates[0] if sensor.sensor == "accel" else None
+        gyro = candidates[0] if sensor.sensor == "gyro" else None
+        evidence, guessed = sensor.evidence, sensor.guessed
+    else:
+        accel, gyro, evidence, guessed = _sensors(group, candidates)
+    accel, gyro = (_with_sign(triad, group) for triad in (accel, gyro))
     used: set[Name | None] = {
         name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns
     }
@@ -206,16 +171,17 @@ def _temperature_of(log: RawLog) -> tuple[Name, str] | None:
     """The column that is named a temperature and reads one, with its unit."""
     for name, values in log.columns.items():
         if isinstance(name, str) and TEMPERATURE.search(name):
-            finite = _finite(values)
+            read = finite(values)
             for unit, (least, most) in PLAUSIBLE.items():
-                if least < finite.min() and finite.max() < most:
+                if least < read.min() and read.max() < most:
                     return name, unit
     return None
 
 
-def _finite(values: Array) -> Array:
-    finite = values[np.isfinite(values)]
-    return finite if len(finite) else np.zeros(1)
+def finite(values: Array) -> Array:
+    """Those that are numbers; one zero where none is."""
+    there = values[np.isfinite(values)]
+    return there if len(there) else np.zeros(1)
 
 
 def _words_of(log: RawLog) -> tuple[list[tuple[Name, str]], Name | None]:
@@ -231,12 +197,12 @@ def _words_of(log: RawLog) -> tuple[list[tuple[Name, str]], Name | None]:
             rows += [(name, word) for word in different]
         elif len(different) > 1:
             label = name
-        elif _kind(different[0]):
+        elif sensor_named(different[0]):
             rows.append((name, different[0]))
     return rows, label
 
 
-def _kind(name: str) -> str | None:
+def sensor_named(name: str) -> str | None:
     """The sensor that a name names: accel, gyro, other, or None."""
     plain = _plain(str(name))
     return next((kind for kind, pattern in NAMED.items() if pattern.search(plain)), None)
@@ -278,7 +244,7 @@ def _sensors(
     """Accelerometers and gyros among the candidates, what says so, and whether it is a guess."""
     by_name = _by_name(group[0], candidates)
     if {"accel", "gyro"} <= set(by_name):
-        return by_name["accel"], by_name["gyro"], _("by their names"), False
+        return by_name["accel"], by_name["gyro"], _named_by(by_name), False
     if len(candidates) > 1 and (moved := _by_motion(group, candidates)) is not None:
         accel, gyro, explained = moved
         return (
@@ -292,7 +258,7 @@ def _sensors(
             False,
         )
     if by_name:
-        return by_name.get("accel"), by_name.get("gyro"), _("by their names"), False
+        return by_name.get("accel"), by_name.get("gyro"), _named_by(by_name), False
     if not candidates:
         raise Refusal(
             group[0][0].path.name,
@@ -307,14 +273,20 @@ def _sensors(
 def _by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dict[str, Triad]:
     found: dict[str, Triad] = {}
     for triad in candidates:
-        kind = _kind(triad.rows[1]) if triad.rows else None
+        kind = sensor_named(triad.rows[1]) if triad.rows else None
         if kind is None and isinstance(triad.columns[0], str):
-            kind = _kind(triad.columns[0])
+            kind = sensor_named(triad.columns[0])
         if kind is None and len(candidates) <= len(together):  # the log holds nothing else
-            kind = _kind(together[triad.file].path.stem)
+            kind = sensor_named(together[triad.file].path.stem)
         if kind in ("accel", "gyro"):
             found.setdefault(str(kind), triad)
     return found
+
+
+def _named_by(found: Mapping[str, Triad]) -> str:
+    """What names the sensors that were found by a name: columns, or files whose columns do not."""
+    of_columns = all(t.rows or sensor_named(str(t.columns[0])) for t in found.values())
+    return _("by their names") if of_columns else _("by the names of their files")
 
 
 def _by_motion(
@@ -404,20 +376,3 @@ def _by_size(
         _("by their size: the length of the first hardly changes, as that of gravity"),
         True,
     )
-
-
-def alike(tables: Sequence[Sequence[RawLog]]) -> list[list[Sequence[RawLog]]]:
-    """The recordings by the columns that they have."""
-    groups: dict[object, list[Sequence[RawLog]]] = {}
-    for together in tables:
-        key = tuple(_signature(log) for log in together)
-        groups.setdefault(key, []).append(together)
-    return list(groups.values())
-
-
-def _signature(log: RawLog) -> object:
-    layout: Mapping[str, object] = log.layout
-    words = tuple(
-        (n, tuple(sorted(set(w)))) for n, w in log.words.items() if _kind(w[0] if w else "")
-    )
-    return tuple(sorted(layout.items())), tuple(log.columns), words

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from commands.draft.columns import Columns, Triad, alike, columns_of, recorded_together, runs_of
+from commands.draft.columns import Columns, Named, Triad, columns_of
 from commands.draft.gravity import sphere
+from commands.draft.groups import alike, recorded_together, runs_of, sensors_apart
 from commands.draft.raw_log import RawLog
 from commands.draft.scales import (
     Receiver,
@@ -65,13 +66,17 @@ class Kind:
 def kinds_of(logs: Sequence[RawLog], rate: float | None = None) -> list[Kind]:
     """The logs, those with the same columns together; `rate`, Hz, where no log has a clock."""
     recordings = recorded_together([run for log in logs for run in runs_of(log)])
-    found = [_kind(group, rate) for group in alike(recordings)]
+    found = [
+        _kind(group, sensor, rate)
+        for same in alike(recordings)
+        for group, sensor in sensors_apart(same)
+    ]
     return [_in_si(kind, found) for kind in found]
 
 
-def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
+def _kind(group: Sequence[Sequence[RawLog]], sensor: Named | None, rate: float | None) -> Kind:
     """Logs of one kind, their readings as they stand in the files."""
-    columns = columns_of(group)
+    columns = columns_of(group, sensor)
     triad = columns.accel or columns.gyro
     rows = triad.rows if triad is not None and triad.file == 0 else None
     timing = timing_of([together[0] for together in group], columns.time[0], rows)
