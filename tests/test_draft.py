@@ -345,6 +345,36 @@ def test_a_file_named_for_a_magnetometer_is_none_of_accelerometers(tmp_path):
         drafted(logs, tmp_path)
 
 
+# ---- where nothing rests
+
+
+def tumbling(seconds: float, turns: float) -> np.ndarray:
+    """Accelerometers (n, 3) at 100 Hz while gravity goes round in body axes, m/s²."""
+    angle = np.linspace(0, 2 * np.pi * turns, round(100 * seconds))
+    up = np.column_stack([np.sin(angle), np.cos(angle) * np.sin(3 * angle), np.cos(angle)])
+    noise = 0.02 * np.random.default_rng(0).standard_normal(up.shape)
+    return 9.8 * up / np.linalg.norm(up, axis=1)[:, None] + noise
+
+
+def test_slow_tumbling_is_no_rest(tmp_path):
+    with pytest.raises(Refusal, match=r"at 100.0 Hz, which is assumed") as refusal:
+        drafted({"acc.csv": written([tumbling(60, 4)])}, tmp_path)
+    assert "RATE=" in refusal.value.cure
+    with pytest.raises(Refusal, match="all of it moves") as refusal:
+        drafted({"acc.csv": written([np.arange(6000) / 100, tumbling(60, 4)])}, tmp_path)
+    assert "RATE=" not in refusal.value.cure
+
+
+def test_where_nothing_rests_the_length_of_gravity_is_no_length_of_a_mean(tmp_path):
+    rest = 0.001 * np.random.default_rng(2).standard_normal((1000, 3))
+    logs = {"acc.csv": written([tumbling(60, 4)]), "gyro.csv": written([rest])}
+    folder = drafted(logs, tmp_path)
+    formats = told(folder)["formats"].values()
+    assert [own["accelerometer"]["unit"] for own in formats if "accelerometer" in own] == ["m/s2"]
+    assert "the median of |f| is 9.8" in comments(folder)
+    assert "acc.csv is not in the plan: in its 60.0 s nothing rests" in comments(folder)
+
+
 # ---- what cannot be drafted
 
 

@@ -121,7 +121,7 @@ def _head(
         for text in _evidence(kind):
             yield from comment(text, "#   - ")
     yield "#"
-    lacking = list(missing(plan))
+    lacking = list(missing(kinds, plan))
     yield from comment(
         _("What is missing for a calibration of both sensors:")
         if lacking
