@@ -375,6 +375,51 @@ def test_where_nothing_rests_the_length_of_gravity_is_no_length_of_a_mean(tmp_pa
     assert "acc.csv is not in the plan: in its 60.0 s nothing rests" in comments(folder)
 
 
+# ---- logs of raw counts, as a microcontroller prints them
+
+
+def counted(up: tuple[float, float, float], seed: int) -> str:
+    """Stamps, µs, accelerometers of 16384 in 1 g and gyros that rest with a bias of −4.2 °/s."""
+    force = np.rint(at_rest(up, 3, seed) / 9.80665 * 16384)
+    rate = np.rint([-550, 120, -76] + 8 * np.random.default_rng(seed).standard_normal((300, 3)))
+    head = "t_us,ax,ay,az,gx,gy,gz\n"
+    return head + written([500_000 + 10_000 * np.arange(300), force, rate])
+
+
+def test_whole_numbers_of_gyros_beside_counts_are_counts_of_a_size_that_is_asked(tmp_path):
+    logs = {f"{i}.csv": counted(FACES[i], i) for i in range(3)}
+    folder = drafted(logs, tmp_path)
+    layout = told(folder)["instrument"]["format"]
+    assert layout["accelerometer"]["counts_per_unit"] == 16384
+    assert layout["gyro"]["counts_per_unit"] == 131  # the range beside 2 g, of most of these
+    assert "they read counts, and no turn shows how many are in 1 °/s" in comments(folder)
+
+
+def test_zeros_before_the_names_are_no_part_of_them(tmp_path):
+    """A serial port that is opened late gives a buffer of them."""
+    logs = {f"{i}.csv": "\0" * (300 + i) + counted(FACES[i], i) for i in range(3)}
+    folder = drafted(logs, tmp_path)
+    campaign = told(folder)
+    assert campaign["instrument"]["format"]["time"] == {"column": "t_us", "unit": "us"}
+    results = chain.run(folder, tmp_path / "derived", "segment")
+    assert results["segment/segments"]["manoeuvre"].nunique() == 3
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (("posZ", "negZ", "x_up"), ["x_up.csv: its name says +x up, and it reads +y"]),
+        (("posZ", "z-down", "run-x"), []),
+        (("negZ", "plus z", "y-"), ["each log reads −g on the axis that its name says"]),
+    ],
+)
+def test_a_name_that_says_another_axis_than_the_log_reads_is_asked_about(names, said, tmp_path):
+    logs = {f"{name}.csv": counted(FACES[i], i) for i, name in enumerate(names)}
+    text = comments(drafted(logs, tmp_path))
+    assert all(sentence in text for sentence in said)
+    assert text.count("its name says") == len(said)
+
+
 # ---- what cannot be drafted
 
 

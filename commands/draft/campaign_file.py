@@ -22,6 +22,7 @@ BEST_HAND_TURN = 5.0  # degrees, sigma of an angle by hand that the gyros confir
 TABLE_RATE = 1000  # ppm, of a table of which nothing is known
 LARGEST_COUNT = 32767
 VERSION, GUESS = "campaign: 1", "# guessed:"
+BOTH = ("accelerometer", "gyro")  # sensors in one file
 
 
 def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -> str:
@@ -50,7 +51,7 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
     for m, own in zip(plan, _ids(plan), strict=True):
         keys = {"id": own, **_keys(m, None if m.by_table else sigma), **_where(m, kinds)}
         if len(kinds) > 1:
-            keys["format"] = f"format-{_place(m, kinds)}"
+            keys["format"] = _format_name(m, kinds)
         if len(logs) > 1:
             keys |= _logs_of(m, kinds)
         lines.append(f"  - {flow(**keys)}{_seen(m)}")
@@ -73,6 +74,14 @@ def _guessed(lines: Sequence[str]) -> list[str]:
 def _place(m: Manoeuvre, kinds: Sequence[Kind]) -> int:
     """The number of the kind of log that a manoeuvre is in, from 1."""
     return next(n for n, k in enumerate(kinds, 1) if any(part is m.part for part in k.parts))
+
+
+def _format_name(m: Manoeuvre, kinds: Sequence[Kind]) -> str:
+    """The format of its log: of equal ones the first."""
+    own = list(_format(kinds[_place(m, kinds) - 1], BOTH))
+    return (
+        f"format-{next(n for n, kind in enumerate(kinds, 1) if list(_format(kind, BOTH)) == own)}"
+    )
 
 
 def _logs_of(m: Manoeuvre, kinds: Sequence[Kind]) -> dict[str, Any]:
@@ -173,7 +182,7 @@ def _instrument(kinds: Sequence[Kind], name: str) -> Iterator[str]:
         yield f"  gyro: {flow(axes=axes)}" + _guess(_("gravity turns as if so"))
     if len(kinds) == 1:
         yield "  format:"
-        yield from _format(kinds[0], ("accelerometer", "gyro"))
+        yield from _format(kinds[0], BOTH)
 
 
 def _axes(kinds: Sequence[Kind]) -> list[str] | None:
@@ -212,10 +221,11 @@ def _wired_otherwise(kinds: Sequence[Kind]) -> Iterator[str]:
 
 def _formats(kinds: Sequence[Kind]) -> dict[str, list[str]]:
     """The named formats, line by line: of each kind of log, and of gyros in a log of their own."""
-    both, found = ("accelerometer", "gyro"), {}
+    found: dict[str, list[str]] = {}
     for number, kind in enumerate(kinds, 1):
-        if len(kinds) > 1:
-            found[f"format-{number}"] = list(_format(kind, both))
+        own = list(_format(kind, BOTH))
+        if len(kinds) > 1 and own not in found.values():
+            found[f"format-{number}"] = own
         if len(kind.columns.time) > 1:
             found[f"gyros-{number}"] = list(_format(kind, ("gyro",)))
     return {name: [f"  {name}:", *lines] for name, lines in found.items()}

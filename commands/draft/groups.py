@@ -14,6 +14,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 MIN_SHARED_TIME = 0.8  # of two logs of one recording, which were not begun at the same moment
+WHOLE_IMU = 6  # columns, and a clock: a log that lacks no sensor
 MAX_UNSTEADY = 0.3  # scatter of |f| of accelerometers that are turned over by hand, relative
 MAX_SHARE_OF_GRAVITY = 0.3  # of the lengths in the other logs: no accelerometer reads so little
 OTHER_SENSOR = re.compile(r"mag(?!i)|compass|baro", re.IGNORECASE)
@@ -51,12 +52,16 @@ def recorded_together(logs: Sequence[RawLog]) -> list[tuple[RawLog, ...]]:
 def _shared(one: RawLog, other: RawLog) -> float:
     """The share of the time of two logs that both cover; 0 where they are no pair of sensors."""
     names = time_of(one), time_of(other)
+    sensors = _only_sensor(one), _only_sensor(other)
+    alike = _signature(one) == _signature(other) and len(one.columns) > WHOLE_IMU
+    if alike or (sensors[0] is not None and sensors[0] == sensors[1]):
+        return 0.0  # stamps that begin at 0 in each log are the same, too
     if names[0] is None or names[1] is None:
         return 0.0
     ours, theirs = finite(one.columns[names[0]]), finite(other.columns[names[1]])
     if np.array_equal(ours, theirs):
         return 1.0
-    if names[0] != names[1] or {_only_sensor(one), _only_sensor(other)} != {"accel", "gyro"}:
+    if names[0] != names[1] or set(sensors) != {"accel", "gyro"}:
         return 0.0
     both = min(ours.max(), theirs.max()) - max(ours.min(), theirs.min())
     either = max(ours.max(), theirs.max()) - min(ours.min(), theirs.min())

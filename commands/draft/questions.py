@@ -1,5 +1,7 @@
 """What a draft has to ask: what no log says, and where logs contradict themselves."""
 
+import re
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from commands.draft.manoeuvres import Manoeuvre
@@ -7,6 +9,12 @@ from commands.draft.sensors import Kind
 from commands.draft.timing import Timing
 from inertial.text.messages import _
 
+NEGATIVE = ("neg", "negative", "minus", "down", "-")
+SIGN = r"(?P<sign>positive|negative|plus|minus|pos|neg|up|down|[+-])"
+UP_IN_NAME = (
+    re.compile(rf"(?<![a-z0-9]){SIGN}[ _-]?(?P<axis>[xyz])(?![a-z])", re.IGNORECASE),
+    re.compile(rf"(?<![a-z])(?P<axis>[xyz])[ _-]?{SIGN}(?![a-z0-9])", re.IGNORECASE),
+)  # what the name of a log says points up
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
 
 
@@ -25,6 +33,7 @@ def questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -
     )
     for kind in kinds:
         yield from _of_kind(kind)
+    yield from _named_otherwise(plan)
     if any(m.do == "turn" for m in plan):
         yield _("degrees: were the turns as large as the round angles in the plan?")
     if any(m.up for m in plan):
@@ -32,6 +41,43 @@ def questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -
             "up: is the axis named in the plan the one that pointed up? A log that reads −g there "
             "has the other sign."
         )
+
+
+def _named_otherwise(plan: Sequence[Manoeuvre]) -> Iterator[str]:
+    """Each log of one static position whose name says another axis than the one it reads."""
+    logs = Counter(m.part.logs[0].path.name for m in plan)
+    named = {
+        name: (said, m.up)
+        for m in plan
+        for name in [m.part.logs[0].path.name]
+        if m.do == "rest" and m.up and logs[name] == 1
+        if (said := _up_in_name(m.part.logs[0].path.stem)) is not None
+    }
+    if len(named) > 2 and all(said[0] != up[0] and said[1] == up[1] for said, up in named.values()):
+        yield _(
+            "each log reads −g on the axis that its name says is up; do the accelerometers read "
+            "gravity, `{key}`, or is it the axis that pointed down?",
+            key="accelerometer: {reads: gravity}",
+        )
+        return
+    for name, (said, up) in named.items():
+        if said != up:
+            yield _(
+                "{log}: its name says {named} up, and it reads {read}; was the IMU stood otherwise "
+                "than planned, or the log misnamed?",
+                log=name,
+                named=said,
+                read=up,
+            )
+
+
+def _up_in_name(stem: str) -> str | None:
+    """The signed axis that the name of a log says: posX, x_up, -z; None where it says none."""
+    for pattern in UP_IN_NAME:
+        if found := pattern.search(stem):
+            sign = "-" if found["sign"].lower() in NEGATIVE else "+"
+            return sign + found["axis"].lower()
+    return None
 
 
 def _of_kind(kind: Kind) -> Iterator[str]:

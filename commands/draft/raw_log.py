@@ -158,6 +158,7 @@ def _layout(
 
 def _names(line: str, delimiter: str | None, length: int) -> list[str]:
     """The names in the last line of a header; none where they do not fit the columns."""
+    line = line.replace("\0", "")  # as the reader has it
     names = _fields(line.strip().lstrip("#%/").lstrip(), delimiter)
     if len(names) > 1 and not names[-1]:
         names = names[:-1]

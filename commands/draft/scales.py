@@ -35,6 +35,7 @@ FIRST_SIGMA = 0.1  # relative, of a factor by the change of gravity's direction 
 MAX_MISS = np.radians(30)  # of a direction: a motion that misses by more says no more
 MAX_WAYS = 20  # motions by which the factor is refined, the shortest of all
 RANGE, STEP = 0.4, 0.02  # about the first factor, relative
+GYRO_COUNTS_BESIDE = {16384.0: 131.0, 8192.0: 65.5, 4096.0: 32.8, 2048.0: 16.4}  # in 1 g: in 1 °/s
 USUAL_GYRO_COUNTS = (131.0, 65.5, 32.8, 16.4, 228.6, 114.3, 57.1, 28.6, 14.3)  # in 1 °/s
 MAX_RAD_S = 40.0  # rad/s: gyros that read more read °/s
 DEGREE = np.pi / 180
@@ -272,9 +273,15 @@ def _by_turns(recordings: Sequence[Divided], counts: bool) -> tuple[str, float |
 
 
 def gyro_scale(
-    recordings: Sequence[Divided], turns: Turning | None, names: Sequence[object]
+    recordings: Sequence[Divided],
+    turns: Turning | None,
+    names: Sequence[object],
+    accel: Scale | None = None,
 ) -> Scale:
-    """The unit of gyros: by their names, by the motion, else by how much they read."""
+    """The unit of gyros: by their names, by the motion, else by how much they read.
+
+    `accel`: the unit of the accelerometers beside them.
+    """
     values = np.concatenate([own.series.gyro for own in recordings])
     zero = zero_of(values)
     named = next(
@@ -282,14 +289,39 @@ def gyro_scale(
         None,
     )
     thousandths = any(isinstance(n, str) and THOUSANDTH.search(n) for n in names)
-    axes, shares = (AS_NAMED, ()) if turns is None else (turns.axes, turns.shares)
     if turns is None:
         if named is not None:
             return Scale(named, 1000.0 if thousandths else None, zero, _("by their names"), False)
         if (found := _by_turns(recordings, are_counts(values))) is not None:
             return Scale("deg/s" if found[1] else found[2], found[1], zero, found[0], True)
-        unit = "deg/s" if np.abs(values - zero).max() > MAX_RAD_S else "rad/s"
-        return Scale(unit, None, zero, _("guessed from the largest reading"), True)
+        return _by_size(values, zero, accel)
+    return _by_motion(recordings, turns, values, thousandths)
+
+
+def _by_size(values: Array, zero: float, accel: Scale | None) -> Scale:
+    """A guess, where no turn shows the unit: whole numbers are counts, of a size that is asked."""
+    largest = float(np.abs(values - zero).max())
+    beside = (accel is not None and accel.counts) or None
+    if are_counts(values) and (beside or largest > MAX_RAD_S):
+        counts = GYRO_COUNTS_BESIDE.get(beside or 0.0, USUAL_GYRO_COUNTS[0])
+        usual = ", ".join(f"{each:g}" for each in USUAL_GYRO_COUNTS)
+        doubt = _(
+            "they read counts, and no turn shows how many are in 1 °/s; which range was set? Usual "
+            "are {usual}; {counts} is a guess",
+            usual=usual,
+            counts=f"{counts:g}",
+        )
+        what = _("whole numbers, so counts; their size is a guess")
+        return Scale("deg/s", counts, zero, what, True, doubt=doubt)
+    unit = "deg/s" if largest > MAX_RAD_S else "rad/s"
+    return Scale(unit, None, zero, _("by their largest reading"), True)
+
+
+def _by_motion(
+    recordings: Sequence[Divided], turns: Turning, values: Array, thousandths: bool
+) -> Scale:
+    """The unit in which gyros carry gravity's direction as it turns."""
+    zero, axes, shares = zero_of(values), turns.axes, turns.shares
     seen = _(
         "gravity's direction turns by {factor} rad for each unit of reading and second, "
         "± {percent:.0f} %",

@@ -98,7 +98,7 @@ def _kind(group: Sequence[Sequence[RawLog]], sensor: Named | None, rate: float |
     turned = turning(own, accel) if accel and columns.gyro else None
     gyro = None
     if columns.gyro:
-        gyro = gyro_scale(own, turned, columns.gyro.columns)
+        gyro = gyro_scale(own, turned, columns.gyro.columns, accel)
         if turned is not None:
             gyro, timing = _rate_by_motion(gyro, timing, turned, own)
     return Kind(columns, timing, accel, gyro, parts, own)
@@ -175,7 +175,7 @@ def _kind_of_means(columns: Columns, timing: Timing, group: Sequence[Sequence[Ra
         forces, rates = series.means(values[0]), series.means(values[1])
         own.append(Divided(series, forces, rates, np.full(3, np.nan), rows))
     accel = accel_scale(own)
-    gyro = gyro_scale(own, None, columns.gyro.columns) if columns.gyro else None
+    gyro = gyro_scale(own, None, columns.gyro.columns, accel) if columns.gyro else None
     return Kind(columns, timing, accel, gyro, parts, own, means=True)
 
 
