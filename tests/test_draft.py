@@ -2,14 +2,13 @@
 
 import re
 from pathlib import Path
-from typing import Any
 
 import chain
 import numpy as np
 import pytest
+from drafting import Document, drafted, told, written
 from logs_by_hand import by_hand_log
 from moved_by_hand import GRAVITY, RATE
-from ruamel.yaml import YAML
 
 from commands.draft.__main__ import draft, main
 from commands.no_result import no_results
@@ -18,24 +17,6 @@ from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal
 
 MAX_SIGMA = 4.5  # of some twenty parameters with Gaussian errors, in 1 of 6000 campaigns
-Document = dict[str, Any]
-
-
-def told(folder: Path) -> Document:
-    return YAML(typ="safe").load(folder / "campaign.yaml")
-
-
-def drafted(logs: dict[str, str], tmp_path: Path, **options: Any) -> Path:
-    """The folder of a campaign drafted from logs with these contents."""
-    for name, text in logs.items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    return draft([tmp_path / name for name in logs], "drafted", tmp_path / "data", **options)
-
-
-def written(columns: list[np.ndarray], between: str = ",", digits: int = 7) -> str:
-    """Rows of numbers as text."""
-    rows = np.column_stack(columns)
-    return "".join(between.join(f"{v:.{digits}g}" for v in row) + "\n" for row in rows)
 
 
 # ---- a table's campaign, in the messages of a receiver
@@ -273,151 +254,6 @@ def test_text_as_programs_of_other_countries_write_it(tmp_path):
     assert (layout["delimiter"], layout["decimal"], layout["comment"]) == (";", ",", "#")
     results = chain.run(folder, tmp_path / "derived", "segment")
     assert results["segment/segments"]["manoeuvre"].nunique() >= log.positions
-
-
-# ---- what is no static position
-
-
-def at_rest(up: tuple[float, float, float], seconds: float, seed: int = 0) -> np.ndarray:
-    """Accelerometers (n, 3) at 100 Hz in one attitude, m/s²."""
-    noise = 0.02 * np.random.default_rng(seed).standard_normal((round(100 * seconds), 3))
-    return 9.8 * np.array(up) / np.linalg.norm(up) + noise
-
-
-FACES = [(0, 0, 1), (0, 0, -1), (0, 1, 0), (1, 0, 0)]
-
-
-def comments(folder: Path) -> str:
-    """What a draft says at its top, without the ends of lines."""
-    lines = (folder / "campaign.yaml").read_text(encoding="utf-8").splitlines()
-    return " ".join(" ".join(line.lstrip("# ") for line in lines if line[:1] == "#").split())
-
-
-def test_zeros_that_fill_a_log_up_are_no_static_position(tmp_path):
-    force = np.vstack([at_rest(FACES[i % 3], 5, i) for i in range(3)] + [np.zeros((400, 3))])
-    time = np.arange(len(force)) / 100
-    folder = drafted({"log.csv": "t,ax,ay,az\n" + written([time, force])}, tmp_path)
-    campaign = told(folder)
-    assert campaign["instrument"]["format"]["accelerometer"]["unit"] == "m/s2"
-    assert [m["up"] for m in campaign["plan"]] == ["+z", "-z", "+y"]
-    assert all(m["rows"][1] <= 1500 for m in campaign["plan"])
-    assert "gravity has one length" not in comments(folder)
-
-
-def test_static_positions_in_which_gravity_differs_are_asked_about(tmp_path):
-    force = np.vstack([at_rest(FACES[i], 5, i) * (1.25 if i == 2 else 1) for i in range(4)])
-    time = np.arange(len(force)) / 100
-    folder = drafted({"log.csv": "t,ax,ay,az\n" + written([time, force])}, tmp_path)
-    assert told(folder)["instrument"]["format"]["accelerometer"]["unit"] == "m/s2"
-    assert "in 4 static positions |f| is 9.8" in comments(folder)
-    assert "to 12.25, and gravity has one length" in comments(folder)
-
-
-# ---- files of three columns without names
-
-
-def test_files_that_look_alike_are_of_the_sensor_that_they_are_named_for(tmp_path):
-    rate = 0.03 + 0.002 * np.random.default_rng(1).standard_normal((500, 3))
-    logs = {f"accel_{i}.csv": written([at_rest(FACES[i], 5, i)]) for i in range(3)}
-    campaign = told(drafted(logs | {"gyro.csv": written([rate])}, tmp_path, rate=100))
-    first, second = campaign["formats"].values()
-    assert first["accelerometer"] == {"columns": [1, 2, 3], "unit": "m/s2"}
-    assert second["gyro"] == {"columns": [1, 2, 3], "unit": "rad/s"}
-    assert "gyro" not in first and "accelerometer" not in second
-    assert [m["format"] for m in campaign["plan"]] == ["format-1"] * 3 + ["format-2"]
-    told_of = comments(tmp_path / "data/raw/drafted")
-    assert "by the names of their files" in told_of and "by their names" not in told_of
-
-
-def test_files_that_look_alike_and_read_far_less_than_gravity_are_of_gyros(tmp_path):
-    rate = 0.03 + 0.002 * np.random.default_rng(1).standard_normal((500, 3))
-    logs = {f"{i}.csv": written([at_rest(FACES[i], 5, i)]) for i in range(3)}
-    folder = drafted(logs | {"3.csv": written([rate])}, tmp_path, rate=100)
-    first, second = told(folder)["formats"].values()
-    assert first["accelerometer"]["unit"] == "m/s2" and "accelerometer" not in second
-    assert second["gyro"]["columns"] == [1, 2, 3]
-    assert "gravity reads 9.8" in comments(folder)
-
-
-def test_a_file_named_for_a_magnetometer_is_none_of_accelerometers(tmp_path):
-    logs = {"acc.csv": written([at_rest(FACES[0], 5)]), "mag.csv": written([at_rest(FACES[1], 5)])}
-    with pytest.raises(Refusal, match="of another sensor"):
-        drafted(logs, tmp_path)
-
-
-# ---- where nothing rests
-
-
-def tumbling(seconds: float, turns: float) -> np.ndarray:
-    """Accelerometers (n, 3) at 100 Hz while gravity goes round in body axes, m/s²."""
-    angle = np.linspace(0, 2 * np.pi * turns, round(100 * seconds))
-    up = np.column_stack([np.sin(angle), np.cos(angle) * np.sin(3 * angle), np.cos(angle)])
-    noise = 0.02 * np.random.default_rng(0).standard_normal(up.shape)
-    return 9.8 * up / np.linalg.norm(up, axis=1)[:, None] + noise
-
-
-def test_slow_tumbling_is_no_rest(tmp_path):
-    with pytest.raises(Refusal, match=r"at 100.0 Hz, which is assumed") as refusal:
-        drafted({"acc.csv": written([tumbling(60, 4)])}, tmp_path)
-    assert "RATE=" in refusal.value.cure
-    with pytest.raises(Refusal, match="all of it moves") as refusal:
-        drafted({"acc.csv": written([np.arange(6000) / 100, tumbling(60, 4)])}, tmp_path)
-    assert "RATE=" not in refusal.value.cure
-
-
-def test_where_nothing_rests_the_length_of_gravity_is_no_length_of_a_mean(tmp_path):
-    rest = 0.001 * np.random.default_rng(2).standard_normal((1000, 3))
-    logs = {"acc.csv": written([tumbling(60, 4)]), "gyro.csv": written([rest])}
-    folder = drafted(logs, tmp_path)
-    formats = told(folder)["formats"].values()
-    assert [own["accelerometer"]["unit"] for own in formats if "accelerometer" in own] == ["m/s2"]
-    assert "the median of |f| is 9.8" in comments(folder)
-    assert "acc.csv is not in the plan: in its 60.0 s nothing rests" in comments(folder)
-
-
-# ---- logs of raw counts, as a microcontroller prints them
-
-
-def counted(up: tuple[float, float, float], seed: int) -> str:
-    """Stamps, µs, accelerometers of 16384 in 1 g and gyros that rest with a bias of −4.2 °/s."""
-    force = np.rint(at_rest(up, 3, seed) / 9.80665 * 16384)
-    rate = np.rint([-550, 120, -76] + 8 * np.random.default_rng(seed).standard_normal((300, 3)))
-    head = "t_us,ax,ay,az,gx,gy,gz\n"
-    return head + written([500_000 + 10_000 * np.arange(300), force, rate])
-
-
-def test_whole_numbers_of_gyros_beside_counts_are_counts_of_a_size_that_is_asked(tmp_path):
-    logs = {f"{i}.csv": counted(FACES[i], i) for i in range(3)}
-    folder = drafted(logs, tmp_path)
-    layout = told(folder)["instrument"]["format"]
-    assert layout["accelerometer"]["counts_per_unit"] == 16384
-    assert layout["gyro"]["counts_per_unit"] == 131  # the range beside 2 g, of most of these
-    assert "they read counts, and no turn shows how many are in 1 °/s" in comments(folder)
-
-
-def test_zeros_before_the_names_are_no_part_of_them(tmp_path):
-    """A serial port that is opened late gives a buffer of them."""
-    logs = {f"{i}.csv": "\0" * (300 + i) + counted(FACES[i], i) for i in range(3)}
-    folder = drafted(logs, tmp_path)
-    campaign = told(folder)
-    assert campaign["instrument"]["format"]["time"] == {"column": "t_us", "unit": "us"}
-    results = chain.run(folder, tmp_path / "derived", "segment")
-    assert results["segment/segments"]["manoeuvre"].nunique() == 3
-
-
-@pytest.mark.parametrize(
-    ("names", "said"),
-    [
-        (("posZ", "negZ", "x_up"), ["x_up.csv: its name says +x up, and it reads +y"]),
-        (("posZ", "z-down", "run-x"), []),
-        (("negZ", "plus z", "y-"), ["each log reads −g on the axis that its name says"]),
-    ],
-)
-def test_a_name_that_says_another_axis_than_the_log_reads_is_asked_about(names, said, tmp_path):
-    logs = {f"{name}.csv": counted(FACES[i], i) for i, name in enumerate(names)}
-    text = comments(drafted(logs, tmp_path))
-    assert all(sentence in text for sentence in said)
-    assert text.count("its name says") == len(said)
 
 
 # ---- what cannot be drafted

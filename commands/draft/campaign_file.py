@@ -161,6 +161,13 @@ def _evidence(kind: Kind) -> Iterator[str]:
     for word, scale in ((_("accelerometers"), kind.accel), (_("gyros"), kind.gyro)):
         if scale is not None:
             yield f"{word}: {scale.evidence}"
+    for log in {log.path: log for part in kind.parts for log in part.logs if log.left_out}.values():
+        yield _(
+            "{log}: its last {count} rows hold no samples, for nothing changes in them; they are "
+            "not used",
+            log=log.path.name,
+            count=whole(log.left_out),
+        )
     if columns.unused:
         yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
 

@@ -12,8 +12,10 @@ the hand accelerates.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +25,7 @@ from inertial.arrays import Array
 from inertial.signal.signed_counts import bits_without_sign, signed
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
+from inertial.text.units import STANDARD_GRAVITY
 
 BIN_ROWS = 10  # of a short mean
 MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
@@ -30,6 +33,12 @@ MIN_EXPLAINED = 0.3  # share of the change of each axis of a direction that the 
 MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
 CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
+MAX_UNSTEADY = 0.1  # typical change of |f| as a sensor is turned over, relative: its biases
+MAX_TOGETHER = 0.9  # length of the mean direction of what turns over; 1 of what does not
+OF_GRAVITY = (STANDARD_GRAVITY, 1.0, 1000.0, 100 * STANDARD_GRAVITY)  # 1 g in usual units
+MAX_GYRO_RATIO = 10.0  # of the mean of gyros of an IMU that is turned over to their scatter
+MIN_COUNTS = 64.0  # in 1 g, else powers of two
+MAX_OFF_GRAVITY = 0.1  # of |f| to these, relative
 NAMED = {
     "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|specific force"),
     "gyro": re.compile(r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|omega|ang.*(vel|rate)|rotation|turn ?rate"),
@@ -67,10 +76,8 @@ class Triad:
         return np.asarray(values[np.isfinite(values).all(axis=1)])
 
 
-def _with_sign(triad: Triad | None, group: Sequence[Sequence[RawLog]]) -> Triad | None:
+def _with_sign(triad: Triad, group: Sequence[Sequence[RawLog]]) -> Triad:
     """The same with the bits of its counts, where these are written without their sign."""
-    if triad is None:
-        return None
     return replace(triad, bits=bits_without_sign([triad.of(together) for together in group]))
 
 
@@ -147,16 +154,16 @@ def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -
             if all(np.ptp(finite(together[file].columns[name])) == 0 for together in group)
         }
         clocks = {name for name, values in log.columns.items() if _grows(values)}
-        free = [n for n in log.columns if n not in clocks | constant]
+        pieces = _neighbours(list(log.columns), clocks | constant)
         for rows in interleaved or (None,):
-            candidates += [Triad(file, three, rows) for three in _threes(free)]
+            own = [Triad(file, three, rows) for three in _threes(pieces)]
+            candidates += [_with_sign(triad, group) for triad in own]
     if sensor is not None and candidates:
         accel = candidates[0] if sensor.sensor == "accel" else None
         gyro = candidates[0] if sensor.sensor == "gyro" else None
         evidence, guessed = sensor.evidence, sensor.guessed
     else:
         accel, gyro, evidence, guessed = _sensors(group, candidates)
-    accel, gyro = (_with_sign(triad, group) for triad in (accel, gyro))
     used: set[Name | None] = {
         name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns
     }
@@ -214,16 +221,35 @@ def _plain(name: str) -> str:
     return UNIT.sub("", re.sub(r"[\[(].*", "", name).strip().lower())
 
 
-def _threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
+def _neighbours(names: Sequence[Name], without: AbstractSet[Name]) -> list[list[Name]]:
+    """The columns that are left, those that stand side by side in the log together."""
+    pieces: list[list[Name]] = [[]]
+    last: Name | None = None
+    for name in names:
+        apart = isinstance(name, int) and isinstance(last, int) and name != last + 1
+        if name in without or apart:
+            pieces.append([])
+        if name not in without:
+            pieces[-1].append(name)
+        last = name
+    return [piece for piece in pieces if piece]
+
+
+def _threes(pieces: Sequence[Sequence[Name]]) -> Iterator[tuple[Name, ...]]:
     """Three neighbours that may be the axes of a sensor: by their names, else all that could."""
-    windows = [tuple(names[i : i + 3]) for i in range(len(names) - 2)]
-    named = [axes for three in windows if (axes := _axes_named(three))]
+    named = list(_named_threes([name for piece in pieces for name in piece]))
     if named:
         yield from named
-    elif len(names) % 3 == 0:
-        yield from windows[::3]
-    else:
-        yield from windows
+        return
+    for piece in pieces:
+        windows = [tuple(piece[i : i + 3]) for i in range(len(piece) - 2)]
+        yield from windows[::3] if len(piece) % 3 == 0 else windows
+
+
+def _named_threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
+    for i in range(len(names) - 2):
+        if axes := _axes_named(names[i : i + 3]):
+            yield axes
 
 
 def _axes_named(three: Sequence[Name]) -> tuple[Name, ...]:
@@ -359,16 +385,17 @@ def _on_sphere(accel: Sequence[Array], gyro: Sequence[Array]) -> bool:
 def _by_size(
     group: Sequence[Sequence[RawLog]], candidates: Sequence[Triad]
 ) -> tuple[Triad | None, Triad | None, str, bool]:
-    """Without names or motion: gravity is the one that is long, wherever it points."""
-    sizes: dict[Triad, float] = {}
-    for triad in candidates:
-        means = np.array([triad.of(together).mean(axis=0) for together in group])
-        lengths = np.linalg.norm(means, axis=1)
-        spread = np.concatenate([triad.of(together).std(axis=0) for together in group])
-        sizes[triad] = float(np.median(lengths) / (np.std(lengths) + np.median(spread) + 1e-300))
+    """Without names or motion: gravity keeps its length, wherever it points.
+
+    So does what hardly changes at all, a pressure or a temperature; what changes its direction and
+    keeps its length is surer, and then what has a length that gravity has in some unit.
+    """
+    sizes = {triad: _size([triad.of(together) for together in group]) for triad in candidates}
     accel = max(candidates, key=lambda triad: sizes[triad])
     others = [t for t in candidates if not set(t.columns) & set(accel.columns)]
-    if len(candidates) == 1 and sizes[accel] < 3:
+    if sizes[accel].turns:  # gyros do not read the same all the time
+        others = [t for t in others if sizes[t].ratio < MAX_GYRO_RATIO]
+    if len(candidates) == 1 and not sizes[accel].turns and sizes[accel].ratio < 3:
         return None, accel, _("by their size: no gravity is in them"), True
     return (
         accel,
@@ -376,3 +403,30 @@ def _by_size(
         _("by their size: the length of the first hardly changes, as that of gravity"),
         True,
     )
+
+
+class _Size(NamedTuple):
+    """What makes a triad gravity, the surest first; ratio: its length to what changes in it."""
+
+    turns: bool  # and keeps its length
+    usual: bool  # length of 1 g in some unit
+    ratio: float
+
+
+def _size(recordings: Sequence[Array]) -> _Size:
+    """How much the readings (n, 3) of each recording are like gravity."""
+    means = np.array([own.mean(axis=0) for own in recordings])
+    lengths = np.linalg.norm(means, axis=1)
+    spread = np.concatenate([own.std(axis=0) for own in recordings])
+    ratio = float(np.median(lengths) / (np.std(lengths) + np.median(spread) + 1e-300))
+    points = np.concatenate([short_means(own) for own in recordings if len(own) >= BIN_ROWS])
+    own = np.linalg.norm(points, axis=1)
+    length = float(np.median(own))
+    if not length > 0:
+        return _Size(False, False, ratio)
+    steady = float(np.median(np.abs(own / length - 1))) < MAX_UNSTEADY
+    together = np.linalg.norm((points / np.maximum(own, 1e-3 * length)[:, None]).mean(axis=0))
+    power = float(2.0 ** np.round(np.log2(length)))
+    usual = [*OF_GRAVITY, *([power] if power >= MIN_COUNTS else [])]
+    is_usual = any(abs(length / each - 1) < MAX_OFF_GRAVITY for each in usual)
+    return _Size(bool(steady and together < MAX_TOGETHER), is_usual, ratio)

@@ -4,7 +4,7 @@ And what a plan of them lacks for a calibration of accelerometers and gyros.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -97,7 +97,7 @@ def _means(kind: Kind) -> list[Manoeuvre]:
 
 def _all(kind: Kind) -> list[Manoeuvre]:
     return [
-        m
+        replace(m, rows=m.rows or part.rows) if part.logs[0].left_out else m
         for part, own in zip(kind.parts, kind.divided, strict=True)
         for m in _manoeuvres(part, own)
     ]

@@ -180,7 +180,8 @@ class RawLog:
 
     `layout`: what the format of the campaign file states beside the columns; `header`: the lines
     before the data; `columns`: (n,) numbers each, NaN where there is none; `words`: n texts each,
-    of a few different ones; `dates`: columns of dates, in s.
+    of a few different ones; `dates`: columns of dates, in s; `left_out`: rows at the end of the
+    file that hold no samples, and are not among these.
     """
 
     path: Path
@@ -189,6 +190,7 @@ class RawLog:
     header: Sequence[str] = ()
     words: Mapping[Name, Sequence[str]] = field(default_factory=dict)
     dates: Sequence[Name] = ()
+    left_out: int = 0
 
     @property
     def kind(self) -> str:

@@ -20,6 +20,7 @@ from commands.draft.scales import (
     turning,
 )
 from commands.draft.series import Divided, Series, divided
+from commands.draft.tails import without_tail
 from commands.draft.timing import Timing, common_rate, timing_of
 from inertial.arrays import Array
 from inertial.signal.rests_and_motions import BinStretch, rest_level
@@ -65,7 +66,7 @@ class Kind:
 
 def kinds_of(logs: Sequence[RawLog], rate: float | None = None) -> list[Kind]:
     """The logs, those with the same columns together; `rate`, Hz, where no log has a clock."""
-    recordings = recorded_together([run for log in logs for run in runs_of(log)])
+    recordings = recorded_together([without_tail(run) for log in logs for run in runs_of(log)])
     found = [
         _kind(group, sensor, rate)
         for same in alike(recordings)
