@@ -206,3 +206,13 @@ def test_what_hardly_changes_is_no_gravity(tmp_path):
     text = written([np.arange(1500) / 100, *air, force])
     layout = told(drafted({"log.txt": text}, tmp_path))["instrument"]["format"]
     assert layout["accelerometer"] == {"columns": [5, 6, 7], "unit": "g"}
+
+
+def test_readings_divided_by_the_size_of_another_range_are_asked_about(tmp_path):
+    log = by_hand_log(8)
+    time = np.arange(len(log.force)) / RATE
+    rate = np.degrees(log.rate) / 2
+    folder = drafted({"log.txt": written([time, log.force, rate])}, tmp_path)
+    gyros = told(folder)["instrument"]["format"]["gyro"]
+    assert gyros["unit"] == "deg/s" and gyros["counts_per_unit"] == pytest.approx(0.5, rel=0.03)
+    assert "divided by the size of another range, off by the factor 0.5" in comments(folder)

@@ -4,7 +4,7 @@ Of a receiver's counts, which listed instrument they are of: by gravity, rate an
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -29,6 +29,7 @@ MAX_TILT = np.radians(160)
 MIN_STRAIGHT = 0.9  # share of a rotation about one axis
 MAX_OFF_WHOLE = 0.06  # of a turn by hand, and of its gyro, to the whole multiples
 MAX_WHOLE = 3.5  # of these multiples in one turn
+MIN_OTHER_RANGE, MAX_OFF_RANGE = 1 / 8, 0.15  # factors between ranges; error of one, relative
 LARGE = 0.95  # quantile of the rates that is about 1 rad/s
 MIN_FACTOR_SIGMA = 10.0  # of the factor by the change of gravity's direction, to be one
 FIRST_SIGMA = 0.1  # relative, of a factor by the change of gravity's direction alone
@@ -98,7 +99,12 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
     values = np.concatenate([own.series.accel for own in recordings])
     zero = zero_of(values)
     found = gravity_in(recordings, zero)
-    return replace(_unit(found, values, recordings[0].series.accel_hz, zero), doubt=found.doubt)
+    scale = _unit(found, values, recordings[0].series.accel_hz, zero)
+    if found.doubt or not scale.guessed or scale.increments:
+        return replace(scale, doubt=found.doubt)
+    return replace(
+        scale, doubt=_no_unit(values, found.length, {"g": 1.0, "m/s²": STANDARD_GRAVITY})
+    )
 
 
 def _unit(found: Gravity, values: Array, rate: float, zero: float) -> Scale:
@@ -124,6 +130,34 @@ def _unit(found: Gravity, values: Array, rate: float, zero: float) -> Scale:
     counts = power if usual else float(f"{length:.4g}")
     what = _("{seen}: counts, {counts} in 1 g", seen=seen, counts=significant(counts, 6))
     return Scale("g", counts, zero, what, True)
+
+
+def _no_unit(values: Array, readings: float, usual: Mapping[str, float]) -> str:
+    """A question where readings are no whole numbers and in no usual unit, else empty.
+
+    `readings`: how many are in what `usual` has of each unit. Counts that were divided by the size
+    of another range are off by a power of two.
+    """
+    if are_counts(values):
+        return ""
+    first, *_others = usual
+    for unit, size in usual.items():
+        power = float(2.0 ** np.round(np.log2(readings / size)))
+        near = abs(readings / size / power - 1) < MAX_OFF_RANGE
+        if near and power != 1.0 and MIN_OTHER_RANGE <= power <= 1 / MIN_OTHER_RANGE:
+            return _(
+                "they are no whole numbers, and read {ratio} of what they should in {unit}; were "
+                "counts divided by the size of another range, off by the factor {power}? The draft "
+                "takes them as they read",
+                ratio=significant(readings / size),
+                unit=unit,
+                power=f"{power:g}",
+            )
+    return _(
+        "they are no whole numbers, and read {readings} for 1 {unit}, in no usual unit; in which?",
+        readings=significant(readings),
+        unit=first,
+    )
 
 
 @dataclass(frozen=True)
@@ -342,7 +376,8 @@ def _by_motion(
         off = {each: turn_misfit(recordings, DEGREE / each, np.pi / 2) for each in near}
     counts = min(near, key=lambda each: off[each]) if near else float(f"{per_degree:.3g}")
     what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
-    return Scale("deg/s", counts, zero, what, True, axes, shares)
+    doubt = _no_unit(values, per_degree, {"°/s": 1.0, "rad/s": DEGREE})
+    return Scale("deg/s", counts, zero, what, True, axes, shares, doubt=doubt)
 
 
 # ---- The instrument of a receiver's counts.
