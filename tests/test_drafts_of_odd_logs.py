@@ -1,5 +1,7 @@
 """`make draft`: logs that are padded, unnamed, misnamed or of which nothing rests."""
 
+import struct
+
 import chain
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ from drafting import comments, drafted, told, written
 from logs_by_hand import by_hand_log
 from moved_by_hand import RATE
 
+from commands.draft.__main__ import draft
 from inertial.tables.errors import Refusal
 
 # ---- what is no static position
@@ -216,3 +219,52 @@ def test_readings_divided_by_the_size_of_another_range_are_asked_about(tmp_path)
     gyros = told(folder)["instrument"]["format"]["gyro"]
     assert gyros["unit"] == "deg/s" and gyros["counts_per_unit"] == pytest.approx(0.5, rel=0.03)
     assert "divided by the size of another range, off by the factor 0.5" in comments(folder)
+
+
+def test_a_number_of_packets_is_no_clock(tmp_path):
+    """Packets of other sensors count, too: steps of 1 to 3."""
+    log = by_hand_log(9)
+    number = np.cumsum(
+        np.random.default_rng(9).choice([1, 2, 3], len(log.force), p=[0.6, 0.3, 0.1])
+    )
+    head = "Packet number,ax,ay,az,gx,gy,gz\n"
+    text = head + written([number, log.force, log.rate], digits=9)
+    folder = drafted({"log.csv": text}, tmp_path)
+    assert told(folder)["instrument"]["format"]["time"] == {
+        "rate_hz": pytest.approx(RATE, rel=0.05)
+    }
+    assert "how many samples a second" in comments(folder)
+
+
+def test_names_that_state_how_they_are_printed_are_names(tmp_path):
+    log = by_hand_log(10)
+    sensors = {"RawCompass": log.field, "RawGyro": log.rate, "RawAccel": log.force / 9.80665}
+    names = [f"%float({name}{axis})" for name in sensors for axis in "XYZ"]
+    head = ",".join(["%int(TimeUS)", *names]) + "\n"
+    time = np.arange(len(log.force)) * 10_000
+    text = head + written([time, *sensors.values()], digits=9)
+    folder = drafted({"log.txt": text}, tmp_path)
+    layout = told(folder)["instrument"]["format"]
+    assert layout["accelerometer"]["columns"] == names[6:]
+    assert layout["gyro"]["columns"] == names[3:6]
+    assert "by their names" in comments(folder)
+
+
+def test_few_means_without_a_sigma_are_asked_for_it(tmp_path):
+    means = np.array([(s * e).tolist() for e in np.eye(3) for s in (9.81, -9.79)] * 2)
+    means += 0.01 * np.random.default_rng(11).standard_normal(means.shape)
+    folder = drafted({"poses.csv": "acc_x,acc_y,acc_z\n" + written([means])}, tmp_path)
+    assert told(folder)["plan"][0]["do"] == "positions"
+    assert "poses.csv has 12 means, and fewer than 15 do not show their noise" in comments(folder)
+
+
+def test_an_object_of_matlab_is_said_to_be_one(tmp_path):
+    """A variable of class 17, opaque, which has no shape, as MATLAB writes tables."""
+    head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H2s", 0x0100, b"IM")
+    flags = struct.pack("<IIII", 6, 8, 17, 0)
+    words = b"".join(struct.pack("<II8s", 1, 8, word) for word in (b"t", b"MCOS", b"table"))
+    log = tmp_path / "log.mat"
+    log.write_bytes(head + struct.pack("<II", 14, len(flags + words)) + flags + words)
+    with pytest.raises(Refusal, match="an object of MATLAB") as refusal:
+        draft([log], "drafted", tmp_path / "data")
+    assert "matrices" in refusal.value.expected

@@ -84,7 +84,7 @@ def _nothing_done(kinds: Sequence[Kind]) -> Refusal:
                 rate=significant(assumed[0]),
             ),
             expected,
-            _("state how many samples a second there are: RATE=…"),
+            _("state how many samples a second there are: RATE=…, or --rate"),
         )
     return Refusal(
         names,

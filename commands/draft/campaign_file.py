@@ -143,16 +143,24 @@ def _head(
 def _evidence(kind: Kind) -> Iterator[str]:
     columns, timing = kind.columns, kind.timing
     rows = sum(logs[0].rows for logs in {id(p.logs): p.logs for p in kind.parts}.values())
-    seconds = sum(part.series.seconds for part in kind.parts)
-    yield _(
-        "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz{assumed}; {why}",
-        logs=names_of_logs(kind),
-        rows=whole(rows),
-        seconds=seconds,
-        rate=significant(timing.rate),
-        assumed=_(", a rate that is assumed") if without_clock(timing) else "",
-        why=timing.evidence,
-    )
+    if kind.means:
+        yield _(
+            "{logs}: {rows} rows; {why}",
+            logs=names_of_logs(kind),
+            rows=whole(rows),
+            why=timing.evidence,
+        )
+    else:
+        seconds = sum(part.series.seconds for part in kind.parts)
+        yield _(
+            "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz{assumed}; {why}",
+            logs=names_of_logs(kind),
+            rows=whole(rows),
+            seconds=seconds,
+            rate=significant(timing.rate),
+            assumed=_(", a rate that is assumed") if without_clock(timing) else "",
+            why=timing.evidence,
+        )
     which = []
     for word, triad in ((_("accelerometers"), columns.accel), (_("gyros"), columns.gyro)):
         if triad is not None:

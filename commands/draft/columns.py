@@ -42,9 +42,12 @@ MAX_OFF_GRAVITY = 0.1  # of |f| to these, relative
 NAMED = {
     "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|specific force"),
     "gyro": re.compile(r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|omega|ang.*(vel|rate)|rotation|turn ?rate"),
-    "other": re.compile(r"mag|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"),
+    "other": re.compile(
+        r"mag|compass|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"
+    ),
 }
 TIME = re.compile(r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]", re.IGNORECASE)
+PACKETS = re.compile(r"packet|number|count|index|sequence|\bseq\b|frame|message", re.IGNORECASE)
 COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECASE)
 TEMPERATURE = re.compile(r"temp", re.IGNORECASE)
 PLAUSIBLE = {"degC": (-80.0, 150.0), "K": (190.0, 425.0)}  # of an IMU
@@ -112,9 +115,21 @@ def time_of(log: RawLog) -> Name | None:
     """
     if log.kind == "rawimus":
         return "time"
-    growing = [name for name, values in log.columns.items() if _grows(values)]
+    growing = [
+        name
+        for name, values in log.columns.items()
+        if _grows(values) and not _numbers_packets(name, values)
+    ]
     named = [name for name in growing if TIME.search(str(name))]
     return next(iter(named + growing), None)
+
+
+def _numbers_packets(name: Name, values: Array) -> bool:
+    """Whether a column by its name counts packets, of which not all are samples: no clock."""
+    if not PACKETS.search(str(name)) or TIME.search(str(name)):
+        return False
+    steps = np.diff(finite(values))
+    return not (values % 1).any() and len(steps) > 0 and 1 - np.mean(steps == 1) > MAX_RESETS
 
 
 def _grows(values: Array) -> bool:
@@ -216,7 +231,8 @@ def sensor_named(name: str) -> str | None:
 
 
 def _plain(name: str) -> str:
-    """A name without its unit, in small letters; gyro[0] is gyro0."""
+    """A name without its unit, in small letters; gyro[0] is gyro0, %float(GyroX) is gyrox."""
+    name = re.sub(r"^\W*%\w+\((\w+)\)\W*$", r"\1", name)
     name = re.sub(r"\[(\d)\]", r"\1", name)
     return UNIT.sub("", re.sub(r"[\[(].*", "", name).strip().lower())
 
@@ -289,9 +305,16 @@ def _sensors(
         raise Refusal(
             group[0][0].path.name,
             "",
-            _("no three columns that could be the axes of a sensor"),
+            _(
+                "no three columns that could be the axes of a sensor; with numbers in nearly every "
+                "row: {columns}",
+                columns=", ".join(map(str, group[0][0].columns)),
+            ),
             _("three columns of accelerometers or gyros"),
-            _("name the log itself"),
+            _(
+                "name the log itself; where rows of other messages are among those of the IMU, "
+                "leave these out"
+            ),
         )
     return _by_size(group, candidates)
 

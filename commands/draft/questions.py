@@ -15,6 +15,7 @@ UP_IN_NAME = (
     re.compile(rf"(?<![a-z0-9]){SIGN}[ _-]?(?P<axis>[xyz])(?![a-z])", re.IGNORECASE),
     re.compile(rf"(?<![a-z])(?P<axis>[xyz])[ _-]?{SIGN}(?![a-z0-9])", re.IGNORECASE),
 )  # what the name of a log says points up
+MIN_MEANS = 15  # whose residuals show their noise: twelve parameters, and three for the scatter
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
 
 
@@ -82,10 +83,20 @@ def _up_in_name(stem: str) -> str | None:
 
 def _of_kind(kind: Kind) -> Iterator[str]:
     """What logs of one kind leave open."""
+    means = sum(len(part.series.accel) for part in kind.parts)
+    if kind.means and means < MIN_MEANS and kind.columns.mean_of is None:
+        yield _(
+            "sigma: {log} has {means} means, and fewer than {needed} do not show their noise; what "
+            "is the standard deviation of a mean? Without `sigma: …` beside its columns the "
+            "accelerometers get no result",
+            log=names_of_logs(kind),
+            means=means,
+            needed=MIN_MEANS,
+        )
     if without_clock(kind.timing):
         yield _(
             "rate_hz: {log} has no clock; how many samples a second are there? Count sizes of "
-            "gyros go with the rate: draft it again with RATE=",
+            "gyros go with the rate: draft it again with RATE=, or --rate",
             log=names_of_logs(kind),
         )
     if kind.gyro is not None and kind.gyro.axes.moved:

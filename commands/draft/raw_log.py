@@ -228,9 +228,12 @@ def raw_log(path: Path) -> RawLog:
         raise Refusal(
             path.name,
             "",
-            _("no rows of numbers"),
+            _("no rows of three numbers or more"),
             _("the samples of an IMU: messages of a receiver, or rows of columns"),
-            _("name the log itself; another format has to be exported as text first"),
+            _(
+                "leave it out where it is no log of an IMU; another format has to be exported as "
+                "text first"
+            ),
         )
     return _text_log(path, found)
 
