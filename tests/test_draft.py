@@ -2,14 +2,13 @@
 
 import re
 from pathlib import Path
-from typing import Any
 
 import chain
 import numpy as np
 import pytest
+from drafting import Document, drafted, told, written
 from logs_by_hand import by_hand_log
 from moved_by_hand import GRAVITY, RATE
-from ruamel.yaml import YAML
 
 from commands.draft.__main__ import draft, main
 from commands.no_result import no_results
@@ -18,24 +17,6 @@ from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal
 
 MAX_SIGMA = 4.5  # of some twenty parameters with Gaussian errors, in 1 of 6000 campaigns
-Document = dict[str, Any]
-
-
-def told(folder: Path) -> Document:
-    return YAML(typ="safe").load(folder / "campaign.yaml")
-
-
-def drafted(logs: dict[str, str], tmp_path: Path, **options: Any) -> Path:
-    """The folder of a campaign drafted from logs with these contents."""
-    for name, text in logs.items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    return draft([tmp_path / name for name in logs], "drafted", tmp_path / "data", **options)
-
-
-def written(columns: list[np.ndarray], between: str = ",", digits: int = 7) -> str:
-    """Rows of numbers as text."""
-    rows = np.column_stack(columns)
-    return "".join(between.join(f"{v:.{digits}g}" for v in row) + "\n" for row in rows)
 
 
 # ---- a table's campaign, in the messages of a receiver

@@ -250,3 +250,13 @@ def test_words(shares, up, told):
     for i, share in shares.items():
         along[i] = share
     assert in_words(Unobservable(along, np.array(up, float))) == told
+
+
+def test_gyros_that_turned_are_not_said_to_have_hardly_turned(imu):
+    """From +x up to +y up and back: about z, which was level; two attitudes are too few."""
+    blocks = blocks_of(*handled(imu, TWENTY_FOUR[[0, 2, 0]], 20))
+    table, _, _ = rows(add_free_gyros, "gyroscope", blocks, imu)
+    undetermined = table["reason"].dropna()
+    assert np.isnan(table.loc["scale_x", "value"])
+    assert "hardly turned about x" in undetermined["scale_x"]
+    assert "the turns about z between the rests are too few" in undetermined["scale_z"]

@@ -15,12 +15,13 @@ from pathlib import Path
 
 from commands.draft.campaign_file import campaign_file
 from commands.draft.manoeuvres import plan_of
+from commands.draft.questions import names_of_logs, without_clock
 from commands.draft.raw_log import raw_log
-from commands.draft.sensors import kinds_of
+from commands.draft.sensors import Kind, kinds_of
 from commands.new_campaign import free_folder
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
-from inertial.text.numbers import visible
+from inertial.text.numbers import significant, visible
 
 LOG = re.compile(r"[\w+][\w+. -]*")
 
@@ -60,19 +61,38 @@ def draft(logs: Sequence[Path], name: str, data: Path, rate: float | None = None
     kinds = kinds_of([raw_log(path) for path in logs], rate)
     plan = plan_of(kinds)
     if not plan:
-        raise Refusal(
-            ", ".join(path.name for path in logs),
-            "",
-            _("neither a static position nor a turn"),
-            _("a rest of at least a second, or a turn about one axis"),
-            _("record one of the plans of `make new`"),
-        )
+        raise _nothing_done(kinds)
     text = campaign_file(kinds, plan, name)
     folder.mkdir(parents=True)
     for path in logs:
         shutil.copy(path, folder / path.name)  # a link would be the same bytes
     (folder / "campaign.yaml").write_text(text, encoding="utf-8")
     return folder
+
+
+def _nothing_done(kinds: Sequence[Kind]) -> Refusal:
+    """What to do where no log shows a manoeuvre: it may be the rate that is wrong."""
+    names = ", ".join(names_of_logs(kind) for kind in kinds)
+    expected = _("a rest of at least a second, or a turn about one axis")
+    if assumed := [kind.timing.rate for kind in kinds if without_clock(kind.timing)]:
+        return Refusal(
+            names,
+            "",
+            _(
+                "no column is a time, and at {rate} Hz, which is assumed, neither a static "
+                "position nor a turn",
+                rate=significant(assumed[0]),
+            ),
+            expected,
+            _("state how many samples a second there are: RATE=…, or --rate"),
+        )
+    return Refusal(
+        names,
+        "",
+        _("neither a static position nor a turn: all of it moves, about several axes"),
+        expected,
+        _("record one of the plans of `make new`"),
+    )
 
 
 def _check(logs: Sequence[Path]) -> None:

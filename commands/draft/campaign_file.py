@@ -9,9 +9,9 @@ import numpy as np
 
 from commands.draft.columns import Triad
 from commands.draft.manoeuvres import Manoeuvre, missing
+from commands.draft.questions import GRAVITY, GRAVITY_SIGMA, names_of_logs, questions, without_clock
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
-from commands.draft.timing import Timing
 from commands.new_campaign import comment, flow, in_flow, scalar
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole
@@ -20,9 +20,9 @@ HAND_POSITION, TABLE_SIGMA = 3600, 180  # arc seconds, of what a person or an un
 HAND_TURN, FEW_TURNS = 8.0, 3  # °, sigma of an angle by hand; turns that show it
 BEST_HAND_TURN = 5.0  # degrees, sigma of an angle by hand that the gyros confirm
 TABLE_RATE = 1000  # ppm, of a table of which nothing is known
-GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
 LARGEST_COUNT = 32767
 VERSION, GUESS = "campaign: 1", "# guessed:"
+BOTH = ("accelerometer", "gyro")  # sensors in one file
 
 
 def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -> str:
@@ -51,7 +51,7 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
     for m, own in zip(plan, _ids(plan), strict=True):
         keys = {"id": own, **_keys(m, None if m.by_table else sigma), **_where(m, kinds)}
         if len(kinds) > 1:
-            keys["format"] = f"format-{_place(m, kinds)}"
+            keys["format"] = _format_name(m, kinds)
         if len(logs) > 1:
             keys |= _logs_of(m, kinds)
         lines.append(f"  - {flow(**keys)}{_seen(m)}")
@@ -74,6 +74,14 @@ def _guessed(lines: Sequence[str]) -> list[str]:
 def _place(m: Manoeuvre, kinds: Sequence[Kind]) -> int:
     """The number of the kind of log that a manoeuvre is in, from 1."""
     return next(n for n, k in enumerate(kinds, 1) if any(part is m.part for part in k.parts))
+
+
+def _format_name(m: Manoeuvre, kinds: Sequence[Kind]) -> str:
+    """The format of its log: of equal ones the first."""
+    own = list(_format(kinds[_place(m, kinds) - 1], BOTH))
+    return (
+        f"format-{next(n for n, kind in enumerate(kinds, 1) if list(_format(kind, BOTH)) == own)}"
+    )
 
 
 def _logs_of(m: Manoeuvre, kinds: Sequence[Kind]) -> dict[str, Any]:
@@ -114,7 +122,7 @@ def _head(
     )
     yield "#"
     yield from comment(_("Questions that only a person can answer:"))
-    for number, question in enumerate(_questions(kinds, plan, by_hand), 1):
+    for number, question in enumerate(questions(kinds, plan, by_hand), 1):
         yield from comment(question, f"#   {number}. ")
     yield "#"
     yield from comment(_("What the logs are:"))
@@ -122,7 +130,7 @@ def _head(
         for text in _evidence(kind):
             yield from comment(text, "#   - ")
     yield "#"
-    lacking = list(missing(plan))
+    lacking = list(missing(kinds, plan))
     yield from comment(
         _("What is missing for a calibration of both sensors:")
         if lacking
@@ -132,54 +140,27 @@ def _head(
         yield from comment(text, "#   - ")
 
 
-def _questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
-    yield _("instrument, serial, date: which IMU is it, and when was it recorded?")
-    yield (
-        _("table: no turn has the steady rate of a table, so it was moved by hand; is that so?")
-        if by_hand
-        else _("table: which one, and how well are its positions, angles and rates known?")
-    )
-    yield _(
-        "site: at which latitude and height, or with which gravity? Until then scale factors of "
-        "accelerometers are known to {percent:.1f} % only.",
-        percent=100 * GRAVITY_SIGMA / GRAVITY,
-    )
-    for kind in kinds:
-        if _without_clock(kind.timing):
-            yield _(
-                "rate_hz: {log} has no clock; how many samples a second are there? Count sizes of "
-                "gyros go with the rate: draft it again with RATE=",
-                log=_logs(kind),
-            )
-        if kind.gyro is not None and kind.gyro.axes.moved:
-            yield _(
-                "gyro.axes: in {log} the gyros turn gravity's direction as if {axes}; which sensor "
-                "is wired otherwise than the axes are named?",
-                log=_logs(kind),
-                axes=kind.gyro.axes.in_words,
-            )
-    if any(m.do == "turn" for m in plan):
-        yield _("degrees: were the turns as large as the round angles in the plan?")
-    if any(m.up for m in plan):
-        yield _(
-            "up: is the axis named in the plan the one that pointed up? A log that reads −g there "
-            "has the other sign."
-        )
-
-
 def _evidence(kind: Kind) -> Iterator[str]:
     columns, timing = kind.columns, kind.timing
     rows = sum(logs[0].rows for logs in {id(p.logs): p.logs for p in kind.parts}.values())
-    seconds = sum(part.series.seconds for part in kind.parts)
-    yield _(
-        "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz{assumed}; {why}",
-        logs=_logs(kind),
-        rows=whole(rows),
-        seconds=seconds,
-        rate=significant(timing.rate),
-        assumed=_(", a rate that is assumed") if _without_clock(timing) else "",
-        why=timing.evidence,
-    )
+    if kind.means:
+        yield _(
+            "{logs}: {rows} rows; {why}",
+            logs=names_of_logs(kind),
+            rows=whole(rows),
+            why=timing.evidence,
+        )
+    else:
+        seconds = sum(part.series.seconds for part in kind.parts)
+        yield _(
+            "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz{assumed}; {why}",
+            logs=names_of_logs(kind),
+            rows=whole(rows),
+            seconds=seconds,
+            rate=significant(timing.rate),
+            assumed=_(", a rate that is assumed") if without_clock(timing) else "",
+            why=timing.evidence,
+        )
     which = []
     for word, triad in ((_("accelerometers"), columns.accel), (_("gyros"), columns.gyro)):
         if triad is not None:
@@ -188,18 +169,15 @@ def _evidence(kind: Kind) -> Iterator[str]:
     for word, scale in ((_("accelerometers"), kind.accel), (_("gyros"), kind.gyro)):
         if scale is not None:
             yield f"{word}: {scale.evidence}"
+    for log in {log.path: log for part in kind.parts for log in part.logs if log.left_out}.values():
+        yield _(
+            "{log}: its last {count} rows hold no samples, for nothing changes in them; they are "
+            "not used",
+            log=log.path.name,
+            count=whole(log.left_out),
+        )
     if columns.unused:
         yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
-
-
-def _without_clock(timing: Timing) -> bool:
-    """Whether samples are counted at a rate that nothing states."""
-    return timing.guessed and timing.unit in (None, "sample")
-
-
-def _logs(kind: Kind) -> str:
-    names = list(dict.fromkeys(log.path.name for part in kind.parts for log in part.logs))
-    return ", ".join(names[:4]) + (_(" and {more} more", more=len(names) - 4) if names[4:] else "")
 
 
 # ---- instrument and formats
@@ -219,7 +197,7 @@ def _instrument(kinds: Sequence[Kind], name: str) -> Iterator[str]:
         yield f"  gyro: {flow(axes=axes)}" + _guess(_("gravity turns as if so"))
     if len(kinds) == 1:
         yield "  format:"
-        yield from _format(kinds[0], ("accelerometer", "gyro"))
+        yield from _format(kinds[0], BOTH)
 
 
 def _axes(kinds: Sequence[Kind]) -> list[str] | None:
@@ -258,10 +236,11 @@ def _wired_otherwise(kinds: Sequence[Kind]) -> Iterator[str]:
 
 def _formats(kinds: Sequence[Kind]) -> dict[str, list[str]]:
     """The named formats, line by line: of each kind of log, and of gyros in a log of their own."""
-    both, found = ("accelerometer", "gyro"), {}
+    found: dict[str, list[str]] = {}
     for number, kind in enumerate(kinds, 1):
-        if len(kinds) > 1:
-            found[f"format-{number}"] = list(_format(kind, both))
+        own = list(_format(kind, BOTH))
+        if len(kinds) > 1 and own not in found.values():
+            found[f"format-{number}"] = own
         if len(kind.columns.time) > 1:
             found[f"gyros-{number}"] = list(_format(kind, ("gyro",)))
     return {name: [f"  {name}:", *lines] for name, lines in found.items()}

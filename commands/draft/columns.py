@@ -12,31 +12,42 @@ the hand accelerates.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
+from commands.draft.gravity import sphere
 from commands.draft.raw_log import Name, RawLog
-from commands.draft.scales import sphere
 from inertial.arrays import Array
 from inertial.signal.signed_counts import bits_without_sign, signed
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
+from inertial.text.units import STANDARD_GRAVITY
 
 BIN_ROWS = 10  # of a short mean
 MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
 MIN_EXPLAINED = 0.3  # share of the change of each axis of a direction that the gyros must explain
 MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
-MIN_SHARED_TIME = 0.8  # of two logs of one recording, which were not begun at the same moment
 CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
+MAX_UNSTEADY = 0.1  # typical change of |f| as a sensor is turned over, relative: its biases
+MAX_TOGETHER = 0.9  # length of the mean direction of what turns over; 1 of what does not
+OF_GRAVITY = (STANDARD_GRAVITY, 1.0, 1000.0, 100 * STANDARD_GRAVITY)  # 1 g in usual units
+MAX_GYRO_RATIO = 10.0  # of the mean of gyros of an IMU that is turned over to their scatter
+MIN_COUNTS = 64.0  # in 1 g, else powers of two
+MAX_OFF_GRAVITY = 0.1  # of |f| to these, relative
 NAMED = {
     "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|specific force"),
     "gyro": re.compile(r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|omega|ang.*(vel|rate)|rotation|turn ?rate"),
-    "other": re.compile(r"mag|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"),
+    "other": re.compile(
+        r"mag|compass|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"
+    ),
 }
 TIME = re.compile(r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]", re.IGNORECASE)
+PACKETS = re.compile(r"packet|number|count|index|sequence|\bseq\b|frame|message", re.IGNORECASE)
 COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECASE)
 TEMPERATURE = re.compile(r"temp", re.IGNORECASE)
 PLAUSIBLE = {"degC": (-80.0, 150.0), "K": (190.0, 425.0)}  # of an IMU
@@ -68,11 +79,18 @@ class Triad:
         return np.asarray(values[np.isfinite(values).all(axis=1)])
 
 
-def _with_sign(triad: Triad | None, group: Sequence[Sequence[RawLog]]) -> Triad | None:
+def _with_sign(triad: Triad, group: Sequence[Sequence[RawLog]]) -> Triad:
     """The same with the bits of its counts, where these are written without their sign."""
-    if triad is None:
-        return None
     return replace(triad, bits=bits_without_sign([triad.of(together) for together in group]))
+
+
+@dataclass(frozen=True)
+class Named:
+    """What sensor three columns are, accel or gyro, and what says so."""
+
+    sensor: str
+    evidence: str
+    guessed: bool
 
 
 @dataclass(frozen=True)
@@ -97,9 +115,21 @@ def time_of(log: RawLog) -> Name | None:
     """
     if log.kind == "rawimus":
         return "time"
-    growing = [name for name, values in log.columns.items() if _grows(values)]
+    growing = [
+        name
+        for name, values in log.columns.items()
+        if _grows(values) and not _numbers_packets(name, values)
+    ]
     named = [name for name in growing if TIME.search(str(name))]
     return next(iter(named + growing), None)
+
+
+def _numbers_packets(name: Name, values: Array) -> bool:
+    """Whether a column by its name counts packets, of which not all are samples: no clock."""
+    if not PACKETS.search(str(name)) or TIME.search(str(name)):
+        return False
+    steps = np.diff(finite(values))
+    return not (values % 1).any() and len(steps) > 0 and 1 - np.mean(steps == 1) > MAX_RESETS
 
 
 def _grows(values: Array) -> bool:
@@ -116,58 +146,10 @@ def _grows(values: Array) -> bool:
     return bool(usual > 0 and np.mean(steps < 0) <= MAX_RESETS and alike.mean() >= 0.7)
 
 
-def runs_of(log: RawLog) -> list[RawLog]:
-    """A container of several matrices of one sensor holds as many recordings."""
-    matrices: dict[str, dict[Name, Array]] = {}
-    for name, values in log.columns.items():
-        matrices.setdefault(str(name).rpartition(".")[0], {})[name] = values
-    kinds = {_kind(matrix) for matrix in matrices}
-    alone = all(len(columns) == 3 for columns in matrices.values())
-    if len(matrices) < 2 or not alone or len(kinds) > 1 or not kinds <= {"accel", "gyro"}:
-        return [log]
-    return [replace(log, columns=columns) for columns in matrices.values()]
-
-
-def recorded_together(logs: Sequence[RawLog]) -> list[tuple[RawLog, ...]]:
-    """Logs of two sensors, each in a file of its own, that are one recording by their stamps.
-
-    They have the same stamps, or they name one sensor each and cover the same time.
-    """
-    groups: list[list[RawLog]] = []
-    for log in logs:
-        alone = [group for group in groups if len(group) == 1]
-        shared = [_shared(group[0], log) for group in alone]
-        best = int(np.argmax(shared)) if shared else 0
-        if shared and shared[best] > MIN_SHARED_TIME:
-            alone[best].append(log)
-        else:
-            groups.append([log])
-    return [tuple(group) for group in groups]
-
-
-def _shared(one: RawLog, other: RawLog) -> float:
-    """The share of the time of two logs that both cover; 0 where they are no pair of sensors."""
-    names = time_of(one), time_of(other)
-    if names[0] is None or names[1] is None:
-        return 0.0
-    ours, theirs = _finite(one.columns[names[0]]), _finite(other.columns[names[1]])
-    if np.array_equal(ours, theirs):
-        return 1.0
-    if names[0] != names[1] or {_only_sensor(one), _only_sensor(other)} != {"accel", "gyro"}:
-        return 0.0
-    both = min(ours.max(), theirs.max()) - max(ours.min(), theirs.min())
-    either = max(ours.max(), theirs.max()) - min(ours.min(), theirs.min())
-    return float(both / either)
-
-
-def _only_sensor(log: RawLog) -> str | None:
-    """The one sensor that the columns of a log name, or else its file does."""
-    named = {kind for name in log.columns if (kind := _kind(str(name)))} & {"accel", "gyro"}
-    return named.pop() if len(named) == 1 else None if named else _kind(log.path.stem)
-
-
-def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
+def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -> Columns:
     """What the columns of these logs are, which have the same; each may be of several files.
+
+    `sensor`: the one whose three columns are all, where something else says so.
 
     Raises
     ------
@@ -184,14 +166,19 @@ def columns_of(group: Sequence[Sequence[RawLog]]) -> Columns:
         constant = {
             name
             for name in log.columns
-            if all(np.ptp(_finite(together[file].columns[name])) == 0 for together in group)
+            if all(np.ptp(finite(together[file].columns[name])) == 0 for together in group)
         }
         clocks = {name for name, values in log.columns.items() if _grows(values)}
-        free = [n for n in log.columns if n not in clocks | constant]
+        pieces = _neighbours(list(log.columns), clocks | constant)
         for rows in interleaved or (None,):
-            candidates += [Triad(file, three, rows) for three in _threes(free)]
-    *both, evidence, guessed = _sensors(group, candidates)
-    accel, gyro = (_with_sign(triad, group) for triad in both)
+            own = [Triad(file, three, rows) for three in _threes(pieces)]
+            candidates += [_with_sign(triad, group) for triad in own]
+    if sensor is not None and candidates:
+        accel = candidates[0] if sensor.sensor == "accel" else None
+        gyro = candidates[0] if sensor.sensor == "gyro" else None
+        evidence, guessed = sensor.evidence, sensor.guessed
+    else:
+        accel, gyro, evidence, guessed = _sensors(group, candidates)
     used: set[Name | None] = {
         name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns
     }
@@ -206,16 +193,17 @@ def _temperature_of(log: RawLog) -> tuple[Name, str] | None:
     """The column that is named a temperature and reads one, with its unit."""
     for name, values in log.columns.items():
         if isinstance(name, str) and TEMPERATURE.search(name):
-            finite = _finite(values)
+            read = finite(values)
             for unit, (least, most) in PLAUSIBLE.items():
-                if least < finite.min() and finite.max() < most:
+                if least < read.min() and read.max() < most:
                     return name, unit
     return None
 
 
-def _finite(values: Array) -> Array:
-    finite = values[np.isfinite(values)]
-    return finite if len(finite) else np.zeros(1)
+def finite(values: Array) -> Array:
+    """Those that are numbers; one zero where none is."""
+    there = values[np.isfinite(values)]
+    return there if len(there) else np.zeros(1)
 
 
 def _words_of(log: RawLog) -> tuple[list[tuple[Name, str]], Name | None]:
@@ -231,33 +219,53 @@ def _words_of(log: RawLog) -> tuple[list[tuple[Name, str]], Name | None]:
             rows += [(name, word) for word in different]
         elif len(different) > 1:
             label = name
-        elif _kind(different[0]):
+        elif sensor_named(different[0]):
             rows.append((name, different[0]))
     return rows, label
 
 
-def _kind(name: str) -> str | None:
+def sensor_named(name: str) -> str | None:
     """The sensor that a name names: accel, gyro, other, or None."""
     plain = _plain(str(name))
     return next((kind for kind, pattern in NAMED.items() if pattern.search(plain)), None)
 
 
 def _plain(name: str) -> str:
-    """A name without its unit, in small letters; gyro[0] is gyro0."""
+    """A name without its unit, in small letters; gyro[0] is gyro0, %float(GyroX) is gyrox."""
+    name = re.sub(r"^\W*%\w+\((\w+)\)\W*$", r"\1", name)
     name = re.sub(r"\[(\d)\]", r"\1", name)
     return UNIT.sub("", re.sub(r"[\[(].*", "", name).strip().lower())
 
 
-def _threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
+def _neighbours(names: Sequence[Name], without: AbstractSet[Name]) -> list[list[Name]]:
+    """The columns that are left, those that stand side by side in the log together."""
+    pieces: list[list[Name]] = [[]]
+    last: Name | None = None
+    for name in names:
+        apart = isinstance(name, int) and isinstance(last, int) and name != last + 1
+        if name in without or apart:
+            pieces.append([])
+        if name not in without:
+            pieces[-1].append(name)
+        last = name
+    return [piece for piece in pieces if piece]
+
+
+def _threes(pieces: Sequence[Sequence[Name]]) -> Iterator[tuple[Name, ...]]:
     """Three neighbours that may be the axes of a sensor: by their names, else all that could."""
-    windows = [tuple(names[i : i + 3]) for i in range(len(names) - 2)]
-    named = [axes for three in windows if (axes := _axes_named(three))]
+    named = list(_named_threes([name for piece in pieces for name in piece]))
     if named:
         yield from named
-    elif len(names) % 3 == 0:
-        yield from windows[::3]
-    else:
-        yield from windows
+        return
+    for piece in pieces:
+        windows = [tuple(piece[i : i + 3]) for i in range(len(piece) - 2)]
+        yield from windows[::3] if len(piece) % 3 == 0 else windows
+
+
+def _named_threes(names: Sequence[Name]) -> Iterator[tuple[Name, ...]]:
+    for i in range(len(names) - 2):
+        if axes := _axes_named(names[i : i + 3]):
+            yield axes
 
 
 def _axes_named(three: Sequence[Name]) -> tuple[Name, ...]:
@@ -278,7 +286,7 @@ def _sensors(
     """Accelerometers and gyros among the candidates, what says so, and whether it is a guess."""
     by_name = _by_name(group[0], candidates)
     if {"accel", "gyro"} <= set(by_name):
-        return by_name["accel"], by_name["gyro"], _("by their names"), False
+        return by_name["accel"], by_name["gyro"], _named_by(by_name), False
     if len(candidates) > 1 and (moved := _by_motion(group, candidates)) is not None:
         accel, gyro, explained = moved
         return (
@@ -292,14 +300,21 @@ def _sensors(
             False,
         )
     if by_name:
-        return by_name.get("accel"), by_name.get("gyro"), _("by their names"), False
+        return by_name.get("accel"), by_name.get("gyro"), _named_by(by_name), False
     if not candidates:
         raise Refusal(
             group[0][0].path.name,
             "",
-            _("no three columns that could be the axes of a sensor"),
+            _(
+                "no three columns that could be the axes of a sensor; with numbers in nearly every "
+                "row: {columns}",
+                columns=", ".join(map(str, group[0][0].columns)),
+            ),
             _("three columns of accelerometers or gyros"),
-            _("name the log itself"),
+            _(
+                "name the log itself; where rows of other messages are among those of the IMU, "
+                "leave these out"
+            ),
         )
     return _by_size(group, candidates)
 
@@ -307,14 +322,20 @@ def _sensors(
 def _by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dict[str, Triad]:
     found: dict[str, Triad] = {}
     for triad in candidates:
-        kind = _kind(triad.rows[1]) if triad.rows else None
+        kind = sensor_named(triad.rows[1]) if triad.rows else None
         if kind is None and isinstance(triad.columns[0], str):
-            kind = _kind(triad.columns[0])
+            kind = sensor_named(triad.columns[0])
         if kind is None and len(candidates) <= len(together):  # the log holds nothing else
-            kind = _kind(together[triad.file].path.stem)
+            kind = sensor_named(together[triad.file].path.stem)
         if kind in ("accel", "gyro"):
             found.setdefault(str(kind), triad)
     return found
+
+
+def _named_by(found: Mapping[str, Triad]) -> str:
+    """What names the sensors that were found by a name: columns, or files whose columns do not."""
+    of_columns = all(t.rows or sensor_named(str(t.columns[0])) for t in found.values())
+    return _("by their names") if of_columns else _("by the names of their files")
 
 
 def _by_motion(
@@ -387,16 +408,17 @@ def _on_sphere(accel: Sequence[Array], gyro: Sequence[Array]) -> bool:
 def _by_size(
     group: Sequence[Sequence[RawLog]], candidates: Sequence[Triad]
 ) -> tuple[Triad | None, Triad | None, str, bool]:
-    """Without names or motion: gravity is the one that is long, wherever it points."""
-    sizes: dict[Triad, float] = {}
-    for triad in candidates:
-        means = np.array([triad.of(together).mean(axis=0) for together in group])
-        lengths = np.linalg.norm(means, axis=1)
-        spread = np.concatenate([triad.of(together).std(axis=0) for together in group])
-        sizes[triad] = float(np.median(lengths) / (np.std(lengths) + np.median(spread) + 1e-300))
+    """Without names or motion: gravity keeps its length, wherever it points.
+
+    So does what hardly changes at all, a pressure or a temperature; what changes its direction and
+    keeps its length is surer, and then what has a length that gravity has in some unit.
+    """
+    sizes = {triad: _size([triad.of(together) for together in group]) for triad in candidates}
     accel = max(candidates, key=lambda triad: sizes[triad])
     others = [t for t in candidates if not set(t.columns) & set(accel.columns)]
-    if len(candidates) == 1 and sizes[accel] < 3:
+    if sizes[accel].turns:  # gyros do not read the same all the time
+        others = [t for t in others if sizes[t].ratio < MAX_GYRO_RATIO]
+    if len(candidates) == 1 and not sizes[accel].turns and sizes[accel].ratio < 3:
         return None, accel, _("by their size: no gravity is in them"), True
     return (
         accel,
@@ -406,18 +428,28 @@ def _by_size(
     )
 
 
-def alike(tables: Sequence[Sequence[RawLog]]) -> list[list[Sequence[RawLog]]]:
-    """The recordings by the columns that they have."""
-    groups: dict[object, list[Sequence[RawLog]]] = {}
-    for together in tables:
-        key = tuple(_signature(log) for log in together)
-        groups.setdefault(key, []).append(together)
-    return list(groups.values())
+class _Size(NamedTuple):
+    """What makes a triad gravity, the surest first; ratio: its length to what changes in it."""
+
+    turns: bool  # and keeps its length
+    usual: bool  # length of 1 g in some unit
+    ratio: float
 
 
-def _signature(log: RawLog) -> object:
-    layout: Mapping[str, object] = log.layout
-    words = tuple(
-        (n, tuple(sorted(set(w)))) for n, w in log.words.items() if _kind(w[0] if w else "")
-    )
-    return tuple(sorted(layout.items())), tuple(log.columns), words
+def _size(recordings: Sequence[Array]) -> _Size:
+    """How much the readings (n, 3) of each recording are like gravity."""
+    means = np.array([own.mean(axis=0) for own in recordings])
+    lengths = np.linalg.norm(means, axis=1)
+    spread = np.concatenate([own.std(axis=0) for own in recordings])
+    ratio = float(np.median(lengths) / (np.std(lengths) + np.median(spread) + 1e-300))
+    points = np.concatenate([short_means(own) for own in recordings if len(own) >= BIN_ROWS])
+    own = np.linalg.norm(points, axis=1)
+    length = float(np.median(own))
+    if not length > 0:
+        return _Size(False, False, ratio)
+    steady = float(np.median(np.abs(own / length - 1))) < MAX_UNSTEADY
+    together = np.linalg.norm((points / np.maximum(own, 1e-3 * length)[:, None]).mean(axis=0))
+    power = float(2.0 ** np.round(np.log2(length)))
+    usual = [*OF_GRAVITY, *([power] if power >= MIN_COUNTS else [])]
+    is_usual = any(abs(length / each - 1) < MAX_OFF_GRAVITY for each in usual)
+    return _Size(bool(steady and together < MAX_TOGETHER), is_usual, ratio)

@@ -4,7 +4,7 @@ And what a plan of them lacks for a calibration of accelerometers and gyros.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -97,7 +97,7 @@ def _means(kind: Kind) -> list[Manoeuvre]:
 
 def _all(kind: Kind) -> list[Manoeuvre]:
     return [
-        m
+        replace(m, rows=m.rows or part.rows) if part.logs[0].left_out else m
         for part, own in zip(kind.parts, kind.divided, strict=True)
         for m in _manoeuvres(part, own)
     ]
@@ -261,11 +261,20 @@ MIN_ATTITUDES = 9  # of unknown attitude, for the nine parameters of acceleromet
 FACES = [sign + axis for axis in AXES for sign in "+-"]
 
 
-def missing(plan: Sequence[Manoeuvre]) -> Iterator[str]:
+def missing(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
     """A sentence for each thing that no log shows."""
+    used = {id(m.part.logs) for m in plan}
+    for part in (part for kind in kinds for part in kind.parts):
+        if id(part.logs) not in used:
+            yield _(
+                "{log} is not in the plan: in its {seconds:.1f} s nothing rests for a second or "
+                "turns about one axis",
+                log=part.logs[0].path.name,
+                seconds=part.series.seconds,
+            )
     positions = [m for m in plan if m.do == "positions"]
     with_gyros = [m for m in plan if len(m.part.series.gyro)]
-    if not any(len(m.part.series.accel) for m in plan):
+    if not any(kind.columns.accel for kind in kinds):
         yield _("accelerometers: none are recorded")
     elif positions:
         count = sum(m.count for m in positions)

@@ -158,6 +158,7 @@ def _layout(
 
 def _names(line: str, delimiter: str | None, length: int) -> list[str]:
     """The names in the last line of a header; none where they do not fit the columns."""
+    line = line.replace("\0", "")  # as the reader has it
     names = _fields(line.strip().lstrip("#%/").lstrip(), delimiter)
     if len(names) > 1 and not names[-1]:
         names = names[:-1]
@@ -179,7 +180,8 @@ class RawLog:
 
     `layout`: what the format of the campaign file states beside the columns; `header`: the lines
     before the data; `columns`: (n,) numbers each, NaN where there is none; `words`: n texts each,
-    of a few different ones; `dates`: columns of dates, in s.
+    of a few different ones; `dates`: columns of dates, in s; `left_out`: rows at the end of the
+    file that hold no samples, and are not among these.
     """
 
     path: Path
@@ -188,6 +190,7 @@ class RawLog:
     header: Sequence[str] = ()
     words: Mapping[Name, Sequence[str]] = field(default_factory=dict)
     dates: Sequence[Name] = ()
+    left_out: int = 0
 
     @property
     def kind(self) -> str:
@@ -225,9 +228,12 @@ def raw_log(path: Path) -> RawLog:
         raise Refusal(
             path.name,
             "",
-            _("no rows of numbers"),
+            _("no rows of three numbers or more"),
             _("the samples of an IMU: messages of a receiver, or rows of columns"),
-            _("name the log itself; another format has to be exported as text first"),
+            _(
+                "leave it out where it is no log of an IMU; another format has to be exported as "
+                "text first"
+            ),
         )
     return _text_log(path, found)
 

@@ -4,13 +4,14 @@ Of a receiver's counts, which listed instrument they are of: by gravity, rate an
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from commands.draft.gravity import Gravity, gravity_in
 from commands.draft.series import Divided, Still
 from inertial.arrays import Array
 from inertial.estimation.attitude import integrate
@@ -21,8 +22,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
 
-MIN_POINTS = 4  # static positions that show a centre
-MIN_SPREAD = 0.3  # of their directions, the least one to the largest
 MAX_UNIT_ERROR = 0.1  # of a reading in a unit: bias and scale factor
 MAX_COUNT_ERROR = 0.05  # of a usual count size
 MIN_TILT = np.radians(20)  # between two static positions, that shows the scale of the gyros
@@ -30,12 +29,14 @@ MAX_TILT = np.radians(160)
 MIN_STRAIGHT = 0.9  # share of a rotation about one axis
 MAX_OFF_WHOLE = 0.06  # of a turn by hand, and of its gyro, to the whole multiples
 MAX_WHOLE = 3.5  # of these multiples in one turn
+MIN_OTHER_RANGE, MAX_OFF_RANGE = 1 / 8, 0.15  # factors between ranges; error of one, relative
 LARGE = 0.95  # quantile of the rates that is about 1 rad/s
 MIN_FACTOR_SIGMA = 10.0  # of the factor by the change of gravity's direction, to be one
 FIRST_SIGMA = 0.1  # relative, of a factor by the change of gravity's direction alone
 MAX_MISS = np.radians(30)  # of a direction: a motion that misses by more says no more
 MAX_WAYS = 20  # motions by which the factor is refined, the shortest of all
 RANGE, STEP = 0.4, 0.02  # about the first factor, relative
+GYRO_COUNTS_BESIDE = {16384.0: 131.0, 8192.0: 65.5, 4096.0: 32.8, 2048.0: 16.4}  # in 1 g: in 1 °/s
 USUAL_GYRO_COUNTS = (131.0, 65.5, 32.8, 16.4, 228.6, 114.3, 57.1, 28.6, 14.3)  # in 1 °/s
 MAX_RAD_S = 40.0  # rad/s: gyros that read more read °/s
 DEGREE = np.pi / 180
@@ -53,7 +54,7 @@ class Scale:
 
     `axes`: what takes the readings to the axes of the other sensor; `shares`: by how much each gyro
     turns gravity along these axes, relative to their mean, with sigma, (3, 2); empty if not seen;
-    `increments`: a reading is the integral of the unit over a sample.
+    `increments`: a reading is the integral of the unit over a sample; `doubt`: a question, or none.
     """
 
     unit: str
@@ -64,6 +65,7 @@ class Scale:
     axes: Permutation = AS_NAMED
     shares: tuple[tuple[float, float], ...] = ()
     increments: bool = False
+    doubt: str = ""
 
     @property
     def size(self) -> float:
@@ -77,20 +79,6 @@ class Scale:
             return values
         values = (values - self.zero) * self.size
         return np.asarray(values[:, list(self.axes.sources)] * np.array(self.axes.signs))
-
-
-def sphere(points: Array) -> tuple[Array, float, float]:
-    """Centre, (3,), radius and scatter of the sphere through points (n, 3).
-
-    About zero where the points do not show a centre.
-    """
-    spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-    centre = np.zeros(3)
-    if len(points) >= MIN_POINTS and spread[-1] > MIN_SPREAD * spread[0]:
-        design = np.column_stack([2 * points, np.ones(len(points))])
-        centre = np.linalg.lstsq(design, np.sum(points**2, axis=1), rcond=None)[0][:3]
-    lengths = np.linalg.norm(points - centre, axis=1)
-    return centre, float(np.sqrt(np.mean(lengths**2))), float(np.std(lengths))
 
 
 def are_counts(values: Array) -> bool:
@@ -110,11 +98,18 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
     """The unit of accelerometers, by their length at rest."""
     values = np.concatenate([own.series.accel for own in recordings])
     zero = zero_of(values)
-    rests = np.array([rest.accel for own in recordings for rest in own.rests])
-    if not len(rests):
-        rests = np.array([own.forces.mean(axis=0) for own in recordings])
-    _centre, length, _scatter = sphere(rests - zero)
-    seen = _("|f| at rest is {length}", length=significant(length))
+    found = gravity_in(recordings, zero)
+    scale = _unit(found, values, recordings[0].series.accel_hz, zero)
+    if found.doubt or not scale.guessed or scale.increments:
+        return replace(scale, doubt=found.doubt)
+    return replace(
+        scale, doubt=_no_unit(values, found.length, {"g": 1.0, "m/s²": STANDARD_GRAVITY})
+    )
+
+
+def _unit(found: Gravity, values: Array, rate: float, zero: float) -> Scale:
+    """The unit in which gravity has this length; `values`: (n, 3), at `rate`, Hz."""
+    length, seen = found.length, found.seen
     for of_gravity, unit, counts in (
         (STANDARD_GRAVITY, "m/s2", None),
         (1.0, "g", None),
@@ -125,7 +120,7 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
             counts is None and are_counts(values)
         ):
             return Scale(unit, counts, zero, seen, False)
-    step = 1 / recordings[0].series.accel_hz
+    step = 1 / rate
     for of_gravity, unit in ((STANDARD_GRAVITY, "m/s2"), (1.0, "g")):
         if abs(length / (of_gravity * step) - 1) < MAX_UNIT_ERROR and not are_counts(values):
             what = _("{seen}: increments over {step} s", seen=seen, step=significant(step))
@@ -135,6 +130,34 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
     counts = power if usual else float(f"{length:.4g}")
     what = _("{seen}: counts, {counts} in 1 g", seen=seen, counts=significant(counts, 6))
     return Scale("g", counts, zero, what, True)
+
+
+def _no_unit(values: Array, readings: float, usual: Mapping[str, float]) -> str:
+    """A question where readings are no whole numbers and in no usual unit, else empty.
+
+    `readings`: how many are in what `usual` has of each unit. Counts that were divided by the size
+    of another range are off by a power of two.
+    """
+    if are_counts(values):
+        return ""
+    first, *_others = usual
+    for unit, size in usual.items():
+        power = float(2.0 ** np.round(np.log2(readings / size)))
+        near = abs(readings / size / power - 1) < MAX_OFF_RANGE
+        if near and power != 1.0 and MIN_OTHER_RANGE <= power <= 1 / MIN_OTHER_RANGE:
+            return _(
+                "they are no whole numbers, and read {ratio} of what they should in {unit}; were "
+                "counts divided by the size of another range, off by the factor {power}? The draft "
+                "takes them as they read",
+                ratio=significant(readings / size),
+                unit=unit,
+                power=f"{power:g}",
+            )
+    return _(
+        "they are no whole numbers, and read {readings} for 1 {unit}, in no usual unit; in which?",
+        readings=significant(readings),
+        unit=first,
+    )
 
 
 @dataclass(frozen=True)
@@ -153,10 +176,10 @@ class Turning:
 def turning(recordings: Sequence[Divided], force: Scale) -> Turning | None:
     """The factor of raw gyros by gravity's direction in motion; None where it hardly turns."""
     both = [own for own in recordings if len(own.series.gyro) and len(own.series.accel)]
-    rests = [rest.accel - force.zero for own in both for rest in own.rests]
-    if not rests:
+    if not any(own.rests for own in both):
         return None
-    centre, length, _scatter = sphere(np.array(rests))
+    gravity = gravity_in(both, force.zero)
+    centre, length = gravity.centre, gravity.length
     # Of rates in any unit the largest are made 1 rad/s, about as they are.
     speed = np.concatenate([np.linalg.norm(own.rates - own.level, axis=1) for own in both])
     one = float(np.quantile(speed, LARGE))
@@ -284,9 +307,15 @@ def _by_turns(recordings: Sequence[Divided], counts: bool) -> tuple[str, float |
 
 
 def gyro_scale(
-    recordings: Sequence[Divided], turns: Turning | None, names: Sequence[object]
+    recordings: Sequence[Divided],
+    turns: Turning | None,
+    names: Sequence[object],
+    accel: Scale | None = None,
 ) -> Scale:
-    """The unit of gyros: by their names, by the motion, else by how much they read."""
+    """The unit of gyros: by their names, by the motion, else by how much they read.
+
+    `accel`: the unit of the accelerometers beside them.
+    """
     values = np.concatenate([own.series.gyro for own in recordings])
     zero = zero_of(values)
     named = next(
@@ -294,14 +323,39 @@ def gyro_scale(
         None,
     )
     thousandths = any(isinstance(n, str) and THOUSANDTH.search(n) for n in names)
-    axes, shares = (AS_NAMED, ()) if turns is None else (turns.axes, turns.shares)
     if turns is None:
         if named is not None:
             return Scale(named, 1000.0 if thousandths else None, zero, _("by their names"), False)
         if (found := _by_turns(recordings, are_counts(values))) is not None:
             return Scale("deg/s" if found[1] else found[2], found[1], zero, found[0], True)
-        unit = "deg/s" if np.abs(values - zero).max() > MAX_RAD_S else "rad/s"
-        return Scale(unit, None, zero, _("guessed from the largest reading"), True)
+        return _by_size(values, zero, accel)
+    return _by_motion(recordings, turns, values, thousandths)
+
+
+def _by_size(values: Array, zero: float, accel: Scale | None) -> Scale:
+    """A guess, where no turn shows the unit: whole numbers are counts, of a size that is asked."""
+    largest = float(np.abs(values - zero).max())
+    beside = (accel is not None and accel.counts) or None
+    if are_counts(values) and (beside or largest > MAX_RAD_S):
+        counts = GYRO_COUNTS_BESIDE.get(beside or 0.0, USUAL_GYRO_COUNTS[0])
+        usual = ", ".join(f"{each:g}" for each in USUAL_GYRO_COUNTS)
+        doubt = _(
+            "they read counts, and no turn shows how many are in 1 °/s; which range was set? Usual "
+            "are {usual}; {counts} is a guess",
+            usual=usual,
+            counts=f"{counts:g}",
+        )
+        what = _("whole numbers, so counts; their size is a guess")
+        return Scale("deg/s", counts, zero, what, True, doubt=doubt)
+    unit = "deg/s" if largest > MAX_RAD_S else "rad/s"
+    return Scale(unit, None, zero, _("by their largest reading"), True)
+
+
+def _by_motion(
+    recordings: Sequence[Divided], turns: Turning, values: Array, thousandths: bool
+) -> Scale:
+    """The unit in which gyros carry gravity's direction as it turns."""
+    zero, axes, shares = zero_of(values), turns.axes, turns.shares
     seen = _(
         "gravity's direction turns by {factor} rad for each unit of reading and second, "
         "± {percent:.0f} %",
@@ -322,7 +376,8 @@ def gyro_scale(
         off = {each: turn_misfit(recordings, DEGREE / each, np.pi / 2) for each in near}
     counts = min(near, key=lambda each: off[each]) if near else float(f"{per_degree:.3g}")
     what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
-    return Scale("deg/s", counts, zero, what, True, axes, shares)
+    doubt = _no_unit(values, per_degree, {"°/s": 1.0, "rad/s": DEGREE})
+    return Scale("deg/s", counts, zero, what, True, axes, shares, doubt=doubt)
 
 
 # ---- The instrument of a receiver's counts.
@@ -343,9 +398,7 @@ class Receiver:
 
 def receiver_of(recordings: Sequence[Divided], rate: float) -> Receiver:
     """The instrument of these counts at `rate`, Hz."""
-    rests = [rest.accel for own in recordings for rest in own.rests]
-    rests = rests or [own.forces.mean(axis=0) for own in recordings]
-    _centre, length, _scatter = sphere(np.array(rests))
+    length = gravity_in(recordings).length
     count = STANDARD_GRAVITY / length / rate
     seen = _("|f| at rest makes one count {count} m/s", count=significant(count))
     listed = YamlFile(INSTRUMENTS).content

@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from commands.draft.columns import Columns, Triad, alike, columns_of, recorded_together, runs_of
+from commands.draft.columns import Columns, Named, Triad, columns_of
+from commands.draft.gravity import sphere
+from commands.draft.groups import alike, recorded_together, runs_of, sensors_apart
 from commands.draft.raw_log import RawLog
 from commands.draft.scales import (
     Receiver,
@@ -15,10 +17,10 @@ from commands.draft.scales import (
     are_counts,
     gyro_scale,
     receiver_of,
-    sphere,
     turning,
 )
 from commands.draft.series import Divided, Series, divided
+from commands.draft.tails import without_tail
 from commands.draft.timing import Timing, common_rate, timing_of
 from inertial.arrays import Array
 from inertial.signal.rests_and_motions import BinStretch, rest_level
@@ -64,14 +66,18 @@ class Kind:
 
 def kinds_of(logs: Sequence[RawLog], rate: float | None = None) -> list[Kind]:
     """The logs, those with the same columns together; `rate`, Hz, where no log has a clock."""
-    recordings = recorded_together([run for log in logs for run in runs_of(log)])
-    found = [_kind(group, rate) for group in alike(recordings)]
+    recordings = recorded_together([without_tail(run) for log in logs for run in runs_of(log)])
+    found = [
+        _kind(group, sensor, rate)
+        for same in alike(recordings)
+        for group, sensor in sensors_apart(same)
+    ]
     return [_in_si(kind, found) for kind in found]
 
 
-def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
+def _kind(group: Sequence[Sequence[RawLog]], sensor: Named | None, rate: float | None) -> Kind:
     """Logs of one kind, their readings as they stand in the files."""
-    columns = columns_of(group)
+    columns = columns_of(group, sensor)
     triad = columns.accel or columns.gyro
     rows = triad.rows if triad is not None and triad.file == 0 else None
     timing = timing_of([together[0] for together in group], columns.time[0], rows)
@@ -93,7 +99,7 @@ def _kind(group: Sequence[Sequence[RawLog]], rate: float | None) -> Kind:
     turned = turning(own, accel) if accel and columns.gyro else None
     gyro = None
     if columns.gyro:
-        gyro = gyro_scale(own, turned, columns.gyro.columns)
+        gyro = gyro_scale(own, turned, columns.gyro.columns, accel)
         if turned is not None:
             gyro, timing = _rate_by_motion(gyro, timing, turned, own)
     return Kind(columns, timing, accel, gyro, parts, own)
@@ -170,7 +176,7 @@ def _kind_of_means(columns: Columns, timing: Timing, group: Sequence[Sequence[Ra
         forces, rates = series.means(values[0]), series.means(values[1])
         own.append(Divided(series, forces, rates, np.full(3, np.nan), rows))
     accel = accel_scale(own)
-    gyro = gyro_scale(own, None, columns.gyro.columns) if columns.gyro else None
+    gyro = gyro_scale(own, None, columns.gyro.columns, accel) if columns.gyro else None
     return Kind(columns, timing, accel, gyro, parts, own, means=True)
 
 

@@ -13,6 +13,7 @@ from inertial.signal.rests_and_motions import (
     BinStretch,
     moving,
     rest_level,
+    runs_of,
     stretches,
     with_slow_ends,
 )
@@ -20,6 +21,7 @@ from inertial.signal.rests_and_motions import (
 BIN_S, MIN_BINS = 0.1, 20  # s; of a short recording shorter ones
 MIN_REST_S = 1.0  # s, of a static position
 MARGIN_S = 0.5  # s, beside a motion, that belong to no static position
+MIN_AS_LONG = 0.98  # of |f|, that the mean force of a rest has: gravity does not turn in it
 MIN_MOVED_SHARE = 0.02  # of the largest readings of gyros whose unit is not known, to be a motion
 
 
@@ -97,6 +99,8 @@ class Divided:
             if stretch.moves or seconds < min(MIN_REST_S, self.series.seconds / 2):
                 continue
             first, after = self.inside(stretch)
+            if len(self.series.accel) and not self.forces[first:after].any():
+                continue  # zeros that a recorder filled up with
             yield Still(
                 stretch.first,
                 stretch.after,
@@ -138,4 +142,14 @@ def divided(series: Series, level: tuple[Array, float] | None, *, known_units: b
         size = 1.0 if known_units else 9.8 / float(np.median(np.linalg.norm(forces, axis=1)))
         moves = above = moving(rates, forces * size, rest, 0.0)
     found = with_slow_ends(stretches(moves, step, forces), above, step)
-    return Divided(series, forces, rates, rest, found)
+    return Divided(series, forces, rates, rest, _where_gravity_stays(found, forces))
+
+
+def _where_gravity_stays(found: Sequence[BinStretch], forces: Array) -> list[BinStretch]:
+    """The stretches, of which those in which gravity turns are motions, however slow."""
+    moves = []
+    for stretch in found:
+        own = forces[stretch.first : stretch.after]
+        turns = np.linalg.norm(own.mean(axis=0)) < MIN_AS_LONG * np.linalg.norm(own, axis=1).mean()
+        moves += [stretch.moves or bool(turns)] * len(own)
+    return runs_of(np.array(moves))

@@ -8,19 +8,21 @@ from dataclasses import replace
 
 import numpy as np
 
+from inertial.arrays import Booleans
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import Estimates, reasons
 from inertial.campaign.findings import Finding
 from inertial.campaign.passages import RecordedPassage, passages_of
 from inertial.campaign.records import Part, omissions, with_mount
 from inertial.campaign.unknown_attitude import fitted_to, free_static_positions
-from inertial.estimation.between_positions import Prior, fit
+from inertial.estimation.attitude import Passage
+from inertial.estimation.between_positions import Prior, Stop, fit
 from inertial.estimation.least_squares import Estimate
 from inertial.signal.scale_factor import MAX_SCALE_ERROR
 from inertial.tables import AXES, GYRO
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.parameters import FREE
+from inertial.text.parameters import FREE, PARTS
 from inertial.text.units import DEGREE
 
 NOT_AT_REST = _("its gyros read otherwise than in all other rests: it moved, or it was shaken")
@@ -34,6 +36,18 @@ CURES = {
         "add turns of 90° or more about {axis}, there and back"
     ),
 }
+NOT_FOR_WANT_OF_TURNS = {
+    "bias": CURES["bias"],
+    "matrix": _(
+        "the turns about {axis} between the rests are too few, or the directions of gravity in the "
+        "rests not known well enough, to determine it: add rests in further attitudes, with turns "
+        "of 90° or more about {axis} between them"
+    ),
+}
+MIN_SHOWN, LEVEL = (
+    60 * DEGREE,
+    0.5,
+)  # of a turn, to show its axis; |f| along it, at most, where level
 CAUSE = "gyro_count_size"
 UNIT = "wrong_scale_factor"
 MAX_BY_HAND, FASTEST = 40.0, 0.99  # rad/s, of the block at this quantile: more no hand turns
@@ -54,7 +68,7 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
     passages = [recorded.passage for recorded in moving]
     fitted, off = fit(stops, passages, prior, data.noise.degrees)
-    why = reasons(fitted.estimate.determined, recorded, "gyro", _cures(moving, broken))
+    why = _why(fitted.estimate.determined, recorded, stops, moving, broken)
     estimates.add_triad(FREE, fitted.estimate, why)
     parts = [*(position.force.part for position in positions), *(each.part for each in moving)]
     reason = [NOT_AT_REST] * len(stops) + [SLIPPED] * len(moving)
@@ -65,6 +79,36 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     if turning > MAX_BY_HAND:
         return [_unit(float(turning), data.mount)]
     return list(_count_size(fitted.estimate, data.mount))
+
+
+def _why(
+    determined: Booleans,
+    recorded: Booleans,
+    stops: Sequence[Stop],
+    moving: Sequence[RecordedPassage],
+    broken: Sequence[Part],
+) -> dict[str, str]:
+    """Why a parameter is not determined: for want of turns about its axis only where none is."""
+    cures = _cures(moving, broken)
+    why = reasons(determined, recorded, "gyro", cures)
+    if cures is not CURES:
+        return why
+    other = reasons(determined, recorded, "gyro", NOT_FOR_WANT_OF_TURNS)
+    turned = {axis for each in moving for axis in _turned_level(stops, each.passage)}
+    return {
+        name: other[name] if PARTS[name].input_axis in turned else text
+        for name, text in why.items()
+    }
+
+
+def _turned_level(stops: Sequence[Stop], passage: Passage) -> Iterator[str]:
+    """The axes about which a motion turned, as the gyros read, and which were horizontal."""
+    angles = np.abs((passage.rates - stops[passage.first].mean).T @ passage.seconds)
+    up = stops[passage.first].forces.mean
+    level = np.abs(up) < LEVEL * np.linalg.norm(up)
+    yield from (
+        axis for axis, shown in zip(AXES, (angles > MIN_SHOWN) & level, strict=True) if shown
+    )
 
 
 def _cures(moving: Sequence[RecordedPassage], broken: Sequence[Part]) -> dict[str, str]:

@@ -119,6 +119,7 @@ def _beginning(
 
 def _names(header: bytes, delimiter: bytes | None) -> list[str]:
     """The names of the columns in a line of the header, which may be marked as a comment."""
+    header = header.replace(b"\0", b"")  # what a serial port held before the first line
     if not header:
         return []
     try:

@@ -20,6 +20,8 @@ from scipy.io import loadmat, whosmat
 from inertial.formats.columns.column_values import NumberValues
 from inertial.formats.containers.container import BATCH_ROWS, Batch, Table
 from inertial.formats.containers.matrices import MAX_DEPTH, MatrixColumn, columns_of, samples_of
+from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 _INTEGERS = {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)}
 _NUMBERS = {"double", "single", "logical"} | _INTEGERS
@@ -36,10 +38,10 @@ def opened(path: Path, layout: Mapping[str, Any]) -> Iterator[Table]:
     Raises
     ------
     Refusal
-        where columns differ in length
+        where columns differ in length, or a variable is an object of MATLAB
     """
     required = list(_texts_in(layout))
-    variables = whosmat(str(path), appendmat=False)
+    variables = _variables(path)
     columns: list[MatrixColumn] = []
     fields: Matrices = {}
     for name, shape, kind in variables:
@@ -51,6 +53,20 @@ def opened(path: Path, layout: Mapping[str, Any]) -> Iterator[Table]:
             for field, matrix in inside.items():
                 columns += columns_of(field, matrix.shape)
     yield Table([column.name for column in columns], partial(_batches, path, columns, fields))
+
+
+def _variables(path: Path) -> list[tuple[str, tuple[int, ...], str]]:
+    """Name, shape and class of each variable."""
+    try:
+        return list(whosmat(str(path), appendmat=False))
+    except TypeError as error:  # of a variable without a shape
+        raise Refusal(
+            path.name,
+            "",
+            _("a variable that is an object of MATLAB, such as a table or a timeseries"),
+            _("matrices of numbers, with a column for each axis"),
+            _("save its columns as matrices: force = t.Variables; save('log.mat', 'force')"),
+        ) from error
 
 
 def _batches(
