@@ -68,6 +68,33 @@ def signed(line, of):
     return b"%%%s*%08x\r\n" % (body, checksum)
 
 
+def with_tail(lines, step):
+    """The lines, and behind them as many with one reading in all channels, `step` s apart."""
+    head, readings = lines[-1].rpartition(b"*")[0].split(b";")
+    time, status = readings.split(b",")[1:3]
+    tail = []
+    for number in range(len(lines)):
+        stamp = b"%.9f" % (float(time) + 0.01 + number * step)
+        body = b";".join([head, b",".join([b"2443", stamp, status, *[b"1"] * 6])])[1:]
+        checksum = zlib.crc32(body, 0xFFFFFFFF) ^ 0xFFFFFFFF
+        tail.append(b"%%%s*%08x\r\n" % (body, checksum))
+    return [*lines, *tail]
+
+
+@pytest.mark.parametrize(("cause", "step"), [("duplicate", 0.0), ("held_record", 0.01)])
+def test_a_tail_of_one_record_over_and_over_spoils_nothing_before_it(tmp_path, cause, step):
+    """Most of a log may be erased memory: its noise and gravity are those of what was recorded."""
+
+    results = two_rests(tmp_path, lambda lines: with_tail(lines, step))
+    assert list(results["quality/findings"]["cause"]) == [cause]
+    noise = results["quality/channel_statistics"].pivot(
+        index=["sensor", "axis"], columns="log", values="noise"
+    )
+    assert noise["up.asc"].to_numpy() == pytest.approx(noise["down.asc"].to_numpy(), rel=0.2)
+    counts = results["segment/blocks"].groupby("manoeuvre")["count"].sum()
+    assert counts["up"] == pytest.approx(counts["down"], abs=1)
+
+
 def test_records_that_come_again_are_one_finding_and_masked(tmp_path):
     results = two_rests(tmp_path, lambda lines: lines[:900] + lines[600:])
     findings = results["quality/findings"].set_index("cause")

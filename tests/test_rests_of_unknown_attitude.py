@@ -25,6 +25,7 @@ from inertial.campaign.unknown_attitude import (
     free_static_positions,
     in_words,
 )
+from inertial.estimation.between_positions import Stop
 from inertial.estimation.multi_position import Unobservable
 from inertial.tables import CHANNELS
 from stages.gyroscope.free_positions import add_free_gyros
@@ -207,6 +208,57 @@ def test_an_accelerometer_that_is_not_recorded_is_named(imu, recorded):
     assert not found and left[0].omission == "settle: |f| = g needs y too"
     table, _, _ = rows(add_free_accelerometers, "accelerometer", unread, imu)
     assert table["value"].isna().all()
+
+
+def every_way(imu, number):
+    """Positions whose upward directions lie at random."""
+    ups = np.random.default_rng(5).normal(size=(number, 3))
+    turned = ups / np.linalg.norm(ups, axis=1)[:, None]
+    stops = [
+        Stop(imu.rest("", up, 20), *np.full((2, 3), np.nan), 20)  # no gyro is recorded
+        for up in turned
+    ]
+    return blocks_of(stops, [])
+
+
+def accelerometers_alone(blocks, imu):
+    estimates = Estimates("accelerometer")
+    raised = add_free_accelerometers(estimates, CampaignData(PLAN, {}, blocks, noise(imu), KNOWN))
+    tables = estimates.tables()
+    fit = tables["fit_manoeuvres"].set_index("manoeuvre")
+    return tables["parameters"].set_index("parameter"), fit, raised
+
+
+def test_positions_that_were_moved_while_they_were_read_are_named_and_left_out(imu):
+    """0.5 and 0.8 m/s² too short: with them biases are 0.1 m/s² off, and nothing was said."""
+    recorded = every_way(imu, 48)
+    means = recorded[["accel_x", "accel_y", "accel_z"]].to_numpy()
+    short = means.copy()
+    for number, size in ((11, 0.5), (34, 0.8)):
+        short[number] *= 1 - size / np.linalg.norm(means[number])
+    struck = recorded.assign(accel_x=short[:, 0], accel_y=short[:, 1], accel_z=short[:, 2])
+    table, fit, (finding,) = accelerometers_alone(struck, imu)
+    assert "by-hand-34" in finding.sentence and "by-hand-11" in finding.sentence
+    assert finding.size == pytest.approx(-0.8, abs=0.01) and finding.count == 2
+    assert set(fit.index[fit["reason"].fillna("") != ""]) == {"by-hand-11", "by-hand-34"}
+    names = [f"symmetric_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz")]
+    told = table.loc[[*names, "bias_x", "bias_y", "bias_z"]]
+    truth = imu.free - [1, 1, 1, 0, 0, 0, 0, 0, 0]
+    assert np.abs((told["value"] - truth) / told["sigma"]).max() < 3.5
+    assert told["sigma"].max() < 2e-3
+    assert not accelerometers_alone(recorded, imu)[2]
+
+
+def test_positions_that_all_scatter_are_none_that_was_moved(imu):
+    recorded = every_way(imu, 48)
+    channels = ["accel_x", "accel_y", "accel_z"]
+    scatter = 0.05 * np.random.default_rng(7).standard_normal((48, 3))
+    assert not accelerometers_alone(
+        recorded.assign(
+            **dict(zip(channels, (recorded[channels] + scatter).T.to_numpy(), strict=True))
+        ),
+        imu,
+    )[2]
 
 
 def test_what_drifts_within_a_rest_by_hand_is_no_drift_between_rests(imu, recorded):

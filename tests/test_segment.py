@@ -13,6 +13,7 @@ from inertial.signal.rests_and_motions import BinStretch, slow_motion
 from stages.segment import windows
 from stages.segment.located import divide, locate
 from stages.segment.matching import Observation, match, rest_part, turn_parts
+from stages.segment.recording_explanations import explained_of
 
 
 def performed(results: chain.Results):
@@ -307,6 +308,20 @@ def test_a_rest_keeps_clear_of_motion_however_long_the_bins_are(bin_seconds, mar
     )
     part = rest_part(one, BinStretch(moves=False, first=30, after=90), "rest", margin)
     assert (part.first, part.after) == (first, after)
+
+
+def test_a_masked_tail_is_not_what_the_gyros_read_at_rest():
+    """Its rates are on a straight line from the last one, of a motion, and have no scatter."""
+    noise = np.random.default_rng(3).normal(0, 1e-4, (100, 3))
+    bias = np.array([0.01, -0.02, 0.005])
+    moves = np.arange(100) % 40 >= 30
+    rates = np.vstack([bias + noise + moves[:, None] * [0.5, 0.2, 0.0], np.full((400, 3), 0.3)])
+    seconds = np.where(np.arange(500) < 100, 0.1, 0.0)
+    forces, time = np.tile([0.0, 0.0, 9.8], (500, 1)), 0.1 * np.arange(500)
+    window = windows.Window("log", 0, 500, [])
+    one = windows.Binned(window, np.arange(501), rates, forces, seconds, time, time)
+    level, _explained = explained_of([one], [], 0.0)
+    assert level == pytest.approx(bias, abs=1e-4)
 
 
 MARKS = {"x": "yz", "y": "zx", "z": "xy"}

@@ -126,6 +126,11 @@ class ChannelStatistics:
         """Take in the next batch."""
         self._by_log.setdefault(batch.log, _Channels()).add(batch.readings)
 
+    @property
+    def still(self) -> bool:
+        """Whether a log has long stretches in which no channel changes."""
+        return any(channels.still for channels in self._by_log.values())
+
     def table(self) -> pd.DataFrame:
         """The table of these statistics, a row for each channel of each log."""
         frames = [
@@ -158,6 +163,16 @@ class _Channels:
         self.noise_of_new: list[Array] = []  # without the records that hold a sensor's readings
         self.held = np.zeros(2)  # records, by sensor
         self.windows: tuple[list[Array], list[Array]] = [], []  # their shares
+
+    @property
+    def still(self) -> bool:
+        """Whether no channel changes in some window, though channels do elsewhere."""
+        if not (self.smallest < self.largest).any():
+            return False
+        shares = [np.concatenate(own) for own in self.windows if own]
+        if len({len(own) for own in shares}) != 1:
+            return False  # the sensors come in rows of their own
+        return bool((np.minimum.reduce(shares) == 1).any())
 
     def add(self, readings: Array) -> None:
         """Take in the next readings, (n, 6)."""

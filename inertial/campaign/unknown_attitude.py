@@ -15,11 +15,13 @@ import pandas as pd
 from inertial.arrays import Array
 from inertial.campaign.estimates import NAMES as LINEAR
 from inertial.campaign.estimates import Estimates
+from inertial.campaign.findings import Finding
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Manoeuvre, Part, omissions
+from inertial.campaign.records import Manoeuvre, Part, omissions, with_mount
 from inertial.campaign.static_positions import NO_NOISE, StaticPosition
 from inertial.estimation.between_positions import Stop
 from inertial.estimation.least_squares import Estimate
+from inertial.estimation.length_outliers import OffLength, off_lengths
 from inertial.estimation.multi_position import FREE as UNKNOWNS
 from inertial.estimation.multi_position import (
     NAMES,
@@ -32,7 +34,9 @@ from inertial.estimation.multi_position import (
 )
 from inertial.estimation.scatter_and_random_walk import ScatterFit, with_scatter
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
-from inertial.text.messages import _
+from inertial.text.enumeration import listed
+from inertial.text.messages import _, plural
+from inertial.text.numbers import significant
 from inertial.text.parameters import CROSS, FREE, MOUNTING, PARTS, SYMMETRIC
 
 if TYPE_CHECKING:
@@ -40,6 +44,8 @@ if TYPE_CHECKING:
 
 
 UNKNOWN = np.full(3, np.nan)  # an attitude
+MOVED = "moved_while_read"
+MAX_NAMED = 6  # positions in a sentence
 MOUNTING_UNDETERMINED = _(
     "a rotation of the triad against the case changes no length, so |f| = g cannot "
     "tell it; the axes here are those square to each other that lie nearest to the "
@@ -78,6 +84,37 @@ def free_static_positions(data: "CampaignData") -> tuple[list[FreeStaticPosition
 
     None where the plan states every attitude: there the other methods apply.
     """
+    positions, left_out, off = _with_those_off(data)
+    return positions, left_out + [part for part, _ in off]
+
+
+def _with_those_off(
+    data: "CampaignData",
+) -> tuple[list[FreeStaticPosition], list[Part], list[tuple[Part, OffLength]]]:
+    """The same, with those apart whose specific force is not gravity by the others."""
+    positions, left_out = _recorded_positions(data)
+    rests = [position.rest for position in positions]
+    means, sigma = (
+        np.reshape([getattr(r, of) for r in rests], (-1, 3)) for of in ("mean", "sigma")
+    )
+    found = {each.number: each for each in off_lengths(means, sigma, data.gravity.number)}
+    off = [
+        (replace(positions[i].force.part, reason=_reason_of(each)), each)
+        for i, each in found.items()
+    ]
+    return [each for i, each in enumerate(positions) if i not in found], left_out, off
+
+
+def _reason_of(off: OffLength) -> str:
+    return _(
+        "|f| misses gravity by {size} m/s², {times} times what the others scatter by",
+        size=significant(off.size, 2),
+        times=significant(abs(off.size) / off.scatter, 2),
+    )
+
+
+def _recorded_positions(data: "CampaignData") -> tuple[list[FreeStaticPosition], list[Part]]:
+    """All that are recorded whole; those left out, with reasons."""
     blocks, plan = data.blocks, data.plan
     if all(m.up is not None for m in plan if m.do != "turn"):
         return [], []
@@ -142,15 +179,54 @@ def fitted_to(data: "CampaignData", positions: Sequence[FreeStaticPosition]) -> 
     return with_scatter(fit, between=SCATTER_RANGE, noise_degrees=data.noise.degrees)
 
 
-def add_free_accelerometers(estimates: Estimates, data: "CampaignData") -> None:
-    """The rows of the method; none where the plan states every attitude."""
-    positions, left_out = free_static_positions(data)
+def add_free_accelerometers(estimates: Estimates, data: "CampaignData") -> list[Finding]:
+    """The rows of the method, none where the plan states every attitude; findings about them."""
+    positions, left_out, off = _with_those_off(data)
+    left_out += [part for part, _ in off]
     if positions:
         fitted = fitted_to(data, positions)
         add_symmetric(estimates, FREE, fitted.estimate)
         estimates.add_fit(FREE, fitted, [position.force.part for position in positions], left_out)
     elif left_out:
         estimates.add_nothing(FREE, omissions(left_out))
+    return [_moved(off, data.mount)] if off else []
+
+
+def _moved(off: Sequence[tuple[Part, OffLength]], mount: str) -> Finding:
+    """The positions whose specific force is not gravity, as one finding."""
+    part, largest = max(off, key=lambda each: abs(each[1].size))
+    names = [part.manoeuvre for part, _ in off]
+    if len(names) > MAX_NAMED:
+        names = [*names[:MAX_NAMED], _("{count} more", count=len(names) - MAX_NAMED)]
+    return Finding(
+        id="/".join(("accelerometer", with_mount(MOVED, mount), "all")),
+        cause=MOVED,
+        mount=mount,
+        sensor="accel",
+        manoeuvre=part.manoeuvre,
+        count=len(off),
+        size=largest.size,
+        unit="m/s²",
+        severity=1,
+        sentence=plural(
+            "In the position {names} the specific force misses gravity by {size} m/s², {times} "
+            "times what the others scatter by.",
+            "In {count} positions ({names}) the specific force misses gravity by up to {size} "
+            "m/s², {times} times what the others scatter by.",
+            len(off),
+            names=listed(names),
+            size=significant(largest.size, 2),
+            times=significant(abs(largest.size) / largest.scatter, 2),
+        ),
+        consequence=_(
+            "Used, they would move biases and scale factors of the accelerometers, and enlarge the "
+            "scatter that is given to all positions."
+        ),
+        action=_(
+            "They are left out. The IMU was moved or struck while it was read, or its readings are "
+            "of another position: record them again."
+        ),
+    )
 
 
 def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None:

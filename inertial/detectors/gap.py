@@ -107,13 +107,16 @@ class Gap(Detector):
                     before=significant(float(np.degrees(lost.before)), 3),
                     after=significant(float(np.degrees(lost.after)), 3),
                 ),
-                _("The angle of the turn is not known by the gyros, nor the attitude after it."),
-                _("The turn is left out. Record it again."),
+                _(
+                    "How far it turned meanwhile is not known by the gyros, nor the attitude after "
+                    "it."
+                ),
+                _("A turn that lacks these samples is left out: record it again."),
             )
         angle = float(np.degrees((lost.before + lost.after) / 2 * lost.seconds))
         return Description(
             _(
-                "{sentence} At the rate before and after it the table turned by {angle}° during "
+                "{sentence} At the rate before and after it the IMU turned by {angle}° during "
                 "the gap.",
                 sentence=sentence,
                 angle=significant(angle, 3),

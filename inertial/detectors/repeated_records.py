@@ -333,12 +333,14 @@ def _likely(equal: Booleans, whole: Booleans, start: Integers, end: Integers) ->
     likely = np.repeat(_all_equal(_shares(other[-1:])), len(start))
     for side, usual in enumerate(beside(SIDE_PAIRS)):
         shares = _shares(usual)
-        likely = np.maximum(likely, _all_equal(shares))
+        there = usual[:, -1] > 0  # not beyond the ends of the log
+        likely = np.maximum(likely, np.where(there, _all_equal(shares), 0.0))
         for distance in CLOSE_COUNTS:
             counts = beside(distance)[side]
             observed, expected = counts[:, :-1].sum(axis=1), counts[:, -1] * shares.sum(axis=1)
             more = observed > expected + MIN_EXCESS_SIGMA * np.sqrt(expected + 1)
             more |= observed >= counts[:, -1] * shares.shape[1] / 2
+            more &= there
             likely = np.where(more, np.maximum(likely, _all_equal(_shares(counts))), likely)
     return likely
 

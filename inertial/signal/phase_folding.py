@@ -8,7 +8,7 @@ from scipy.stats import norm
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import CHANNELS, COLUMNS
-from inertial.signal.scatter import MAD_TO_SIGMA, median
+from inertial.signal.scatter import MAD_TO_SIGMA, MIN_RELATIVE_STEP, median
 
 PERIODS = (60.0, 30.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)  # s, each divides the first
 FINEST = 600  # phases of 0.1 s in the longest
@@ -144,6 +144,8 @@ def _compared(values: Array) -> tuple[Array, Array, Array]:
     least = np.minimum(np.minimum(a, b), np.minimum(c, d))
     level = (a + b + c + d - most - least) / 2
     off = values[:, SIDE:-SIDE] - level
+    # Of equal readings the mean of two differs from the third in its last digits.
+    off[np.abs(off) <= MIN_RELATIVE_STEP * np.maximum(np.abs(most), np.abs(least))] = 0.0
     number, length = max(n // BLOCK, 1), min(BLOCK, n)
     blocks = np.nan_to_num(np.abs(off[:, : number * length])).reshape(len(values), number, length)
     scatter = MAD_TO_SIGMA * median(blocks)

@@ -34,6 +34,7 @@ NAMES = {
     "slower_sensor": _("sensor slower than its log"),
     "spike": _("spike"),
     "table_moving": _("table moving"),
+    "moved_while_read": _("position that was moved while it was read"),
     "temperature_drift": _("temperature drift"),
     "wrong_temperature_unit": _("temperature in another unit than is stated"),
     "temperature_misstated": _("temperature misstated"),

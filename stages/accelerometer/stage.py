@@ -60,7 +60,7 @@ def accelerometer(
     raised: list[Finding] = []
     for data in mounts:
         estimates, reference = collected.on(data.mount), data.reference
-        add_free_accelerometers(estimates, data)
+        raised += add_free_accelerometers(estimates, data)
         positions, left_out = data.accelerometer_positions
         if not positions:
             estimates.add_nothing("joint", omissions(left_out))

@@ -484,7 +484,8 @@ def _rest_level(every: Sequence[Binned]) -> tuple[Array, float]:
     """
     rests = [binned for binned in every if {m.do for m in binned.window.manoeuvres} == {"rest"}]
     for group in (rests, every):
-        rates = np.concatenate([np.empty((0, 3)), *(binned.rates for binned in group)])
+        read = [binned.rates[binned.seconds > 0] for binned in group]  # not where all is masked
+        rates = np.concatenate([np.empty((0, 3)), *read])
         recorded = np.isfinite(rates).any(axis=0)
         whole = rates[np.isfinite(rates[:, recorded]).all(axis=1)] if recorded.any() else []
         if len(whole):

@@ -179,5 +179,13 @@ def test_a_rate_that_does_not_divide_the_second(rate):
     assert (at & found.falls_on(time)).sum() > 0.7 * at.sum()
 
 
+def test_the_rounding_of_equal_readings_is_none():
+    """A tail of one record over and over, stamp and all, as an erased memory is read."""
+    tail = [-5.9815e-4, 1.1e-3, -7.3e-4, -1.3316e-4, 2.7e-4, -3.1e-4]
+    values = np.vstack([rest(2000), np.tile(tail, (20_000, 1))])
+    time = np.append(0.02 * np.arange(2000), np.full(20_000, 4294967.295))
+    assert folded((time, values), interval=0.02) == ()
+
+
 def test_without_stamps_nothing_is_judged():
     assert folded((np.full(1000, np.nan), rest(1000))) == ()
