@@ -146,10 +146,10 @@ def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
     ----------
     rates : (k, 3), rad/s, NaN where not recorded
     """
-    there = np.isfinite(rates)
-    if not there.any():
+    recorded = rates[:, np.isfinite(rates).any(axis=0)]
+    if not recorded.size:
         return None
-    away = np.where(there, rates - np.ma.median(np.ma.array(rates, mask=~there), axis=0), 0.0)
+    away = np.nan_to_num(recorded - np.nanmedian(recorded, axis=0))
     scatter = MAD_TO_SIGMA * np.median(np.abs(away), axis=0)
     above = np.linalg.norm(away, axis=1) > MIN_MOTION_SIGMA * float(np.linalg.norm(scatter))
     turning = [
