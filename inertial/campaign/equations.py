@@ -166,9 +166,9 @@ class Campaign:
         return self.by_hand is not None and of_a_table(effect)
 
     def places(self, effect: Effect) -> Sequence[str]:
-        """The names among which the scan of an effect of a single one is: turns or positions."""
-        turn = effect.scan is not None and effect.scan.name == "turn"
-        return self.planned if turn else self.positions
+        """The names among which the scan of an effect is: manoeuvres or positions."""
+        by_position = effect.scan is None or effect.scan.name == "position"
+        return self.positions if by_position else self.planned
 
     def blind(self, effect: Effect) -> str:
         """Why an effect is not observable in this campaign; empty where it may be."""

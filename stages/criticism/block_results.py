@@ -9,6 +9,7 @@ from inertial.arrays import Array
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
+from inertial.effects.mounting_shift import MountingShift
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.model_selection.cause import (
     FOUND,
@@ -234,6 +235,8 @@ class BlockResults:
         else:
             shares = cause.weights, cause.captured
             yield from member_rows(identifier, self.mount, cause.members, *shares)
+        if cause.effect == MountingShift.name:
+            return  # all that follow are off
         for rank, (position, statistic) in enumerate(positions, 1):
             row = {"finding": identifier, "mount": self.mount, "rank": rank}
             yield "cause_positions", row | {"position": position, "statistic": statistic}
