@@ -19,7 +19,7 @@ from inertial.campaign.records import Known
 from inertial.campaign.solution import Solution
 from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import Reference, StaticForce
-from inertial.estimation.between_positions import CarriedEquations
+from inertial.estimation.carried_effects import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import Name
 from inertial.estimation.gyroscope_equations import Linearisation

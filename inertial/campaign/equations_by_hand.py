@@ -16,10 +16,11 @@ from inertial.campaign.attitudes_by_hand import Handled
 from inertial.campaign.passages import RecordedPassage
 from inertial.campaign.records import Known
 from inertial.campaign.solution import Solution
-from inertial.estimation import between_positions, force_magnitudes
+from inertial.estimation import force_magnitudes
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.attitude import integrate
-from inertial.estimation.between_positions import NONE, Carried, CarriedEquations, Prior
+from inertial.estimation.between_positions import NONE, Prior
+from inertial.estimation.carried_effects import Carried, CarriedEquations, carried_equations
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
@@ -100,7 +101,7 @@ class ByHand:
         assert gyro is not None and accelerometer is not None  # else the gyros are not free
         unknown = (NO_SENSITIVITIES, Stretch("unread"))
         rests = [at_rest.get(name, unknown) for name in self.names[: len(self.handled.stops)]]
-        return between_positions.carried_equations(
+        return carried_equations(
             self.handled.stops,
             [each.passage for each in self.handled.passages],
             Prior(self.gravity.number, self.gravity.scatter, self.direction_scatter, self.earth),

@@ -19,6 +19,7 @@ from inertial.signal.plan_detector import PlanDetector
 from inertial.tables import CHANNEL_PARTS, FINDINGS, MASKS
 from inertial.tables.parquet import Stream
 
+MIN_SAME_SHARE = 0.9  # of the records of two events, in both of them: they have one cause
 MAX_SINGLE_EVENTS = 8  # of a kind in one place; more of them are one finding with a count
 
 
@@ -116,6 +117,7 @@ def _groups(events: Events) -> dict[tuple[Any, ...], list[NamedEvent]]:
     many are in one place.
     """
     groups: dict[tuple[Any, ...], list[NamedEvent]] = {}
+    together = _parts_together(events)
     for (detector, name, channel), own in events.items():
         part = "" if channel is None else CHANNELS[channel]
         single = detector.alike == "event" and len(own) <= MAX_SINGLE_EVENTS
@@ -125,9 +127,38 @@ def _groups(events: Events) -> dict[tuple[Any, ...], list[NamedEvent]]:
             elif detector.alike == "sensor":
                 key = (detector, part.partition("_")[0])
             else:
-                key = (detector, part)
+                key = (detector, together.get(id(event), part))
             groups.setdefault(key, []).append((name, event))
     return groups
+
+
+def _parts_together(events: Events) -> dict[int, str]:
+    """For each event of several channels over nearly the same records the names of all of these."""
+    stretches: dict[tuple[Detector, str], list[list[Event]]] = {}
+    for (detector, name, _), own in events.items():
+        if detector.alike != "records":
+            continue
+        found = stretches.setdefault((detector, name), [])
+        for event in own:
+            same = (group for group in found if _over_the_same(group[0], event))
+            group = next(same, None)
+            if group is None:
+                found.append([event])
+            else:
+                group.append(event)
+    parts: dict[int, str] = {}
+    for groups in stretches.values():
+        for group in groups:
+            own_parts = "_".join(CHANNELS[c] for c in sorted(e.channel or 0 for e in group))
+            parts |= dict.fromkeys(map(id, group), own_parts)
+    return parts
+
+
+def _over_the_same(one: Event, other: Event) -> bool:
+    """Whether two events are of other channels and of nearly the same records."""
+    both = min(one.after, other.after) - max(one.first, other.first)
+    whole = max(one.after, other.after) - min(one.first, other.first)
+    return one.channel != other.channel and both >= MIN_SAME_SHARE * whole
 
 
 def _channel(channel: int | None) -> dict[str, str | None]:
@@ -171,19 +202,29 @@ def _of_many(finding: Finding, detector: Detector, group: Sequence[NamedEvent]) 
     """One finding for many events; it has the size of the largest, and the times within one log."""
     description = detector.describe_many(group)
     channels = {event.channel for _, event in group}
+    sensors = {_channel(channel)["sensor"] for channel in channels}
     one_log = len({name for name, _ in group}) == 1
     return replace(
         finding,
+        sensor=finding.sensor if len(sensors) == 1 else None,
         axis=finding.axis if len(channels) == 1 else None,
         from_s=_number(min(e.from_s for _, e in group)) if one_log else finding.from_s,
         to_s=_number(max(e.to_s for _, e in group)) if one_log else finding.to_s,
-        count=sum(event.count for _, event in group),
+        count=_number_of(detector, group),
         p_value=min((e.p_value for _, e in group if e.p_value is not None), default=None),
         severity=max(event.severity or detector.severity for _, event in group),
         sentence=description.sentence,
         consequence=description.consequence,
         action=description.action,
     )
+
+
+def _number_of(detector: Detector, group: Sequence[NamedEvent]) -> int:
+    """How many events they are; several channels over the same records are one."""
+    if detector.alike != "records":
+        return sum(event.count for _, event in group)
+    channel = group[0][1].channel
+    return sum(event.count for _, event in group if event.channel == channel)
 
 
 # ---- The samples around each finding, for a figure that shows it close up

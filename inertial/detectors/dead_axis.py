@@ -8,7 +8,17 @@ from scipy.special import erf
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import COLUMNS
-from inertial.signal.detector import Description, Detector, Event, Log, Piece, channel_name, read_in
+from inertial.signal.detector import (
+    Description,
+    Detector,
+    Event,
+    Log,
+    Piece,
+    channel_name,
+    names_of_axes,
+    occurrences,
+    read_in,
+)
 from inertial.signal.rests_and_motions import MIN_HAND_RATE
 from inertial.signal.scatter import (
     BLOCK,
@@ -18,6 +28,7 @@ from inertial.signal.scatter import (
     roughness,
     smallest_step,
 )
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 
@@ -133,6 +144,7 @@ class DeadAxis(Detector):
     unit = "samples"
     severity = 3
     masks = True
+    alike = "records"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         channels = [_Channel.of(*_readings(piece, log, i)) for i in range(6)]
@@ -202,6 +214,37 @@ class DeadAxis(Detector):
             ),
             _("The readings are masked; what cannot do without them must be recorded again.")
             + _other_cause(facts),
+        )
+
+    def describe_many(self, events: Sequence[tuple[str, Event]]) -> Description:
+        channels = {event.channel for _name, event in events}
+        if len(channels) == 1:
+            return super().describe_many(events)
+        name, largest = max(events, key=lambda pair: pair[1].size)
+        of_one = [pair for pair in events if pair[1].channel == largest.channel]
+        by_sensor = [
+            [pair for pair in events if pair[1].channel in range(6)[columns]]
+            for columns in COLUMNS.values()
+        ]
+        sentence = _(
+            "{name}: {axes} stand still together, {number} times in a row, from line {line} on.",
+            name=name,
+            axes=listed([names_of_axes(own) for own in by_sensor if own]),
+            number=whole(largest.size),
+            line=largest.line,
+        )
+        if len(of_one) > 1:
+            sentence = f"{sentence} {occurrences(of_one)}"
+        return Description(
+            sentence,
+            _(
+                "What they read then is no motion: bias, scale factors and cross terms of these "
+                "axes would be wrong."
+            ),
+            _(
+                "The readings are masked; what cannot do without them must be recorded again. "
+                "Axes that stop together have one cause: the logger, the link, or a fill value."
+            ),
         )
 
 

@@ -19,9 +19,9 @@ where it is too slow, all motions of the log have turned by as much more, as wit
 Rests and motions differ beyond noise by what `scatter_by_hand` describes.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,16 +29,21 @@ from numpy.typing import NDArray
 from inertial.arrays import Array
 from inertial.estimation import multi_position as forces
 from inertial.estimation.attitude import IntegratedMotion, Passage, integrate, integrated_motion
-from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.elimination import EquationBlock, whitened
+from inertial.estimation.elimination import EquationBlock, Name, eliminate, whitened
 from inertial.estimation.gyroscope_observations import EARTH_UP, Earth
 from inertial.estimation.gyroscopes import PRIOR, PRIOR_SIGMA
-from inertial.estimation.least_squares import Estimate, System, solve_iterated
+from inertial.estimation.least_squares import (
+    Estimate,
+    System,
+    counted,
+    in_order,
+    remaining,
+    solve_stepped,
+    with_errors_in_order,
+)
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
-from inertial.estimation.random_walk import Stretch
 from inertial.estimation.scatter_and_random_walk import ScatterFit
 from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
-from inertial.estimation.sensitivities import Sensitivities
 from inertial.estimation.triad import UNKNOWNS, design_of
 from inertial.physics.motion import cross
 
@@ -109,14 +114,14 @@ def fit(
     stops, places, left_out = list(stops), list(range(len(passages))), list[int]()
     while True:
         data = _data(stops, [passages[i] for i in places], known)
-        about = solve_iterated(partial(equations, data, NONE), data.start).values
+        about = in_order(_solved(data, NONE, data.start), data.names)
         for _ in range(ROUNDS):
-            found, scatter = likeliest(_linear(data, about), noise_degrees)
+            found, scatter = likeliest(_Linear.about(data, about).estimate, noise_degrees)
             if scatter == NONE:
                 break
-            estimate = solve_iterated(partial(equations, data, scatter), about)
-            found, about = replace(found, estimate=estimate), estimate.values
-        parts = dict(_of_rates(data, about))
+            estimate = _solved(data, scatter, about)
+            found, about = replace(found, estimate=estimate), in_order(estimate, data.names)
+        parts = dict(rows_of_rates(data, about))
         residuals = [_whitened(parts[i], data, scatter) for i in range(len(parts))]
         worst = contradicting(residuals, len(stops))
         if worst is None:
@@ -128,19 +133,14 @@ def fit(
             left_out.append(len(stops) + places.pop(worst - len(stops)))
 
 
-def _linear(data: "_Data", about: Array) -> Callable[[Scatter], Estimate]:
-    rates = dict(_of_rates(data, about))
-    return lambda scatter: _system(data, about, rates, scatter).solve()
-
-
-def _whitened(rows: Rows, data: "_Data", scatter: Scatter) -> Array:
+def _whitened(rows: Rows, data: "Unknowns", scatter: Scatter) -> Array:
     turn, sigma = rows.independent(scatter.of_rate(rows.seconds, data.usual), scatter.swing)
     return turn @ rows.rest / sigma
 
 
 @dataclass(frozen=True)
-class _Data:
-    """The data of the equations, and the places of their unknowns.
+class Unknowns:
+    """The unknowns of the equations, their places, and the data that they belong to.
 
     These are: the gyros' parameters, those of the accelerometers, two for each direction, two for
     the horizontal rate of each chain of stops, the rate of the clock of each log that has no stamps
@@ -189,7 +189,7 @@ class _Data:
         """The usual length of a rest, s."""
         return float(np.median([stop.seconds for stop in self.stops]))
 
-    @property
+    @cached_property
     def chains(self) -> list[list[int]]:
         """The stops that uninterrupted motions join."""
         joined = {passage.first for passage in self.passages}
@@ -208,6 +208,16 @@ class _Data:
     @property
     def directions(self) -> slice:
         return slice(UNKNOWNS + forces.FREE, self.parameters)
+
+    @cached_property
+    def apart(self) -> NDArray[np.int_]:
+        """The places of the directions and of the horizontal rates of chains."""
+        return np.arange(UNKNOWNS + forces.FREE, self.parameters + 2 * len(self.chains))
+
+    @cached_property
+    def shared(self) -> NDArray[np.int_]:
+        """The places of all others."""
+        return np.setdiff1d(np.arange(self.size), self.apart)
 
     def level(self, chain: int) -> slice:
         return slice(self.parameters + 2 * chain, self.parameters + 2 * chain + 2)
@@ -260,113 +270,98 @@ class _Data:
         )
 
 
-def equations(data: _Data, scatter: Scatter, around: Array) -> System:
-    """The equations of all stops and of the motions between them, linear about `around`."""
-    return _system(data, around, dict(_of_rates(data, around)), scatter)
-
-
-def _system(data: _Data, around: Array, rates: Mapping[int, Rows], scatter: Scatter) -> System:
-    designs, rests, sigmas = map(list, zip(_of_forces(data, around), strict=True))
-    for rows in rates.values():
-        turn, sigma = rows.independent(scatter.of_rate(rows.seconds, data.usual), scatter.swing)
-        designs.append(turn @ rows.design)
-        rests.append(turn @ rows.rest)
-        sigmas.append(sigma)
-    design = np.concatenate(designs)
-    return System(
-        design,
-        np.concatenate(rests) + design @ around,
-        np.concatenate(sigmas),
-        data.prior,
-        data.prior_sigma,
-        data.parameters,
-        data.names,
-    )
-
-
 @dataclass(frozen=True)
-class Carried:
-    """What effects do to each stop and to the motion after it, and when these were.
+class _Linear:
+    """The equations of all stops and of the motions between them about one point, (p,).
 
-    `at_stops`: (3, k) of each stop; `moving`: (s, 3, k) of each passage in its stretches;
-    `stretches`: of time, of the stops, then of the passages.
+    Directions and the horizontal rate of a chain are in the equations of the stops and motions
+    beside them alone, from which they are eliminated one after another: so time grows as n.
+
+    `rest`: of the accelerometers in units of their sigma; `blocks`: those equations; `parts`: of
+    each stop and passage by number its rows, and these with the observation, of the shared unknowns
+    and its `own`.
     """
 
-    at_stops: Sequence[Sensitivities]
-    moving: Sequence[Sensitivities]
-    stretches: Sequence[Stretch]
+    data: Unknowns
+    around: Array
+    rest: Array
+    blocks: Sequence[EquationBlock]
+    parts: Mapping[int, tuple[Rows, Array, tuple[Name, ...]]]
 
+    @classmethod
+    def about(cls, data: Unknowns, around: Array) -> "_Linear":
+        """Linear about these unknowns."""
+        away, names, apart = around - data.prior, data.names, data.apart
 
-@dataclass(frozen=True)
-class CarriedEquations:
-    """The equations with parameters of effects as further unknowns, before any scatter.
+        def compact(design: Array, rest: Array) -> tuple[Array, tuple[Name, ...]]:
+            own = apart[design[:, apart].any(axis=0)]
+            rows = np.column_stack([design[:, data.shared], design[:, own], rest + design @ away])
+            return rows, tuple(names[i] for i in own.tolist())
 
-    `forces`: those of the accelerometers; `rates`: of each stop and passage by number, of which the
-    last column is the observation, both about the priors; `effect_sigma`: of their priors.
-    """
+        design, rest, sigma = rows_of_forces(data, around)
+        blocks = []
+        for i in range(0, len(rest), 3):
+            rows, own = compact(design[i : i + 3], rest[i : i + 3])
+            blocks.append(whitened(rows, sigma[i : i + 3], own))
+        parts = {
+            number: (rows, *compact(rows.design, rows.rest))
+            for number, rows in rows_of_rates(data, around)
+        }
+        return cls(data, around, rest / sigma, blocks, parts)
 
-    data: "_Data"
-    forces: EquationBlock
-    rates: Mapping[int, Rows]
-    stretches: Sequence[Stretch]
-    effect_sigma: Mapping[str, float]
+    def squares(self, scatter: Scatter) -> float:
+        """The sum of squares at this point, in units of their sigma."""
+        away = (self.around - self.data.prior) / self.data.prior_sigma
+        residuals = [_whitened(rows, self.data, scatter) for rows, *_ in self.parts.values()]
+        return float(self.rest @ self.rest + away @ away) + sum(float(r @ r) for r in residuals)
 
-    def drifting(self, scatter: Scatter, used: Sequence[bool]) -> DriftingEquations:
-        """In blocks; `used`: of each stop, then of each passage, whether its gyros are."""
-        data, blocks = self.data, [(self.forces, Stretch("forces"))]
-        for number, rows in self.rates.items():
-            if used[number]:
-                rate = scatter.of_rate(rows.seconds, data.usual)
-                turn, sigma = rows.independent(rate, scatter.swing)
-                blocks.append((whitened(turn @ rows.design, sigma, ()), self.stretches[number]))
-        return DriftingEquations(
-            blocks,
-            [stretch.name for _, stretch in blocks],
-            {},
-            np.append(data.prior, np.zeros(len(self.effect_sigma))),
-            np.append(data.prior_sigma, list(self.effect_sigma.values())),
-            (*data.names, *(("effect", name) for name in self.effect_sigma)),
-            UNKNOWNS - 3,
-            data.parameters,
+    def system(self, scatter: Scatter) -> System:
+        """The equations of the unknowns that all share."""
+        data, shared = self.data, self.data.shared
+        blocks: list[EquationBlock] = []
+        for number, (rows, design, own) in self.parts.items():
+            if number < len(data.stops):
+                blocks.append(self.blocks[number])
+            rate = scatter.of_rate(rows.seconds, data.usual)
+            turn, sigma = rows.independent(rate, scatter.swing)
+            blocks.append(whitened(turn @ design, sigma, own))
+        prior, prior_sigma, names = data.prior, data.prior_sigma, data.names
+        known = {names[i]: float(prior_sigma[i]) for i in data.apart.tolist()}
+        return remaining(
+            *eliminate(blocks, len(shared), known),
+            prior[shared],
+            prior_sigma[shared],
+            UNKNOWNS + forces.FREE,
+            tuple(names[i] for i in shared.tolist()),
         )
 
+    def estimate(self, scatter: Scatter) -> Estimate:
+        """The estimate of these equations."""
+        return _counted(self.data, self.system(scatter).solve())
 
-def carried_equations(
-    stops: Sequence[Stop],
-    passages: Sequence[Passage],
-    known: Prior,
-    about: tuple[Array, Array, Array, Array],
-    carried: Carried,
-    effect_sigma: Mapping[str, float],
-) -> CarriedEquations:
-    """Linear about M and bias of the gyros, then P and bias of the accelerometers, `about`."""
-    matrix, bias, symmetric, force_bias = about
-    means = np.array([stop.forces.mean for stop in stops])
-    up = upward_of((means - force_bias) @ np.linalg.inv(symmetric).T)
-    data = _Data(stops, passages, known, up)
-    around = data.prior
-    pairs = [symmetric[i, j] for i, j in forces.PAIRS]
-    around[: UNKNOWNS + forces.FREE] = [*matrix.ravel(), *bias, *pairs, *force_bias]
-    effects = list(effect_sigma)
-    answers = [each.of(effects)[None] for each in carried.at_stops]
-    answers += [each.of(effects) for each in carried.moving]
 
-    def stacked(design: Array, rest: Array, of_effects: Array) -> Array:
-        observed = rest + design @ (around - data.prior)
-        return np.column_stack([design, of_effects, observed])
+def _counted(data: Unknowns, estimate: Estimate) -> Estimate:
+    """With the degrees of freedom that parameters and directions leave; errors in their order."""
+    vague = zip(data.names[: data.parameters], data.prior_sigma.tolist(), strict=False)
+    return with_errors_in_order(counted(estimate, dict(vague)), data.names)
 
-    design, rest, sigma = _of_forces(data, around)
-    of_forces = stacked(design, rest, np.zeros((len(rest), len(effects))))
-    rates = {}
-    for number, rows in _of_rates(data, around):
-        of_effects = np.einsum("msi,sik->mk", rows.response, answers[number])
-        rates[number] = replace(rows, design=stacked(rows.design, rows.rest, of_effects))
-    return CarriedEquations(
-        data, whitened(of_forces, sigma, ()), rates, carried.stretches, effect_sigma
+
+def _solved(data: Unknowns, scatter: Scatter, start: Array) -> Estimate:
+    """The estimate about which the equations with this scatter are linear."""
+
+    @lru_cache(maxsize=1)
+    def at(around: bytes) -> _Linear:
+        return _Linear.about(data, np.frombuffer(around))
+
+    estimate = solve_stepped(
+        lambda around: (at(around.tobytes()).system(scatter), data.names),
+        lambda around: at(around.tobytes()).squares(scatter),
+        start,
     )
+    return _counted(data, estimate)
 
 
-def _of_forces(data: _Data, around: Array) -> tuple[Array, Array, Array]:
+def rows_of_forces(data: Unknowns, around: Array) -> tuple[Array, Array, Array]:
     """The accelerometers at every stop: coefficients (m, p), residuals and their sigma (m,)."""
     place = data.of_forces
     rests = [stop.forces for stop in data.stops]
@@ -377,7 +372,7 @@ def _of_forces(data: _Data, around: Array) -> tuple[Array, Array, Array]:
     return design, observed.ravel() - own @ around[place], sigma.ravel()
 
 
-def _of_rates(data: _Data, around: Array) -> Iterator[tuple[int, Rows]]:
+def rows_of_rates(data: Unknowns, around: Array) -> Iterator[tuple[int, Rows]]:
     """The gyros at every stop, and in the motion to the next."""
     places = around[data.directions].reshape(-1, 2)
     ups, changes = data.up.at(places)
@@ -396,9 +391,11 @@ def _of_rates(data: _Data, around: Array) -> Iterator[tuple[int, Rows]]:
                 at_stop = at_stop.at_next(turned)
 
 
-def _data(stops: Sequence[Stop], passages: Sequence[Passage], known: Prior) -> "_Data":
+def _data(stops: Sequence[Stop], passages: Sequence[Passage], known: Prior) -> "Unknowns":
     """About the directions of the readings."""
-    return _Data(stops, passages, known, upward_of(np.array([stop.forces.mean for stop in stops])))
+    return Unknowns(
+        stops, passages, known, upward_of(np.array([stop.forces.mean for stop in stops]))
+    )
 
 
 def _level(up: Array, about: Array) -> Array:
@@ -416,7 +413,7 @@ class _AtStop:
     at `place`.
     """
 
-    data: _Data
+    data: Unknowns
     around: Array
     ups: Array
     changes: Array

@@ -7,13 +7,11 @@ a rate segment) is an unknown too, with its known sigma as prior: equivalent to 
 observations that contains these errors.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 
 import numpy as np
 from scipy.linalg import solve_triangular
-from scipy.optimize import least_squares
 
 from inertial.arrays import Array, Booleans
 from inertial.estimation.elimination import Eliminated, partial_r_factor
@@ -25,7 +23,6 @@ MIN_SPANNED_SHARE = 1 - 1e-6  # of a column within the combinations that the dat
 
 # Iterated least squares
 MIN_RELATIVE_DECREASE = 1e-8  # of the sum of squares per iteration
-MIN_RELATIVE_STEP = 1e-15  # so that a small step of one unknown among large ones is no convergence
 MAX_ITERATIONS = 100
 
 MIN_SINGULAR_VALUE = 1e-3  # of the largest; a weaker combination amplifies its errors 1000-fold
@@ -374,46 +371,85 @@ def whitening(information: Array, least: float = MIN_INFORMATION_SHARE) -> Array
     return np.asarray(vectors[:, observable] / np.sqrt(values[observable]) / size[:, None])
 
 
-def solve_iterated(linearised: Callable[[Array], System], start: Array) -> Estimate:
+def remaining(
+    rows: Array,
+    eliminated: Eliminated,
+    prior: Array,
+    prior_sigma: Array,
+    parameters: int,
+    names: tuple[tuple[str, str], ...],
+) -> System:
+    """The system of the rows that `eliminate` leaves, (m, s + 1), about the priors."""
+    design = rows[:, :-1]
+    observed, unit = rows[:, -1] + design @ prior, np.ones(len(rows))
+    return System(design, observed, unit, prior, prior_sigma, parameters, names, eliminated)
+
+
+# Equations from which errors were eliminated, and the order of all unknowns before that.
+Stepped = tuple[System, tuple[tuple[str, str], ...]]
+MIN_SHARE_OF_STEP = 1e-3  # a step that must be shorter for the sum of squares to fall is none
+
+
+def solve_stepped(
+    linearised: Callable[[Array], Stepped], squares: Callable[[Array], float], start: Array
+) -> Estimate:
     """The estimate of smallest variance where the design depends on the unknowns.
 
     The equations are linearised about each last result until the weighted sum of squares is
-    smallest (Levenberg & Marquardt, MINPACK). Returned is the linear estimate about that point,
-    with its covariance.
+    smallest; errors may be eliminated from them. Each step goes to the estimate of the linear
+    equations, or as far towards it as the sum of squares falls (Gauss & Newton, halved steps).
 
     Parameters
     ----------
     linearised : the equations about given unknowns (p,), where their residuals are exact
+    squares : the sum of squares at given unknowns, of their priors too
     start : (p,), initial values
     """
-    first = linearised(start)
-    prior, scale = first.prior, first.prior_sigma
+    values, least = start, squares(start)
+    for _unused in range(MAX_ITERATIONS):
+        system, order = linearised(values)
+        estimate = system.solve()
+        step = in_order(estimate, order) - values
+        share, before = 1.0, least
+        while (found := squares(values + share * step)) >= before and share > MIN_SHARE_OF_STEP:
+            share /= 2
+        if not found < before:
+            return estimate
+        values, least = values + share * step, found
+        if before - least < MIN_RELATIVE_DECREASE * before:
+            break
+    return linearised(values)[0].solve()
 
-    @lru_cache(maxsize=1)
-    def at(change: bytes) -> System:
-        return linearised(prior + scale * np.frombuffer(change))
 
-    def residual(change: Array) -> Array:
-        system = at(change.tobytes())
-        difference = system.observed - system.design @ (prior + scale * change)
-        return np.append(difference / system.sigma, -change)
+def in_order(estimate: Estimate, names: Sequence[tuple[str, str]]) -> Array:
+    """The values of these unknowns."""
+    place = {name: i for i, name in enumerate(estimate.names)}
+    return np.asarray(estimate.values[[place[name] for name in names]])
 
-    def jacobian(change: Array) -> Array:
-        system = at(change.tobytes())
-        return -np.vstack([system.design / system.sigma[:, None] * scale, np.eye(len(change))])
 
-    solution = least_squares(
-        residual,
-        (start - prior) / scale,
-        jacobian,
-        method="lm",
-        x_scale="jac",
-        ftol=MIN_RELATIVE_DECREASE,
-        xtol=MIN_RELATIVE_STEP,
-        gtol=MIN_RELATIVE_STEP,
-        max_nfev=MAX_ITERATIONS,
+def with_errors_in_order(estimate: Estimate, names: Sequence[tuple[str, str]]) -> Estimate:
+    """The same with the errors that were eliminated in the order of these names."""
+    shared = len(estimate.covariance)
+    place = {name: i for i, name in enumerate(names)}
+    order = sorted(range(shared, len(estimate.names)), key=lambda i: place[estimate.names[i]])
+    whole = [*range(shared), *order]
+    return replace(
+        estimate,
+        names=tuple(estimate.names[i] for i in whole),
+        values=estimate.values[whole],
+        determined=estimate.determined[whole],
+        eliminated_sigma=estimate.sigma[order],
     )
-    return linearised(np.asarray(prior + scale * solution.x)).solve()
+
+
+def counted(estimate: Estimate, vague: Mapping[tuple[str, str], float]) -> Estimate:
+    """With the degrees of freedom that unknowns leave of which nothing is known beforehand.
+
+    vague : the sigma of the prior of each, whether it was eliminated or not
+    """
+    sigma = dict(zip(estimate.names, estimate.sigma.tolist(), strict=True))
+    taken = sum(1 - (sigma[name] / prior) ** 2 for name, prior in vague.items())
+    return replace(estimate, degrees=max(round(estimate.rows - taken), 0))
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,21 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from itertools import product
 
 import numpy as np
 from scipy.linalg import qr
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate, System, solve_iterated
+from inertial.estimation.elimination import eliminate, whitened
+from inertial.estimation.least_squares import (
+    MIN_SIGMA_REDUCTION,
+    Estimate,
+    Stepped,
+    counted,
+    remaining,
+    solve_stepped,
+)
 from inertial.physics.motion import level_axes
 from inertial.text.parameters import BIAS, SYMMETRIC
 
@@ -89,36 +96,73 @@ def free_positions(
     Noise across gravity lengthens a reading, |f|² = g² + …: this bias, σ²/g for equal channels, is
     subtracted, see `lengthened`. `scatter`, m/s²: between rests, beyond noise.
     """
-    up = upward_of(np.array([rest.mean for rest in rests]))
-    about = partial(equations, rests, up, (gravity, gravity_sigma), scatter)
-    return solve_iterated(about, np.concatenate([PRIOR, np.zeros(2 * len(rests)), [gravity]]))
+    data = _Rests.of(rests, (gravity, gravity_sigma), scatter)
+    start = np.concatenate([PRIOR, np.zeros(2 * len(rests)), [gravity]])
+    estimate = solve_stepped(data.linearised, data.squares, start)
+    directions = dict.fromkeys(estimate.names[FREE + 1 :], DIRECTION_SIGMA)
+    vague = dict(zip(estimate.names, PRIOR_SIGMA.tolist(), strict=False))
+    return counted(estimate, {**vague, **directions})
 
 
-def equations(
-    rests: Sequence[FreeRest],
-    up: Upward,
-    gravity: tuple[float, float],
-    scatter: float,
-    around: Array,
-) -> System:
-    """The equations of all rests, linear about `around`, (9 + 2 n + 1,).
+@dataclass(frozen=True)
+class _Rests:
+    """n rests, the directions that their unknowns are about, and gravity with its sigma.
 
-    Unknowns: P and bias, the directions, gravity with its given value and sigma.
+    The unknowns are P and bias, the directions, gravity. Each direction is in the equations of its
+    own rest alone, from which it is eliminated: so time grows as n, not as n³.
     """
-    n = len(rests)
-    names = [("parameter", name) for name in NAMES]
-    names += [(f"direction {i}", rest.name) for rest in rests for i in (0, 1)]
-    names += [("gravity", "")]
-    design, observed, sigma = readings(rests, up, scatter, around)
-    return System(
-        design.reshape(3 * n, -1),
-        observed.ravel(),
-        sigma.ravel(),
-        np.concatenate([PRIOR, np.zeros(2 * n), gravity[:1]]),
-        np.concatenate([PRIOR_SIGMA, np.full(2 * n, DIRECTION_SIGMA), gravity[1:]]),
-        FREE + 2 * n,
-        tuple(names),
-    )
+
+    rests: Sequence[FreeRest]
+    up: Upward
+    gravity: tuple[float, float]
+    scatter: float
+
+    @classmethod
+    def of(
+        cls, rests: Sequence[FreeRest], gravity: tuple[float, float], scatter: float
+    ) -> "_Rests":
+        """About the directions of the readings."""
+        return cls(rests, upward_of(np.array([rest.mean for rest in rests])), gravity, scatter)
+
+    def squares(self, around: Array) -> float:
+        """The sum of squares at given unknowns, (9 + 2 n + 1,), in units of their sigma."""
+        _own, rest, sigma = _about(self.rests, self.up, self.scatter, around)
+        prior = np.concatenate([PRIOR, np.zeros(2 * len(self.rests)), self.gravity[:1]])
+        away = (around - prior) / np.concatenate(
+            [PRIOR_SIGMA, np.full(2 * len(self.rests), DIRECTION_SIGMA), self.gravity[1:]]
+        )
+        return float(np.sum((rest / sigma) ** 2) + away @ away)
+
+    def linearised(self, around: Array) -> Stepped:
+        """The equations linear about given unknowns, (9 + 2 n + 1,), and the order of these."""
+        own, rest, sigma = _about(self.rests, self.up, self.scatter, around)
+        places = around[FREE:-1].reshape(-1, 2)
+        prior, shared = np.append(PRIOR, self.gravity[0]), np.append(around[:FREE], around[-1])
+        observed = rest + own.shared @ (shared - prior)
+        observed += np.einsum("nia,na->ni", own.directions, places)
+        rows = np.concatenate([own.shared, own.directions, observed[:, :, None]], axis=2)
+        names = [tuple((f"direction {i}", str(k)) for i in (0, 1)) for k in range(len(rows))]
+        blocks = [whitened(*each) for each in zip(rows, sigma, names, strict=True)]
+        errors = [name for pair in names for name in pair]
+        left, eliminated = eliminate(blocks, len(prior), dict.fromkeys(errors, DIRECTION_SIGMA))
+        parameters = tuple(("parameter", name) for name in NAMES)
+        system = remaining(
+            left,
+            eliminated,
+            prior,
+            np.append(PRIOR_SIGMA, self.gravity[1]),
+            FREE,
+            (*parameters, ("gravity", "")),
+        )
+        return system, (*parameters, *errors, ("gravity", ""))
+
+
+@dataclass(frozen=True)
+class _Own:
+    """Coefficients of P, bias and gravity, (n, 3, 10), and of each rest's own direction."""
+
+    shared: Array
+    directions: Array  # (n, 3, 2)
 
 
 def readings(
@@ -131,23 +175,33 @@ def readings(
     design (n, 3, 9 + 2 n + 1), observed (n, 3) and sigma (n, 3)
     """
     n = len(rests)
+    own, rest, sigma = _about(rests, up, scatter, around)
+    design, each = np.zeros((n, 3, FREE + 2 * n + 1)), np.arange(n)
+    design[:, :, :FREE], design[:, :, -1] = own.shared[:, :, :FREE], own.shared[:, :, FREE]
+    for a in (0, 1):
+        design[each, :, FREE + 2 * each + a] = own.directions[:, :, a]
+    return design, rest + design @ around, sigma
+
+
+def _about(
+    rests: Sequence[FreeRest], up: Upward, scatter: float, around: Array
+) -> tuple[_Own, Array, Array]:
+    """Coefficients, residuals (n, 3) and their sigma (n, 3) about given unknowns."""
+    n = len(rests)
     matrix, bias, gravity = matrix_of(around), around[6:9], float(around[-1])
     directions, changes = up.at(around[FREE:-1].reshape(n, 2))
     along = directions @ matrix.T
-    design = np.zeros((n, 3, FREE + 2 * n + 1))
+    shared = np.zeros((n, 3, FREE + 1))
     for column, (i, j) in enumerate(PAIRS):
-        design[:, i, column] = gravity * directions[:, j]
-        design[:, j, column] = gravity * directions[:, i]
-    design[:, :, 6:9] = np.eye(3)
-    each = np.arange(n)
-    for a in (0, 1):
-        design[each, :, FREE + 2 * each + a] = gravity * changes[:, a] @ matrix.T
-    design[:, :, -1] = along
+        shared[:, i, column] = gravity * directions[:, j]
+        shared[:, j, column] = gravity * directions[:, i]
+    shared[:, :, 6:9] = np.eye(3)
+    shared[:, :, FREE] = along
+    own = _Own(shared, gravity * np.einsum("nai,ji->nja", changes, matrix))
     sigma = np.hypot(np.array([rest.sigma for rest in rests]), scatter)
     increase = lengthened(matrix, directions, sigma, gravity)
     means = np.array([rest.mean for rest in rests]) - increase[:, None] * along
-    rest = means - (gravity * along + bias)
-    return design, rest + design @ around, np.asarray(sigma)
+    return own, means - (gravity * along + bias), np.asarray(sigma)
 
 
 def lengthened(matrix: Array, up: Array, sigma: Array, gravity: float) -> Array:
@@ -224,4 +278,4 @@ def lengths(estimate: Estimate) -> Array:
     pairs = [
         normal[:, i] * ups[:, j] + (normal[:, j] * ups[:, i] if i != j else 0.0) for i, j in PAIRS
     ]
-    return np.column_stack([*(estimate.values[-1] * pair for pair in pairs), normal])
+    return np.column_stack([*(estimate.values[FREE] * pair for pair in pairs), normal])

@@ -225,7 +225,8 @@ class Detector(ABC):
     axes of one are concerned. `severity`: 3 spoils a result, 2 weakens it, 1 is good to know.
     `masks`: readings that it detects are not used by others; `repeats`: no time passes with the
     records that it masks. `alike`: which of its events are one finding: those of a `sensor` (or
-    all, where they concern no channel), of a `channel`, or each `event` is one of its own.
+    all, where they concern no channel), of a `channel`, those of several channels over the same
+    `records`, or each `event` is one of its own.
     """
 
     name: ClassVar[str]
@@ -235,7 +236,7 @@ class Detector(ABC):
     severity: ClassVar[int] = 2
     masks: ClassVar[bool] = False
     repeats: ClassVar[bool] = False
-    alike: ClassVar[Literal["sensor", "channel", "event"]] = "channel"
+    alike: ClassVar[Literal["sensor", "channel", "records", "event"]] = "channel"
 
     def censors(self, event: Event) -> bool:
         """Whether it masks readings for their value, so that those left have a biased mean."""

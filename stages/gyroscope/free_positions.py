@@ -8,16 +8,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from inertial.arrays import Booleans
+from inertial.arrays import Array, Booleans
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.estimates import Estimates, reasons
+from inertial.campaign.estimates import NAMES, Estimates, reasons
 from inertial.campaign.findings import Finding
 from inertial.campaign.passages import RecordedPassage, passages_of
 from inertial.campaign.records import Part, omissions, with_mount
-from inertial.campaign.unknown_attitude import fitted_to, free_static_positions
-from inertial.estimation.attitude import Passage
-from inertial.estimation.between_positions import Prior, Stop, fit
-from inertial.estimation.least_squares import Estimate
+from inertial.campaign.unknown_attitude import (
+    FreeStaticPosition,
+    fitted_to,
+    free_static_positions,
+)
+from inertial.estimation.between_positions import Prior, fit
+from inertial.estimation.gyroscopes import BIAS, PRIOR_SIGMA
+from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate
 from inertial.signal.scale_factor import MAX_SCALE_ERROR
 from inertial.tables import AXES, GYRO
 from inertial.text.messages import _
@@ -36,21 +40,11 @@ CURES = {
         "add turns of 90° or more about {axis}, there and back"
     ),
 }
-NOT_FOR_WANT_OF_TURNS = {
-    "bias": CURES["bias"],
-    "matrix": _(
-        "the turns about {axis} between the rests are too few, or the directions of gravity in the "
-        "rests not known well enough, to determine it: add rests in further attitudes, with turns "
-        "of 90° or more about {axis} between them"
-    ),
-}
-MIN_SHOWN, LEVEL = (
-    60 * DEGREE,
-    0.5,
-)  # of a turn, to show its axis; |f| along it, at most, where level
 CAUSE = "gyro_count_size"
 UNIT = "wrong_scale_factor"
 MAX_BY_HAND, FASTEST = 40.0, 0.99  # rad/s, of the block at this quantile: more no hand turns
+MAX_LEVEL = 0.5  # of gravity along an axis that is level
+MIN_TURN = np.radians(45.0)  # about it, that would determine its parameters
 MIN_SIGMAS = 5.0  # by which a scale factor is further off than that of any gyro
 
 
@@ -68,7 +62,8 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     prior = Prior(data.gravity.number, data.gravity.scatter, between, data.earth)
     passages = [recorded.passage for recorded in moving]
     fitted, off = fit(stops, passages, prior, data.noise.degrees)
-    why = _why(fitted.estimate.determined, recorded, stops, moving, broken)
+    why = reasons(fitted.estimate.determined, recorded, "gyro", _cures(moving, broken))
+    why |= _imprecise(fitted.estimate, _turned(positions, moving, fitted.estimate), recorded)
     estimates.add_triad(FREE, fitted.estimate, why)
     parts = [*(position.force.part for position in positions), *(each.part for each in moving)]
     reason = [NOT_AT_REST] * len(stops) + [SLIPPED] * len(moving)
@@ -81,49 +76,56 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     return list(_count_size(fitted.estimate, data.mount))
 
 
-def _why(
-    determined: Booleans,
-    recorded: Booleans,
-    stops: Sequence[Stop],
-    moving: Sequence[RecordedPassage],
-    broken: Sequence[Part],
-) -> dict[str, str]:
-    """Why a parameter is not determined: for want of turns about its axis only where none is."""
-    cures = _cures(moving, broken)
-    why = reasons(determined, recorded, "gyro", cures)
-    if cures is not CURES:
-        return why
-    other = reasons(determined, recorded, "gyro", NOT_FOR_WANT_OF_TURNS)
-    turned = {axis for each in moving for axis in _turned_level(stops, each.passage)}
-    return {
-        name: other[name] if PARTS[name].input_axis in turned else text
-        for name, text in why.items()
-    }
-
-
-def _turned_level(stops: Sequence[Stop], passage: Passage) -> Iterator[str]:
-    """The axes about which a motion turned, as the gyros read, and which were horizontal."""
-    angles = np.abs((passage.rates - stops[passage.first].mean).T @ passage.seconds)
-    up = stops[passage.first].forces.mean
-    level = np.abs(up) < LEVEL * np.linalg.norm(up)
-    yield from (
-        axis for axis, shown in zip(AXES, (angles > MIN_SHOWN) & level, strict=True) if shown
-    )
-
-
 def _cures(moving: Sequence[RecordedPassage], broken: Sequence[Part]) -> dict[str, str]:
-    """What determines the parameters that are not; most motions may be recorded in part only."""
-    if len(broken) <= len(moving):
+    """What determines the parameters that are not; some motions may be recorded in part only."""
+    if not broken:
         return CURES
     of_motions = _(
-        "of {all} motions between rests {broken} carry no attitude; of {first}: {reason}",
+        "of {all} motions between rests {broken} carry no attitude; of {first}: {reason}. If a "
+        "gyro reached the end of its range there, turn more slowly",
         all=len(broken) + len(moving),
         broken=len(broken),
         first=broken[0].manoeuvre,
         reason=broken[0].reason,
     )
     # Names are free text, and a remedy is a format of the axis.
-    return CURES | {"matrix": of_motions.replace("{", "{{").replace("}", "}}")}
+    of_motions = of_motions.replace("{", "{{").replace("}", "}}")
+    if len(broken) <= len(moving):
+        of_motions = _("{of_one}; {of_all}", of_one=CURES["matrix"], of_all=of_motions)
+    return CURES | {"matrix": of_motions}
+
+
+def _turned(
+    positions: Sequence[FreeStaticPosition], moving: Sequence[RecordedPassage], fitted: Estimate
+) -> Array:
+    """The largest angle of a motion about each axis while that was level before and after, (3,)."""
+    most = np.zeros(3)
+    for each in moving:
+        passage = each.passage
+        ends = [positions[passage.first + k].rest.mean for k in (0, 1)]
+        level = np.all([np.abs(f) < MAX_LEVEL * np.linalg.norm(f) for f in ends], axis=0)
+        turned = passage.seconds @ (passage.rates - fitted.values[9:12])
+        most = np.fmax(most, np.where(level, np.abs(turned), 0.0))
+    return most
+
+
+def _imprecise(fitted: Estimate, turned: Array, recorded: Booleans) -> dict[str, str]:
+    """Why parameters of axes about which the IMU was turned are not determined all the same."""
+    return {
+        name: _(
+            "the IMU was turned about {axis} while {axis} was horizontal, by up to {angle}°, but "
+            "the motions agree with the rests only so far that it is known to ± {sigma}, and it "
+            "must be known to ± {least}: add more turns about {axis}, and let the IMU stand "
+            "still before and after each",
+            axis=PARTS[name].input_axis,
+            angle=significant(float(np.degrees(turned[column])), 2),
+            sigma=significant(float(fitted.sigma[i]), 2),
+            least=significant(float(PRIOR_SIGMA[i]) / MIN_SIGMA_REDUCTION, 2),
+        )
+        for i, name in enumerate(NAMES)
+        for column in [i % 3]
+        if i < BIAS and recorded[i // 3] and not fitted.determined[i] and turned[column] > MIN_TURN
+    }
 
 
 def _unit(turning: float, mount: str) -> Finding:

@@ -5,7 +5,10 @@ import pytest
 from on_a_table import carried, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, NOISE, assert_told
 
+from inertial.campaign.findings import detections_of
 from inertial.detectors.dead_axis import DeadAxis
+
+DEAD = DeadAxis()
 
 
 def found(values, **of_log):
@@ -87,3 +90,30 @@ def test_coarse_counts_are_not_dead(noise):
 def test_clean_readings_are_silent(seed):
     assert [found(values) for values in (rest(200_000, seed), turn(seed), tumble(seed))] == [[]] * 3
     assert found(rest(200_000, seed, noise=NOISE / 3)) == []
+
+
+@pytest.mark.parametrize(
+    ("channels", "said"),
+    [
+        ([3, 4, 5], "gyros x, y, z stand still together, 20"),
+        ([2, 5], "accelerometer z and gyro z stand still together, 20"),
+    ],
+)
+def test_axes_that_stand_still_over_the_same_records_are_one_finding(channels, said):
+    """As zeros between packets; one that stands still elsewhere by itself is another one."""
+    values = turn()
+    for first in (1500, 2200):
+        values[first : first + 200, channels] = 0.0
+    values[2600:2900, 0] = 0.0
+    one, log = recorded(values)
+    events = {}
+    for event in DeadAxis().detect(one, log):
+        events.setdefault((DEAD, "log", event.channel), []).append(event)
+    alone, together = sorted(
+        (each.finding for each in detections_of("quality", events, {"log": log})),
+        key=lambda finding: finding.count,
+    )
+    assert (alone.sensor, alone.axis, alone.count) == ("accel", "x", 1)
+    assert said in together.sentence and "2 times in this log" in together.sentence
+    sensor = "gyro" if channels[0] == 3 else None
+    assert (together.sensor, together.axis, together.count) == (sensor, None, 2)
