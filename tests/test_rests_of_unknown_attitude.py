@@ -175,7 +175,7 @@ def test_of_longer_holes_the_motions_are_left_out_and_that_is_the_reason(imu, re
 
 
 def test_where_the_imu_was_turned_the_reason_is_not_that_it_was_not(imu):
-    """Turns of 90° that end eight degrees beside the rests tell a scale factor to a few per cent."""
+    """Turns of 90° that end 8° beside the rests tell a scale factor to a few per cent."""
     stops, passages = handled(imu, FACES[[0, 2, 1, 3]], 20)
     rng = np.random.default_rng(4)
     slipping = [

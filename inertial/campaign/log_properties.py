@@ -105,7 +105,7 @@ def given_by(
     )
 
 
-def _in_common(intervals: list[float]) -> dict[str, float]:
+def _in_common(intervals: list[float]) -> dict[str, Any]:
     """The interval of most logs, and the scatter of the others about it, as a sigma."""
     if len(intervals) < MIN_COMMON_LOGS:
         return {}

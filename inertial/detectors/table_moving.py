@@ -68,11 +68,16 @@ class Motion:
 
 @dataclass(frozen=True)
 class Moved:
-    """A motion, with the uncertainty of a set position, rad, and gravity, m/s²."""
+    """A motion, with the uncertainty of a set position, rad, and gravity, m/s².
+
+    attitude_set: whether the plan states the attitude of the rest; gyros: whether any is recorded.
+    """
 
     motion: Motion
     position: float
     gravity: float
+    attitude_set: bool = True
+    gyros: bool = True
 
 
 class TableMoving(Detector):
@@ -103,13 +108,15 @@ class TableMoving(Detector):
             motions += _sudden(resting, [jump for jump in own if jump.moved], position)
             motions += _creep(resting, own, position)
         for motion in _joined(motions, round(BLOCK_S / log.interval)):
+            stated, gyros = log.given.attitude_set, resting.recorded("gyro")
+            moved = Moved(motion, position, log.given.gravity, stated, gyros)
             yield piece.event(
                 motion.first,
                 motion.after,
                 motion.size / ARC_SECOND,
                 p_value=motion.p_value,
-                facts=Moved(motion, position, log.given.gravity),
-                severity=1 if motion.kind == "knock" else None,
+                facts=moved,
+                severity=1 if motion.kind == "knock" or _harmless(moved) else None,
             )
 
     def describe(self, event: Event, name: str) -> Description:
@@ -144,12 +151,6 @@ class TableMoving(Detector):
             )
         )
         kind = _("tilts") if motion.kind == "tilt" else _("creeps")
-        off = motion.off / ARC_SECOND
-        times = _(
-            ", {significant} times the stated uncertainty of a",
-            significant=significant(motion.off / moved.position, 2),
-        )
-        times = times + _(" position") if moved.position > 0 else ""
         return Description(
             _(
                 "{name}: the table {kind} by {size} {span}, while it should rest: the direction "
@@ -160,15 +161,46 @@ class TableMoving(Detector):
                 span=span,
                 confirmation=confirmation,
             ),
-            _(
-                "The mean attitude of this rest is off by {off}″{times}: its level axes by up "
-                "to {significant} m/s², with them biases and cross-axis terms.",
-                off=significant(off, 3),
-                times=times,
-                significant=significant(motion.off * moved.gravity, 2),
-            ),
+            _cost(moved),
             _("The rest is used as it is. Record it again, once the table stands."),
         )
+
+
+def _harmless(moved: Moved) -> bool:
+    """Whether nothing depends on the attitude: none is stated, and no gyro carries it."""
+    return not moved.attitude_set and not moved.gyros
+
+
+def _cost(moved: Moved) -> str:
+    """What the motion does to the result."""
+    angle = moved.motion.off
+    off = significant(angle / ARC_SECOND, 3)
+    if moved.attitude_set:
+        times = _(
+            ", {significant} times the stated uncertainty of a",
+            significant=significant(angle / moved.position, 2) if moved.position > 0 else "",
+        )
+        times = times + _(" position") if moved.position > 0 else ""
+        return _(
+            "The mean attitude of this rest is off by {off}″{times}: its level axes by up "
+            "to {significant} m/s², with them biases and cross-axis terms.",
+            off=off,
+            times=times,
+            significant=significant(angle * moved.gravity, 2),
+        )
+    shorter = _(
+        "No attitude is stated of this rest. Its mean direction is off by {off}″, and the length "
+        "of its mean force, by which alone it counts for the accelerometers, by {size} m/s².",
+        off=off,
+        size=significant(angle**2 / 2 * moved.gravity, 2),
+    )
+    if not moved.gyros:
+        return shorter
+    return _(
+        "{of_forces} The motions before and after it end beside it by as much, with them scale "
+        "factors and cross terms of the gyros.",
+        of_forces=shorter,
+    )
 
 
 def _knocks(resting: Resting) -> Iterator[Motion]:

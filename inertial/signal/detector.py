@@ -38,7 +38,7 @@ class Given:
     differ, 1; NaN where fewer than three logs have stamps.
     must_be_set, must_be_clear: bits of the status of a valid record. count_sizes: m/s and rad, of
     accelerometer and gyro, by the name of each listed instrument. position_sigma: rad, of the tilts
-    of a set position.
+    of a set position; attitude_set: whether that of what is examined is one.
     """
 
     gravity: float
@@ -53,6 +53,7 @@ class Given:
     usual_interval: float = np.nan
     unlike: float = np.nan
     position_sigma: float = 0.0
+    attitude_set: bool = True
 
 
 @dataclass(frozen=True)

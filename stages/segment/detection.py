@@ -1,6 +1,6 @@
 """Detectors that know the plan, and what they compare with it; those of each static position."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
@@ -296,7 +296,12 @@ def _told(
 
 
 class ExaminationOfRests:
-    """Everything that these detectors see in the rests among the parts of manoeuvres."""
+    """Everything that these detectors see in the rests among the parts of manoeuvres.
+
+    Parameters
+    ----------
+    attitudes_set : the manoeuvres whose attitude the plan states
+    """
 
     def __init__(
         self,
@@ -304,12 +309,16 @@ class ExaminationOfRests:
         parts: Sequence[Part],
         logs: Mapping[str, Log],
         masks: Masks,
+        attitudes_set: Collection[str],
     ) -> None:
         rests = {
             _name(part): part for part in parts if part.phase in STATIC_PHASES and part.log in logs
         }
         self._manoeuvre = {name: part.manoeuvre for name, part in rests.items()}
-        self._logs = {name: logs[part.log] for name, part in rests.items()}
+        self._logs = {
+            name: _log_of_rest(logs[part.log], part.manoeuvre in attitudes_set)
+            for name, part in rests.items()
+        }
         given = next((log.given for log in self._logs.values()), None)
         self._examination = ExaminationOfStretches(
             Examination(detectors, self._logs, given),
@@ -328,6 +337,11 @@ class ExaminationOfRests:
         for each in detections_of(stage, events, self._logs, of_manoeuvres=True):
             manoeuvre = self._manoeuvre[str(each.finding.manoeuvre)]
             yield replace(each, finding=replace(each.finding, manoeuvre=manoeuvre))
+
+
+def _log_of_rest(log: Log, attitude_set: bool) -> Log:
+    """The log of a rest, by whether the plan states the attitude of that."""
+    return replace(log, given=replace(log.given, attitude_set=attitude_set))
 
 
 def _name(rest: Part) -> str:

@@ -113,7 +113,9 @@ def segment(
         places.parts, examined.gaps, masked, clock, in_samples, rest_block, turn_block
     )
     segment_times, traces = reduction.Segments(places.parts), reduction.Traces(ends)
-    rests, index = ExaminationOfRests(OF_RESTS, places.parts, by_name, masked), RecordIndex()
+    known = {m.name for m in made.plan if m.up is not None}
+    rests = ExaminationOfRests(OF_RESTS, places.parts, by_name, masked, known)
+    index = RecordIndex()
     read_once(samples, [block_sums, segment_times, traces, rests, index], read_as)
     blocks, segments = block_sums.table(), segment_times.table()
     by_encoder = plan_by_encoder(made.plan, blocks, stated.angle_sigma, angle_tolerance)

@@ -1,5 +1,7 @@
 """Rests that are none: biases that jump, tables that move; and what must not be taken for it."""
 
+import re
+
 import numpy as np
 import pytest
 from recorded_by_hand import GRAVITY, INTERVAL, NOISE, given, log, piece, rest, stamps
@@ -266,3 +268,19 @@ def test_a_rest_without_time_is_not_judged():
     known = log(one, given())
     assert not list(BiasJump().detect(one, known))
     assert not list(TableMoving().detect(one, known))
+
+
+@pytest.mark.parametrize(("gyros", "severity", "said"), [(True, None, "gyros"), (False, 1, "")])
+def test_of_a_rest_whose_attitude_nobody_states_none_is_off(gyros, severity, said):
+    """Half of 0.5° is 900″: g (1 − cos 900″) = 0.093 mm/s² of the length of the mean force."""
+    values = tilting(1800.0)
+    if not gyros:
+        values[:, 3:] = np.nan
+    one = piece(values, stamps(N))
+    known = log(one, given(position_sigma=30 * ARC_SECOND, attitude_set=False))
+    (event,) = TableMoving().detect(one, known)
+    assert event.severity == severity
+    told = TableMoving().describe(event, "positions-03").consequence
+    assert "stated uncertainty" not in told and "biases" not in told and said in told
+    size, power = re.search(r"by (\S+)( × 10⁻⁵)? m/s²", told).groups()
+    assert float(size) * (1e-5 if power else 1.0) == pytest.approx(9.3e-5, rel=0.1)
