@@ -327,6 +327,10 @@ class _Linear:
             blocks.append(whitened(turn @ design, sigma, own))
         prior, prior_sigma, names = data.prior, data.prior_sigma, data.names
         known = {names[i]: float(prior_sigma[i]) for i in data.apart.tolist()}
+        # What no equation holds, as of a stop whose gyros are left out, keeps its prior.
+        held = {name for block in blocks for name in block.own}
+        silent = tuple(name for name in known if name not in held)
+        blocks.append(EquationBlock(np.zeros((0, len(shared) + len(silent) + 1)), silent, 0, 0.0))
         return remaining(
             *eliminate(blocks, len(shared), known),
             prior[shared],

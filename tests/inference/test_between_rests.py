@@ -61,6 +61,25 @@ def test_what_stands_still_turns_the_other_way():
 # ---- closure
 
 
+def test_a_rest_without_gyros_that_no_motion_joins_keeps_the_rest_as_it_is():
+    """Its horizontal rate is in no equation."""
+    imu = Imu(np.random.default_rng(3))
+    stops, passages = handled(imu, TWENTY_FOUR[:9], 20)
+    stops[0] = replace(stops[0], mean=np.full(3, np.nan))
+    alone = [passage for passage in passages if passage.first > 0]
+    whole, without = (
+        fit(own, motions, GIVEN)[0].estimate
+        for own, motions in (
+            (stops, alone),
+            (stops[1:], [replace(p, first=p.first - 1) for p in alone]),
+        )
+    )
+    gyros = slice(0, UNKNOWNS)
+    np.testing.assert_allclose(whole.sigma[gyros], without.sigma[gyros], rtol=0.2)
+    difference = whole.values[gyros] - without.values[gyros]
+    assert np.all(np.abs(difference) < without.sigma[gyros])
+
+
 @pytest.mark.slow
 def test_24_positions_by_hand_give_the_gyros_with_honest_sigmas():
     pulls, errors, misfits = [], [], []
