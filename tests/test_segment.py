@@ -403,7 +403,7 @@ def planned_rests(*seconds):
 
 
 def parts(binned, plan):
-    division = divide(binned, np.zeros(3), 0.01, 0.001)
+    division = divide(binned, np.zeros(3), 0.01, 0.001, swings=False)
     located = locate(division, manoeuvres=plan)
     places = [located.place(m) for m in plan]
     return [None if p is None else (located.stretches[p].first, located.stretches[p].after)
@@ -479,7 +479,7 @@ def test_what_a_table_swings_on_after_a_turn_is_one_block_and_no_rest():
         | {"angle": np.radians(220), "rate": np.radians(20)}
     )
     noise = 6 * np.radians(0.003) * np.sqrt(3)
-    division = divide(binned, np.zeros(3), np.radians(1), noise)
+    division = divide(binned, np.zeros(3), np.radians(1), noise, swings=True)
     located = locate(division, manoeuvres=[turn])
     made = turn_parts(binned, located.stretches, turn, located.matched, np.zeros(3), 0.4)
     phases = {part.phase: (step * part.first, step * part.after) for part in made}

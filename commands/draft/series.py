@@ -141,7 +141,7 @@ def divided(series: Series, level: tuple[Array, float] | None, *, known_units: b
         rest = np.full(3, np.nan)
         size = 1.0 if known_units else 9.8 / float(np.median(np.linalg.norm(forces, axis=1)))
         moves = above = moving(rates, forces * size, rest, 0.0)
-    found = with_slow_ends(stretches(moves, step, forces), above, step)
+    found = with_slow_ends(stretches(moves, step, forces), above, step, swings=False)
     return Divided(series, forces, rates, rest, _where_gravity_stays(found, forces))
 
 

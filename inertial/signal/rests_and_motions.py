@@ -13,7 +13,8 @@ MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is
 MIN_STRETCH_S = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
 MAX_KNOCK_TILT = np.radians(5.0)  # rad: an IMU that is knocked stands again as it stood
 BINS_BESIDE = 3  # whose mean is the direction of gravity before and after
-MAX_SLOW_END_S = 10.0  # s, at most, in which a motion begins or ends below what counts as motion
+MAX_SLOW_END_S = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
+MAX_SWING_S = 10.0  # s, the same of a table that swings on
 MIN_TURN_SHARE = 0.05  # of the rate of a turn: what is less is no part of it
 MAX_PAUSE_S = 0.3  # s, in which a table that swings on turns back
 MIN_SLOW_TURN = np.radians(0.05)  # rad, of a motion below what counts as motion
@@ -105,18 +106,19 @@ def _fell(stretch: BinStretch, forces: Array | None) -> bool:
 
 
 def with_slow_ends(
-    found: list[BinStretch], above_noise: Booleans, bin_seconds: float
+    found: list[BinStretch], above_noise: Booleans, bin_seconds: float, *, swings: bool
 ) -> list[BinStretch]:
     """The stretches, every motion with the bins beside it in which it begins and ends slowly.
 
-    A table that is moved smoothly stands nearly still for a second, and not yet quite; one that is
-    stopped swings on for some. Such bins are above the noise but for short breaks; no rest gives
-    more than a third of itself at each end.
+    What is moved smoothly stands nearly still for a second, and not yet quite: such bins are above
+    the noise without a break. No rest gives more than a quarter of itself at each end; on a table,
+    which `swings` on for some seconds and turns back in short breaks, a third.
     """
     moves = np.repeat([s.moves for s in found], [s.after - s.first for s in found])
-    most, pause = (round(seconds / bin_seconds) for seconds in (MAX_SLOW_END_S, MAX_PAUSE_S))
+    seconds, pause_s = (MAX_SWING_S, MAX_PAUSE_S) if swings else (MAX_SLOW_END_S, 0.0)
+    most, pause = round(seconds / bin_seconds), round(pause_s / bin_seconds)
     for stretch in found:
-        length = min(most, (stretch.after - stretch.first) // 3)
+        length = min(most, (stretch.after - stretch.first) // (3 if swings else 4))
         if stretch.moves or not length:
             continue
         if stretch.first > 0:

@@ -127,14 +127,19 @@ class Located:
         return agreements
 
 
-def divide(binned: Binned, level: Array, threshold: float, noise: float) -> Division:
-    """A window in which rates beyond the threshold, or else beyond the noise, count as motion."""
+def divide(
+    binned: Binned, level: Array, threshold: float, noise: float, *, swings: bool
+) -> Division:
+    """A window in which rates beyond the threshold, or else beyond the noise, count as motion.
+
+    `swings`: whether a table moves, which swings on when it is stopped.
+    """
     ways = []
     above_noise = moving(binned.rates, binned.forces, level, noise)
     for lowest in (threshold, noise):
         moves = moving(binned.rates, binned.forces, level, lowest)
         divided = stretches(moves, binned.bin_seconds, binned.forces)
-        divided = with_slow_ends(divided, above_noise, binned.bin_seconds)
+        divided = with_slow_ends(divided, above_noise, binned.bin_seconds, swings=swings)
         ways.append((divided, observe(binned, divided, level)))
     return Division(binned, ways)
 

@@ -168,7 +168,7 @@ def explained_of(
     rates = [abs(m.rate) for m in plan if m.rate]
     noise = MIN_MOTION_SIGMA * scatter
     threshold = max(MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE, noise)
-    ways = [divide(window, level, threshold, noise) for window in binned]
+    ways = [divide(window, level, threshold, noise, swings=bool(rates)) for window in binned]
     explained = explain(
         ways, earth_rate, accepted, with_sense=with_sense, gyros_confirmed=gyros_confirmed
     )
