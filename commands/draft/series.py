@@ -13,8 +13,8 @@ from inertial.signal.rests_and_motions import (
     BinStretch,
     moving,
     rest_level,
-    runs_of,
     stretches,
+    stretches_of,
     with_slow_ends,
 )
 
@@ -152,4 +152,4 @@ def _where_gravity_stays(found: Sequence[BinStretch], forces: Array) -> list[Bin
         own = forces[stretch.first : stretch.after]
         turns = np.linalg.norm(own.mean(axis=0)) < MIN_AS_LONG * np.linalg.norm(own, axis=1).mean()
         moves += [stretch.moves or bool(turns)] * len(own)
-    return runs_of(np.array(moves))
+    return stretches_of(np.array(moves))

@@ -87,12 +87,12 @@ def stretches(moves: Booleans, bin_seconds: float, forces: Array | None = None) 
     shortest = min(MIN_STRETCH_S / bin_seconds, 0.1 * len(moves))
     moves = moves.copy()
     for kind in (False, True):  # a pause within a motion first, then a knock within a rest
-        for stretch in runs_of(moves):
+        for stretch in stretches_of(moves):
             inner = stretch.first > 0 and stretch.after < len(moves)
             short = stretch.after - stretch.first < shortest
             if stretch.moves is kind and inner and short and not (kind and _fell(stretch, forces)):
                 moves[stretch.first : stretch.after] = not kind
-    return runs_of(moves)
+    return stretches_of(moves)
 
 
 def _fell(stretch: BinStretch, forces: Array | None) -> bool:
@@ -127,7 +127,7 @@ def with_slow_ends(
         if stretch.after < len(moves):
             behind = above_noise[stretch.after - length : stretch.after]
             moves[stretch.after - _length(behind[::-1], pause) : stretch.after] = True
-    return runs_of(moves)
+    return stretches_of(moves)
 
 
 def _length(true: Booleans, pause: int) -> int:
@@ -156,7 +156,7 @@ def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
     above = np.linalg.norm(away, axis=1) > MIN_MOTION_SIGMA * float(np.linalg.norm(scatter))
     turning = [
         run
-        for run in runs_of(above)
+        for run in stretches_of(above)
         if run.moves
         and run.first > 0
         and run.after < len(rates)
@@ -165,7 +165,7 @@ def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
     return (turning[0].first, turning[-1].after) if turning else None
 
 
-def runs_of(moves: Booleans) -> list[BinStretch]:
+def stretches_of(moves: Booleans) -> list[BinStretch]:
     """Bins, (k,), as stretches that move or rest."""
     edges = [0, *(np.flatnonzero(np.diff(moves)) + 1).tolist(), len(moves)]
     return [

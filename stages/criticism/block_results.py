@@ -242,10 +242,7 @@ class BlockResults:
             yield "cause_positions", row | {"position": position, "statistic": statistic}
 
     def _between_runs(self, cause: Cause) -> float:
-        """The largest difference between the biases of two runs that are determined; that of the
-
-        first is 0 here.
-        """
+        """The largest difference between the known biases of two runs, of the first 0 here."""
         others = [i for c in self.selection.named.causes if c is not cause for i in c.columns]
         chosen = list(dict.fromkeys([*cause.columns, *others]))
         evidence = self.selection.evidence
