@@ -118,6 +118,7 @@ def test_gyros_of_another_count_size_are_a_finding_and_stay_usable(tmp_path):
     assert np.abs(pulls(document, results)["gyro"]).max() < 4
 
 
+@pytest.mark.slow
 def test_degrees_that_are_stated_as_radians_are_told_by_what_no_hand_turns(tmp_path):
     """They were a count size to be multiplied by 1.64, with a result that was right for it."""
     document = sessions.session(3)

@@ -60,9 +60,8 @@ def test_a_ramp_of_one_gyro_is_no_walk_of_all(seed):
     assert results["criticism/random_walks"].empty
 
 
-@pytest.mark.parametrize(
-    ("sensor", "axis"), [("gyro", 1), pytest.param("accel", 2, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("sensor", "axis"), [("gyro", 1), ("accel", 2)])
 def test_a_scale_factor_that_drifts_beside_a_rising_temperature_may_be_either(sensor, axis):
     drift = [300 * (i == axis) for i in range(3)]
     document = rates(seed=3, effects={f"{sensor}_scale_ramp": {"k_ppm_h": drift}})
@@ -88,6 +87,7 @@ def test_an_asymmetry_is_no_ramp_of_an_unthinkable_size():
     assert results["criticism/members"]["effect"].tolist() == ["gyro_scale_asymmetry"]
 
 
+@pytest.mark.slow
 def test_a_walk_that_is_nearly_straight_is_in_the_class_of_the_ramp():
     """45 times less likely than a ramp of 14 sigma, as one in some 30 walks is."""
     document = stops(seed=15_013_000_799)

@@ -32,6 +32,7 @@ def test_a_structure_of_one_manoeuvre_is_said_to_be_there(channel, manoeuvre):
     assert (place["finding"], place["manoeuvre"]) == (finding["id"], manoeuvre)
 
 
+@pytest.mark.slow
 def test_a_structure_of_all_manoeuvres_is_in_no_few_of_them():
     results = swaying("accel_x", "all")
     finding = results["criticism/findings"].set_index("cause").loc["unknown_structure"]

@@ -102,6 +102,7 @@ def test_a_jump_that_may_have_been_in_either_of_two_pauses_leaves_a_scale_factor
     assert scale["sigma"] == pytest.approx(abs(jump) / 4 * 1e-6, rel=0.3)
 
 
+@pytest.mark.slow
 def test_what_no_reading_shows_of_a_shift_in_the_fixture_is_in_the_sigmas():
     """In its middle y-up shows no rotation about y; what is left after it takes that for others."""
     document = hidden_plans.stops(seed=11)

@@ -125,9 +125,8 @@ def test_nothing_is_named_where_nothing_is_hidden():
     assert not outcome.get("error") and false_names(outcome) == []
 
 
-@pytest.mark.parametrize(
-    "number", [pytest.param(OF_A_CLASS, marks=pytest.mark.slow), SHOWN_BY_ONE_PLAN]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [OF_A_CLASS, SHOWN_BY_ONE_PLAN])
 def test_a_single_effect_is_named_with_its_class(number):
     one = draw(number, size)
     assert one.kind == "single" and min(one.ratios.values()) > 9.9
