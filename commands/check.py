@@ -216,7 +216,7 @@ def _answers(each: ExplainedFindings) -> Iterator[tuple[str, str]]:
         if repair["state"] == "applied":
             yield _("Valid if"), repair["condition"]
     following = Counter(
-        in_words(other.cause) for other in each.consequences if other is not each.cause
+        in_words(other.cause) for other in each.consequences if other.id != each.cause.id
     )
     yield _("Therefore"), ", ".join(f"{name} ({n})" for name, n in following.most_common())
     yield _("In the laboratory"), row["action"]

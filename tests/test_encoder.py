@@ -1,6 +1,7 @@
 """The encoder's angle as the reference, on a campaign that hides what only an encoder shows."""
 
 from copy import deepcopy
+from types import SimpleNamespace
 
 import chain
 import numpy as np
@@ -10,6 +11,7 @@ from scipy.signal import lfilter
 
 import laboratory
 from inertial.campaign.records import Manoeuvre
+from inertial.detectors.encoder_against_plan import EncoderScale
 from inertial.estimation.encoder_angle import against_encoder, corrected, low_pass, ripple
 from stages.decode.table_angle import Continuous
 from stages.segment.encoder import by_encoder
@@ -35,9 +37,32 @@ def test_the_encoder_replaces_the_stated_angle_of_a_turn_that_stops_early(made):
     turn = made["segment/manoeuvres"].set_index("manoeuvre").loc["x-forward"]
     read = np.radians(358) + 3 * ARC_SECOND * np.sin(np.radians(12 * 358))  # the ripple is a motion
     assert turn["angle"] == pytest.approx(read * (1 + ENCODER), abs=0.1 * ARC_SECOND)
-    assert not len(made["segment/findings"])
     [fit] = made["gyroscope/fit"].query("method == 'joint'").to_dict("records")
     assert fit["p_value"] > 1e-3
+
+
+def test_an_encoder_and_a_plan_that_differ_by_one_ratio_ask_which_is_right(made):
+    """The turn that stops 2° early takes no part in it."""
+    [found] = made["segment/findings"].to_dict("records")
+    assert (found["cause"], found["sensor"], found["count"]) == ("encoder_scale", "gyro", 5)
+    assert found["size"] == pytest.approx(ENCODER, abs=3 * 2 * ARC_SECOND / (2 * np.pi))
+
+
+@pytest.mark.parametrize("spread", [0, 300])  # arcsec, by which turns stop beside the plan
+def test_turns_that_stop_anywhere_ask_nothing(spread):
+    stated = 2 * np.pi * np.array([1, -1, 1, -1, 1, -1])
+    for seed in range(50):
+        random = np.random.default_rng(seed)
+        beside = ARC_SECOND * (spread * random.standard_normal(6) + 2 * random.standard_normal(6))
+        recorded = SimpleNamespace(
+            angle=stated + beside,
+            stated_angle=stated,
+            angle_sigma=2 * ARC_SECOND,
+            found=np.ones(6, bool),
+            steady=np.zeros(6, bool),
+            name=list("abcdef"),
+        )
+        assert not list(EncoderScale().detect(recorded))
 
 
 def test_without_the_encoder_the_turn_that_stopped_early_is_told_by_the_others():

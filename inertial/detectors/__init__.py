@@ -10,6 +10,7 @@ from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
 from inertial.detectors.copied_channel import CopiedChannel
 from inertial.detectors.dead_axis import DeadAxis
+from inertial.detectors.encoder_against_plan import EncoderScale
 from inertial.detectors.gap import Gap
 from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.impact import Impact
@@ -113,6 +114,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     WrongDirection(),
     IncompleteTurn(),
     WrongRate(),
+    EncoderScale(),
     ShortRest(),
     RestsDivided(),
     TemperatureMisstated(),

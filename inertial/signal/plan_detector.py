@@ -101,7 +101,8 @@ class Recorded:
     name, log, do: what the plan calls it, where, and rest, turn or positions; steady: only its
     steady part is planned to be recorded.
     up, about: (m, 3), planned directions, NaN where none; angle, rate, seconds: (m,), planned, the
-    first two signed about `about`, NaN where none.
+    first two signed about `about`, NaN where none; by an encoder, where one is used, in place of
+    the stated_angle. angle_sigma: of the table, rad.
     found, complete, lost: (m,), the last where gaps and masks alone are why it is not complete;
     said: what was recorded of it, in words.
     force: (m, 3), mean of its rest, or of that before its turn; of one that is not found, of what
@@ -131,6 +132,8 @@ class Recorded:
     up: Array
     about: Array
     angle: Array
+    stated_angle: Array
+    angle_sigma: float
     rate: Array
     seconds: Array
     found: Booleans

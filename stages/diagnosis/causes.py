@@ -46,6 +46,7 @@ MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed sp
 SPOILS = 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
+ENCODER_SCALE = "encoder_scale"
 QUANTISATION = "quantisation"
 MOUNTING_SHIFT = "mounting_shift"  # turns the axes of both sensors, whichever shows it
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
@@ -315,8 +316,8 @@ class Evidence:
             return NONE, _moved_by_runs(cause.row["size"], own), None
         if cause.stage == MODEL:
             return self._cure_of_effect(cause, own)
-        if cause.cause == CLOCK and cause.sensor == "accel":
-            return NONE, _moved_by_clock(1e-6 * abs(cause.row["size"]), own), None
+        if (moves := _moved_by_measure(cause, own)) is not None:
+            return NONE, moves, None
         in_matrix = cause.stage == COUNTS and int(cause.row["severity"]) < SPOILS
         if in_matrix or has_own_error(cause) or _rounds(cause):  # or in the covariance
             return LEFT_OUT if in_matrix and cause.manoeuvre else MODELLED, None, None
@@ -414,20 +415,26 @@ def _moved_by_runs(difference: float, own: Sequence[SensorResult]) -> float | No
     return difference / 2 / min(sigmas) if sigmas else None
 
 
-def _moved_by_clock(error: float, own: Sequence[SensorResult]) -> float | None:
-    """By how many sigma specific forces that are off by a share move the parameters.
+def _moved_by_measure(cause: Hypothesis, own: Sequence[SensorResult]) -> float | None:
+    """By how many sigma a clock or an encoder that is off by a share moves the parameters.
 
-    One of two opposite rests reads g (1 + error): half of that goes into the scale factor, half of
+    Angles move the scale factors of the gyros. Of a clock by which increments are specific forces,
+    one of two opposite rests reads g (1 + error): half of that goes into the scale factor, half of
     g times it into the bias. This is the difference between the results for wrong stamps and
     for a wrong sampling interval.
     """
-    shifts = [
-        error / 2 * size / sigma
-        for result in own
-        for size, sigma in ((1.0, result.scale_sigma), (STANDARD_GRAVITY, result.bias_sigma))
-        if sigma
-    ]
-    return max(shifts, default=None)
+    size = abs(cause.row["size"] or 0.0)
+    if cause.cause == ENCODER_SCALE:
+        shares = [(size, result.scale_sigma) for result in own]
+    elif cause.cause == CLOCK and cause.sensor == "accel":
+        shares = [
+            (1e-6 * size / 2 * unit, sigma)
+            for result in own
+            for unit, sigma in ((1.0, result.scale_sigma), (STANDARD_GRAVITY, result.bias_sigma))
+        ]
+    else:
+        return None
+    return max((share / sigma for share, sigma in shares if sigma), default=None)
 
 
 def _gain(cause: Hypothesis, drop: float | None) -> str | None:

@@ -54,12 +54,16 @@ class Recording:
     performed : by manoeuvre
     segments, blocks : the tables; temperatures of blocks as recorded
     counts : rad, what a count of the gyros is, by log; NaN where not stated
+    stated_angles : rad, by manoeuvre, those of the plan before an encoder's took their place
+    angle_sigma : of the table, rad
     """
 
     performed: Mapping[str, Performed]
     segments: pd.DataFrame
     blocks: pd.DataFrame
     counts: Mapping[str, float]
+    stated_angles: Mapping[str, float | None]
+    angle_sigma: float
 
 
 def recorded_of(
@@ -95,6 +99,8 @@ def recorded_of(
         up=_vectors([m.up for m in plan]),
         about=_vectors([m.about for m in plan]),
         angle=_numbers([m.angle for m in plan]),
+        stated_angle=_numbers([recording.stated_angles.get(m.name) for m in plan]),
+        angle_sigma=recording.angle_sigma,
         rate=_numbers([m.rate for m in plan]),
         seconds=_numbers([m.seconds for m in plan]),
         found=np.array([d.found for d in done], bool),

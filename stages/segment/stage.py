@@ -128,7 +128,14 @@ def segment(
         plan,
         made.explained,
         made.undone,
-        Recording(performed, segments, blocks, _counts(by_name)["gyro"]),
+        Recording(
+            performed,
+            segments,
+            blocks,
+            _counts(by_name)["gyro"],
+            {m.name: m.angle for m in made.plan},
+            stated.angle_sigma,
+        ),
         stated.given,
         angle_tolerance,
     )
