@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -217,6 +218,35 @@ def test_what_is_wrong_as_a_whole_is_set_right_and_named_once(edits, repair, cau
     assert row["condition"] and row["sentence"]
     if repair != "gravity":
         assert row["fitting_before"] < row["fitting_after"] == row["observations"]
+
+
+@cache
+def spans_of_session() -> pd.DataFrame:
+    """When each manoeuvre of one log begins and ends, its rests with it."""
+    segments = recorded(in_one_log, until="segment")["segment/segments"]
+    return segments.groupby("manoeuvre").agg({"from_s": "min", "to_s": "max"})
+
+
+def spans_late(late: float) -> Edit:
+    """The plan states spans, by a clock that is ahead of that of the log."""
+    spans = {name: {"span": [a + late, b + late]} for name, a, b in spans_of_session().itertuples()}
+    return misstated(plan=spans)
+
+
+@pytest.mark.parametrize("late", [25.0, -8.0, 3000.0])
+def test_spans_by_another_clock_are_moved_and_asked_for(late):
+    results = recorded(in_one_log, spans_late(late))
+    assert np.abs(pulls(results)).max() < MAX_PULL
+    (finding,) = findings(results).to_dict("records")
+    assert (finding["cause"], finding["log"]) == ("wrong_spans", "session.asc")
+    assert finding["size"] == pytest.approx(late, abs=2.0)
+    assert list(repairs(results)["state"]) == ["applied"]
+    assert results["segment/performed"]["complete"].all()
+
+
+def test_spans_by_the_clock_of_the_log_stay_where_they_are():
+    results = recorded(in_one_log, spans_late(0.0), until="segment")
+    assert repairs(results).empty and findings(results).empty
 
 
 @pytest.mark.slow

@@ -179,6 +179,7 @@ _CAUSE_OF_REPAIR = {
     "sense_of_table": "wrong_direction",
     "exchanged_manoeuvres": "manoeuvre_swapped",
     "stated_rate": "wrong_rate",
+    "stated_spans": "wrong_spans",
 }
 
 

@@ -19,6 +19,7 @@ from inertial.detectors.manoeuvres_against_plan import (
     ManoeuvreSwapped,
     RestsDivided,
     ShortRest,
+    WrongSpans,
 )
 from inertial.detectors.misread_axes_and_signs import (
     AxisSwap,
@@ -109,6 +110,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     WrongScaleOfTurns(),
     WrongTimeUnitOfTurns(),
     SampleRateByTurns(),
+    WrongSpans(),
     ManoeuvreSwapped(),
     ManoeuvreMissing(),
     WrongDirection(),

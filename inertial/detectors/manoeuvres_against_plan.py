@@ -10,6 +10,7 @@ from inertial.signal.plan_detector import (
     Deviation,
     PlanDetector,
     Recorded,
+    SpansOff,
     Swapped,
     confirming,
     rivals_in_words,
@@ -233,6 +234,47 @@ def _if_used(recorded: Recorded, own: list[int]) -> str:
 
 
 MIN_DURATION_SHARE = 1 / 3  # of the planned time
+
+
+class WrongSpans(PlanDetector):
+    """Manoeuvres that a log holds one after another, all by one time beside their stated spans.
+
+    Cause: the spans were noted by another clock, or from another beginning, than the time of the
+    log. Cut by them, turns would be found in part or not at all, and rests would hold motion.
+    """
+
+    name = "wrong_spans"
+    source = "a table's protocol and a log have a clock each, unless one was set by the other"
+    unit = "s"
+    severity = 3
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        for each in recorded.spans_off:
+            number = len(each.names)
+            yield Deviation(None, each.log, each.late, count=number, facts=each, repair=each.repair)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        off: SpansOff = deviation.facts
+        late = _("late") if off.late > 0 else _("early")
+        time = fixed(abs(off.late), 1)
+        return Description(
+            _(
+                "{log}: the stated spans of all {count} manoeuvres are {time} s {late}, ± {open} "
+                "s; moved by that they hold what the plan has, in its order.",
+                log=off.log,
+                count=deviation.count,
+                time=time,
+                late=late,
+                open=fixed(off.open, 1),
+            ),
+            _("Cut as stated, turns would be there in part or not at all."),
+            _(
+                "The spans are moved, on this condition. Correct them by {change} s; or confirm it "
+                "by accept: [{repair}].",
+                change=fixed(-off.late, 1),
+                repair=off.repair,
+            ),
+        )
 
 
 class ShortRest(PlanDetector):

@@ -95,6 +95,20 @@ class Reversed:
 
 
 @dataclass(frozen=True)
+class SpansOff:
+    """Spans of a log that are all stated late by so many s, ± `open`, which is undone.
+
+    late: negative where they are early; names: the manoeuvres; repair: id of its repair.
+    """
+
+    log: str
+    late: float
+    open: float
+    names: Sequence[str]
+    repair: str = ""
+
+
+@dataclass(frozen=True)
 class Recorded:
     """The m manoeuvres of a plan, and what was recorded of each, SI and radians, body axes.
 
@@ -120,6 +134,7 @@ class Recorded:
     misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of
     the gyros that were undone, restated: rates of the plan. reversed: turns that are taken the
     other way. divided: the rests of each still stretch that only the plan divides.
+    spans_off: stated spans that are off by one time.
     tolerance: accepted difference of an angle or a rate from the plan's, 1.
     """
 
@@ -163,6 +178,7 @@ class Recorded:
     restated: Sequence[Rescaled] = ()
     reversed: Sequence[Reversed] = ()
     divided: Sequence[Sequence[str]] = ()
+    spans_off: Sequence[SpansOff] = ()
 
     @property
     def explained(self) -> set[str]:

@@ -17,7 +17,8 @@ REPAIRS = Table(
             "repair",
             TEXT,
             "",
-            "gravity, axes, signs, count_size, sense_of_table, exchanged_manoeuvres, stated_rate",
+            "gravity, axes, signs, count_size, sense_of_table, exchanged_manoeuvres, stated_rate,"
+            " stated_spans",
         ),
         Column(
             "state",

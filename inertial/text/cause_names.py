@@ -40,6 +40,7 @@ NAMES = {
     "temperature_misstated": _("temperature misstated"),
     "time_stands_still": _("time stands still"),
     "wrong_direction": _("wrong direction"),
+    "wrong_spans": _("spans by another clock"),
     "wrong_rate": _("wrong rate"),
     "unexplained": _("unexplained"),
     "position_scatter": _("positions that scatter by more than is stated of the table"),

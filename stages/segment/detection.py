@@ -21,6 +21,7 @@ from inertial.signal.plan_detector import (
     Recorded,
     Rescaled,
     Reversed,
+    SpansOff,
     Swapped,
 )
 from inertial.tables import STATIC_PHASES
@@ -44,6 +45,7 @@ class Undone:
     rescaled: Sequence[Rescaled] = ()
     restated: Sequence[Rescaled] = ()
     reversed: Sequence[Reversed] = ()
+    spans_off: Sequence[SpansOff] = ()
     rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
 
 
@@ -129,6 +131,7 @@ def recorded_of(
         rescaled=undone.rescaled,
         restated=undone.restated,
         reversed=undone.reversed,
+        spans_off=undone.spans_off,
         divided=[names for located in explained.located for names in located.divided],
     )
 

@@ -17,7 +17,7 @@ from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import Permutation, composed
 from inertial.signal.detector import Given
 from inertial.signal.misread_axes import determinant
-from inertial.signal.plan_detector import Misread, Rescaled, Reversed, Swapped
+from inertial.signal.plan_detector import Misread, Rescaled, Reversed, SpansOff, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from stages.segment.detection import Undone, in_order, misread_in, swapped_in
@@ -45,6 +45,8 @@ from stages.segment.steps import (
     exchange_step,
     sense_in_words,
     sense_step,
+    spans_in_words,
+    spans_step,
     where,
 )
 from stages.segment.windows import Binned
@@ -94,9 +96,18 @@ class SetRight:
     undone: Undone
 
 
-def set_right(binned: Sequence[Binned], plan: Sequence[Manoeuvre], basis: Basis) -> SetRight:
-    """Decide the repairs of a campaign, one kind after another, and apply them."""
+def set_right(
+    binned: Sequence[Binned],
+    plan: Sequence[Manoeuvre],
+    basis: Basis,
+    spans_off: Sequence[SpansOff] = (),
+) -> SetRight:
+    """Decide the repairs of a campaign, one kind after another, and apply them.
+
+    `spans_off`: what was found of the stated spans; where it is applied, the plan has them moved.
+    """
     campaign = _Campaign(list(binned), list(plan), basis)
+    campaign.tell_spans(spans_off)
     campaign.set_counts()
     campaign.set_axes_and_names()
     campaign.set_axes_by_gravity()
@@ -116,6 +127,7 @@ class _Campaign:
         self._rescaled: list[Rescaled] = []
         self._restated: list[Rescaled] = []
         self._reversed: list[Reversed] = []
+        self._spans_off: list[SpansOff] = []
         self._by_gravity = False  # whether gravity shows the gyros to be as they are named
         self._rivals: dict[str, list[tuple[str, str]]] = {}
         self._explain()
@@ -132,6 +144,7 @@ class _Campaign:
             self._rescaled,
             self._restated,
             self._reversed,
+            self._spans_off,
             self._rivals,
         )
         return SetRight(
@@ -169,6 +182,17 @@ class _Campaign:
             # Two may be planned in one stretch: each has a window of its own.
             own = [m for m in there if m.name in names] or there
             self._binned[k] = replace(one, window=replace(one.window, manoeuvres=own))
+
+    # ---- spans of the plan
+
+    def tell_spans(self, off: Sequence[SpansOff]) -> None:
+        """Spans by another clock than that of their log, which the plan has moved by now."""
+        for each in off:
+            step = spans_step(each.log)
+            state = self._basis.state(step)
+            row = _row(step, state, spans_in_words(each), log=each.log)
+            self._rows.append(row | {"value": 0.0, "stated": each.late, "unit": "s"})
+            self._spans_off.append(replace(each, repair=step.id))
 
     # ---- sizes of counts
 

@@ -14,6 +14,7 @@ from inertial.campaign.records import Manoeuvre, Performed, Row, clocks_of, mano
 from inertial.detectors import OF_PLAN, OF_RESTS
 from inertial.sensors import COLUMNS
 from inertial.signal.detector import Log
+from inertial.signal.plan_detector import SpansOff
 from inertial.tables import CHANNEL_REPAIRS, STATIC_PHASES
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
@@ -27,7 +28,8 @@ from stages.segment.located import AS_NAMED, Located
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
 from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken
-from stages.segment.windows import Bins, Selection, Window, windows
+from stages.segment.span_offsets import logs_in_doubt, moved_back, spans_off, whole_logs
+from stages.segment.windows import Binned, Bins, Selection, Window, windows
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,8 +92,6 @@ def segment(
     clock, ends = clocks_of(stated.clocks), records_of(stated.clocks)
     logs = stated.logs(examined.channel_statistics)
     plan = manoeuvres_of(manoeuvres)
-    bins = Bins(_windows(samples, plan, ends), clock, Masks(examined.masks))
-    read_once(samples, [bins])
     basis = repair.Basis(
         stated.earth_rate_up,
         stated.given,
@@ -101,7 +101,7 @@ def segment(
         repairs == "refuse",
         set(confirmed.accepted["repair"]),
     )
-    made = set_right(list(bins.binned()), plan, basis)
+    made = _set_right(samples, plan, basis, stated.clocks, Masks(examined.masks))
     confirmed.refuse_unknown(made.rows)
     read_as = Repairs(CHANNEL_REPAIRS.frame(made.channels))
     masked = Masks(examined.masks, read_as)
@@ -152,6 +152,34 @@ def segment(
         "findings": table_of([each.finding for each in detections]),
         "close_ups": close_ups(samples, index, detections),
     }
+
+
+def _set_right(
+    samples: Stream,
+    plan: Sequence[Manoeuvre],
+    basis: repair.Basis,
+    clocks: pd.DataFrame,
+    masks: Masks,
+) -> SetRight:
+    """The campaign with its repairs, from short means over the windows of its plan.
+
+    Where the stated spans of a log hold hardly a manoeuvre, over all of that log as well.
+    """
+    by_log, ends = clocks_of(clocks), records_of(clocks)
+
+    def binned(of: Sequence[Window]) -> list[Binned]:
+        bins = Bins(of, by_log, masks)
+        read_once(samples, [bins])
+        return list(bins.binned())
+
+    cut = binned(_windows(samples, plan, ends))
+    off: list[SpansOff] = []
+    if doubtful := logs_in_doubt(cut, plan, basis.earth_rate):
+        off = list(spans_off(binned(whole_logs(plan, ends, doubtful)), basis.earth_rate))
+    if off and not basis.refused:
+        plan = moved_back(plan, off)
+        cut = binned(_windows(samples, plan, ends))
+    return set_right(cut, plan, basis, off)
 
 
 def _windows(samples: Stream, plan: Sequence[Manoeuvre], ends: Mapping[str, int]) -> list[Window]:

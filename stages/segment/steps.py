@@ -9,9 +9,10 @@ from inertial.campaign.records import Manoeuvre
 from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.misread_axes import reads_in_words
-from inertial.signal.plan_detector import Misread, Swapped
+from inertial.signal.plan_detector import Misread, SpansOff, Swapped
 from inertial.tables import AXES
 from inertial.text.messages import _
+from inertial.text.numbers import fixed
 
 BY_GRAVITY = "by-gravity"  # the end of a repair's id that gravity shows, whatever the plan says
 ALL_REVERSED = Permutation((0, 1, 2), (-1, -1, -1))
@@ -73,6 +74,11 @@ def exchange_step(exchanged: Exchanged) -> Step:
     return Step(exchanged.id, "exchanged_manoeuvres", exchanged=exchanged)
 
 
+def spans_step(log: str) -> Step:
+    """That the spans of a log are stated by another clock."""
+    return Step(f"stated_spans/{log}", "stated_spans")
+
+
 def senses_by_axis(turns: Sequence[Manoeuvre]) -> Iterator[OtherSense]:
     """The turns about each body axis, about the negative ones, and all: each group once."""
     groups: dict[str, list[str]] = {axis: [] for axis in (*AXES, NEGATIVE, "")}
@@ -127,6 +133,16 @@ def exchange_in_words(swapped: Swapped) -> str:
         first=first,
         second=second,
     )
+
+
+def spans_in_words(off: SpansOff) -> str:
+    """That the spans of a log are late, or early, by one time."""
+    words = (
+        _("the spans stated in {log} are {time} s late by its clock")
+        if off.late > 0
+        else _("the spans stated in {log} are {time} s early by its clock")
+    )
+    return words.format(log=off.log, time=fixed(abs(off.late), 1))
 
 
 def sense_in_words(turns: OtherSense) -> str:
