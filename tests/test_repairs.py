@@ -220,6 +220,22 @@ def test_what_is_wrong_as_a_whole_is_set_right_and_named_once(edits, repair, cau
         assert row["fitting_before"] < row["fitting_after"] == row["observations"]
 
 
+def test_two_turns_the_other_way_may_be_two_in_the_other_order():
+    """Within one log the first of them fits the place of the second: one alone seems lost."""
+
+    def y_turns(document: Document) -> None:
+        turns = [one for one in document["campaign"]["plan"] if one["id"].startswith("y-")]
+        other = {one["id"]: {"degrees": -one["degrees"]} for one in turns if one["do"] == "turn"}
+        assert len(other) == 2
+        misstated(plan=other)(document)
+
+    results = recorded(in_one_log, y_turns)
+    assert np.abs(pulls(results)).max() < MAX_PULL
+    (row,) = repairs(results).reset_index().to_dict("records")
+    assert (row["id"], row["state"]) == ("sense_of_table/y", "applied")
+    assert "or they were done in the other order, which gives the same" in row["condition"]
+
+
 @cache
 def spans_of_session() -> pd.DataFrame:
     """When each manoeuvre of one log begins and ends, its rests with it."""

@@ -127,8 +127,9 @@ def explain(
         supposed = list(_suppositions(windows, case, with_sense, gyros_confirmed))
         best = max(supposed, key=lambda one: one.balance, default=case)
         gain = best.balance - case.balance
-        # Two that changed places within a log cost one of them at most: the other one fits.
-        whole = gain >= 2 and not best.lacking and best.exchanged != case.exchanged
+        # Two turns the other way, or in each other's place, of one log cost one of them at most:
+        # the other one fits.
+        whole = gain >= 2 and not best.lacking and _of_turns(best) != _of_turns(case)
         if gain < 2 * MIN_GAIN and not whole:
             break
         alike = [best, *(one for one in supposed if _rivals(case, best, one))]
@@ -173,6 +174,11 @@ def explained_of(
         ways, earth_rate, accepted, with_sense=with_sense, gyros_confirmed=gyros_confirmed
     )
     return level, explained
+
+
+def _of_turns(case: _Case) -> tuple[object, object]:
+    """What it supposes of names, places and the sense of turns."""
+    return case.exchanged, case.other_sense
 
 
 def _rivals(case: _Case, best: _Case, other: _Case) -> bool:

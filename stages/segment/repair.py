@@ -271,7 +271,8 @@ class _Campaign:
         if step.exchanged is not None:
             return exchange_in_words(in_order(step.exchanged, self._plan))
         assert step.turns is not None  # the last kind of step
-        return sense_in_words(step.turns)
+        own = [m for m in self._plan if m.name in step.turns.names]
+        return sense_in_words(step.turns, own)
 
     def _axes_everywhere(
         self, explained: ExplainedRecording, fitting: tuple[int, int, int]

@@ -145,10 +145,13 @@ def spans_in_words(off: SpansOff) -> str:
     return words.format(log=off.log, time=fixed(abs(off.late), 1))
 
 
-def sense_in_words(turns: OtherSense) -> str:
-    """That the plan, or the table, counts turns the other way."""
+def sense_in_words(turns: OtherSense, own: Sequence[Manoeuvre]) -> str:
+    """That the plan, or the table, counts its `own` turns the other way."""
     if turns.about == NEGATIVE:
         return _("the plan counts the turns about the negative axes as if about the positive ones")
     if turns.about:
-        return _("the plan counts the turns about {axis} the other way", axis=turns.about)
+        words = _("the plan counts the turns about {axis} the other way", axis=turns.about)
+        if len(own) == 2 and (own[0].angle or 0.0) + (own[1].angle or 0.0) == 0.0:
+            words += _(", or they were done in the other order, which gives the same result")
+        return words
     return _("the table counts all its turns the other way")
