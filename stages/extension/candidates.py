@@ -122,7 +122,7 @@ def sentence_of(
     else:
         sentence = INCREASED.format(effects=effects, growth=-validated.drop, expected=expected)
     if validated.walk_drop:
-        sentence += AGAINST_WALK.format(drop=validated.drop - validated.walk_drop)
+        sentence += AGAINST_WALK.format(drop=validated.drop_against_walk)
     if omitted := validated.not_counted:
         each = "it" if len(omitted) == 1 else "each"
         sentence += NOT_COUNTED.format(manoeuvres=", ".join(omitted), each=each)

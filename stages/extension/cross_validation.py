@@ -38,7 +38,8 @@ class Fold:
     """Some manoeuvres, predicted from the others.
 
     `kept`: of the information along the effect, by the training; `beta`: (k,), its estimate;
-    `drop` of chi-squared; `expected_drop`: the drop if the parameters were known exactly.
+    `drop` of chi-squared; `expected_drop`: the drop if the parameters were known exactly;
+    `untold`: chi-squared of the combinations that stay zero, as the training does not tell them.
     """
 
     manoeuvres: tuple[str, ...]
@@ -46,6 +47,7 @@ class Fold:
     beta: Array
     drop: float
     expected_drop: float
+    untold: float = 0.0
 
     @property
     def counts(self) -> bool:
@@ -82,6 +84,7 @@ def fold_of(
         beta,
         drop_of(beta, whole) - (0.0 if training is None else drop_of(beta, training)),
         float(held_out @ (along[used] ** 2 - 1)),
+        float(np.sum(along[~used] ** 2)),
     )
 
 
@@ -132,7 +135,25 @@ class CrossValidation:
     @property
     def walk_drop(self) -> float:
         """What a random walk of the joint model predicts better than a constant bias."""
-        return sum(self.whole.walk_drop - training.walk_drop for _, training in self.counted)
+        return sum(self._of_walk(training) for _, training in self.counted)
+
+    @property
+    def drop_against_walk(self) -> float:
+        """The drop against the joint model with its random walk, where it has one.
+
+        The walk predicts a manoeuvre from those beside it, so in a fold whose training leaves a
+        part of the effect untold it would be compared with nothing.
+        """
+        if not self.walk_drop:
+            return self.drop
+        return sum(
+            fold.drop - self._of_walk(training)
+            for fold, training in self.counted
+            if fold.untold < MIN_TRAINED_CHI_SQUARED
+        )
+
+    def _of_walk(self, training: SensorEvidence) -> float:
+        return self.whole.walk_drop - training.walk_drop
 
     @property
     def expected_drop(self) -> float:

@@ -344,7 +344,7 @@ class Extension:
                 {
                     **own,
                     "probability": candidate.probability,
-                    "drop": validated.drop - validated.walk_drop if validated else None,
+                    "drop": validated.drop_against_walk if validated else None,
                     "snr_squared": validated.expected_drop if validated else None,
                     "folds": len(validated.folds) if validated else None,
                     "counted": len(validated.counted) if validated else None,
