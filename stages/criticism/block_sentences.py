@@ -12,6 +12,7 @@ from inertial.model_selection.detection_limits import (
     VISIBLE,
     Visible,
 )
+from inertial.physics.drift import Jump
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
@@ -37,6 +38,11 @@ ACTION_WITHOUT_TERMS = _("Remove it at its origin. Readings are not compensated 
 ACTION_PER_RUN = _(
     "If the IMU was switched off in between, state power_cycle: true in the first manoeuvre after "
     "it: then each run has biases of its own, and the report says how well they repeat."
+)
+ACTION_OF_JUMP = _(
+    "If the IMU was switched off and on at that time, state power_cycle: true in the first "
+    "manoeuvre after it; else remove it at its origin, or compensate readings with its terms too, "
+    "which the export holds."
 )
 ACTION_WITHOUT_LAW = _(
     "Look at the residuals against time; record again with the IMU switched on long before."
@@ -153,6 +159,8 @@ def action_against(effect: Effect | None) -> str:
     """What to do against an effect; None: biases of each run."""
     if effect is None:
         return ACTION_PER_RUN
+    if isinstance(effect, Jump):
+        return ACTION_OF_JUMP
     if effect.terms:
         return ACTION
     return ACTION_WITHOUT_TERMS.format(stays=effect.stays)
