@@ -25,7 +25,6 @@ from inertial.physics.effect import (
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
-JUMP_TIMES = 72  # that are tried: a jump between two of them loses 2 to 4 % of its SNR²
 SETTLING_TIMES = (30.0, 3000.0)  # s, of τ: a shorter one is over before the first rest is
 SETTLING_CANDIDATES = 9  # of τ; between two of them the trace changes by a tenth
 THERMOMETER_ERROR = 1.0  # K beyond the coldest and the warmest mean; resolution of many
@@ -54,26 +53,6 @@ class Drift(Effect):
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         return reading.plus(self.sensor, np.outer(self.course(motion), values))
-
-
-class Jump(Drift):
-    """Reading += b H(t − t₀): a bias of each axis that jumps once; t₀ is scanned.
-
-    Unlike a drift it is instantaneous. A jump between logs is observable only if they share a
-    clock.
-    """
-
-    cause = _(
-        "stress is released, the electronics switch, or the instrument is knocked or restarted"
-    )
-    source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
-    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
-
-    def grid(self, motion: Motion) -> Array:
-        return evenly(motion, JUMP_TIMES)
-
-    def course(self, motion: Motion) -> Array:
-        return after(motion, self.value(motion))
 
 
 class WarmUp(Drift):

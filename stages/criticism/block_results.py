@@ -9,7 +9,6 @@ from inertial.arrays import Array
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
-from inertial.effects.mounting_shift import MountingShift
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.model_selection.cause import (
     FOUND,
@@ -22,6 +21,7 @@ from inertial.model_selection.cause import (
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
 from inertial.physics.effect import Effect
+from inertial.physics.setting_in import SettingIn
 from inertial.sensors import PLURAL, UNITS
 from inertial.tables import AXES
 from inertial.text.cause_names import in_words
@@ -235,8 +235,8 @@ class BlockResults:
         else:
             shares = cause.weights, cause.captured
             yield from member_rows(identifier, self.mount, cause.members, *shares)
-        if cause.effect == MountingShift.name:
-            return  # all that follow are off
+        if isinstance(effect, SettingIn):
+            return  # it concerns all that follow
         for rank, (position, statistic) in enumerate(positions, 1):
             row = {"finding": identifier, "mount": self.mount, "rank": rank}
             yield "cause_positions", row | {"position": position, "statistic": statistic}

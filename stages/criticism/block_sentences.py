@@ -12,8 +12,8 @@ from inertial.model_selection.detection_limits import (
     VISIBLE,
     Visible,
 )
-from inertial.physics.drift import Jump
 from inertial.physics.effect import Effect
+from inertial.physics.setting_in import Jump
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant

@@ -1,0 +1,78 @@
+"""Effects that are there from a moment on: of logs that share no clock, from one of them on."""
+
+from collections.abc import Mapping, Sequence
+from copy import copy
+from typing import ClassVar, Self
+
+import numpy as np
+
+from inertial.arrays import Array
+from inertial.physics.drift import Drift, after, evenly, without_clock
+from inertial.physics.effect import Effect, Scan
+from inertial.physics.motion import Motion
+from inertial.text.messages import _
+
+BETWEEN_LOGS = Scan(
+    "manoeuvre", "1", _("place in the plan of the first manoeuvre after it"), between=False
+)
+BY_LOG = _("it sets in between two logs, and a reading does not tell of which it is")
+JUMP_TIMES = 72  # that are tried: a jump between two of them loses 2 to 4 % of its SNR²
+
+
+class SettingIn(Effect):
+    """An effect that sets in at t₀, which is scanned, and stays.
+
+    Of logs that share no clock it is sought between one and the next, in the order of the plan.
+    """
+
+    times: ClassVar[int]  # that are tried
+
+    def blind(self, motion: Motion) -> str:
+        return "" if len(np.unique(motion.run)) > 1 else without_clock(motion)
+
+    def grid(self, motion: Motion) -> Array:
+        if not without_clock(motion):
+            return evenly(motion, self.times)
+        runs = np.unique(motion.run)
+        return np.unique([np.floor(motion.visit[motion.run == run].min()) for run in runs])[1:]
+
+    def candidates(self, motion: Motion) -> Sequence[Self]:
+        every = super().candidates(motion)
+        return [one.between_logs() for one in every] if without_clock(motion) else every
+
+    def as_named(self, values: Mapping[str, float]) -> Effect:
+        at = values.get(BETWEEN_LOGS.name)
+        return super().as_named(values) if at is None else self.fixed(at).between_logs()
+
+    def between_logs(self) -> Self:
+        """The effect with the place in the plan as what is scanned."""
+        effect = copy(self)
+        effect.scan = BETWEEN_LOGS  # type: ignore[misc]
+        if effect.terms:
+            effect.terms = ()  # type: ignore[misc]
+            effect.stays = BY_LOG  # type: ignore[misc]
+        return effect
+
+    def since(self, motion: Motion) -> Array:
+        """The share of each stretch after it has set in, (n,)."""
+        at = self.value(motion)
+        if without_clock(motion):
+            return np.asarray(motion.visit >= at, np.float64)
+        return after(motion, at)
+
+
+class Jump(SettingIn, Drift):
+    """Reading += b H(t − t₀): a bias of each axis that jumps once; t₀ is scanned.
+
+    Unlike a drift it is instantaneous.
+    """
+
+    cause = _(
+        "stress is released, the electronics switch, or the instrument is knocked or restarted"
+    )
+    source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
+    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
+    times = JUMP_TIMES
+
+    def course(self, motion: Motion) -> Array:
+        return self.since(motion)
