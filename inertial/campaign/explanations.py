@@ -100,6 +100,7 @@ MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
 # Faults that change all that a sensor reads: from what they spoil no effect is named. A wrong clock
 # changes it in proportion, so only effects in proportion to a rate, a force, or the earth's rate.
 SPOILING = (
+    "another_imu",
     "clock_scale",
     "wrong_time_unit",
     "wrong_scale_factor",

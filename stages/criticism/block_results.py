@@ -9,6 +9,7 @@ from inertial.arrays import Array
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
+from inertial.estimation.least_squares import whitening
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.model_selection.cause import (
     FOUND,
@@ -29,6 +30,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import quantity
 from stages.criticism import block_sentences as sentences
+from stages.criticism.another_imu import another_imu
 from stages.criticism.bias_drift import Walk, drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import Row, TableRow, finding_id, member_rows, parameter_row
@@ -105,6 +107,7 @@ class BlockResults:
         for number, cause in enumerate(self.selection.named.causes):
             if self._reported_in(cause) == finding_id(cause.effect, self.mount):
                 yield from self._finding(number, cause)
+        yield from another_imu(self.campaign, self.selection, self.mount)
 
     def _reported_in(self, cause: Cause) -> str:
         return self.lawless.finding(cause, self.selection.sensor(cause), self.mount)
@@ -242,14 +245,19 @@ class BlockResults:
             yield "cause_positions", row | {"position": position, "statistic": statistic}
 
     def _between_runs(self, cause: Cause) -> float:
-        """The largest difference between the known biases of two runs, of the first 0 here."""
+        """The largest difference between the biases of two runs, of the first 0 here.
+
+        Where only combinations of them are determined, it is that of the smallest biases which
+        have these: so large it is at least, or nearly.
+        """
         others = [i for c in self.selection.named.causes if c is not cause for i in c.columns]
         chosen = list(dict.fromkeys([*cause.columns, *others]))
         evidence = self.selection.evidence
-        values = evidence.total.estimate(chosen)[0][: len(cause.columns)]
+        known = whitening(evidence.total.information[np.ix_(chosen, chosen)], MIN_KNOWN_SHARE)
+        values = (known @ (known.T @ evidence.total.right[chosen]))[: len(cause.columns)]
         axes = np.array([evidence.names[i][-1] for i in cause.columns])
         runs = [np.append(values[axes == axis], 0.0) for axis in set(axes)]
-        return max(float(np.nanmax(own) - np.nanmin(own)) for own in runs)
+        return max(float(np.ptp(own)) for own in runs)
 
     def _long_runs(self) -> bool:
         """Whether a run holds so many manoeuvres that a scatter of these does not stand for it."""
