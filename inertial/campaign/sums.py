@@ -417,9 +417,9 @@ class ExtremesOver:
 def _samples(number: Array) -> Array:
     """The samples of each stretch from those of its channels, (k, 6).
 
-    Where the sensors come in rows of their own, a stretch may hold one row more of the
-    one than of the other; then it is half a sample more.
+    By the gyros where they have any: an angle is their sum over time, whatever the accelerometers
+    lack. Where the sensors come in rows of their own a stretch may hold one row more of the one
+    than of the other.
     """
-    by_sensor = np.column_stack([number[:, :3].max(axis=1), number[:, 3:].max(axis=1)])
-    recorded = np.maximum((by_sensor > 0).sum(axis=1), 1)
-    return np.asarray(by_sensor.sum(axis=1) / recorded)
+    accel, gyro = number[:, :3].max(axis=1), number[:, 3:].max(axis=1)
+    return np.asarray(np.where(gyro > 0, gyro, accel))

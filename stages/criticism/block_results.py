@@ -41,6 +41,7 @@ from stages.criticism.without_law import WithoutLaw
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
 WALK = "gyro_random_walk"
+MIN_KNOWN_SHARE = 1e-3  # of its information that a combination keeps beside all else, to be known
 MAX_SCATTERED = 2  # manoeuvres of a run, each with a bias of its own by their scatter
 WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 # Effects by the beginning of their names that change the readings of a sensor though not its own.
