@@ -130,7 +130,7 @@ class Linearisation:
 
 def static_equations(
     statics: Sequence[StaticRate],
-    matrix: Array,
+    point: Linearisation,
     earth: Earth,
     prior: Array,
     effects: Sequence[str],
@@ -140,7 +140,7 @@ def static_equations(
 
     Parameters
     ----------
-    matrix : M that the equations are linear about; `prior`: (s,), of the shared unknowns
+    point : that they are linear about; `prior`: (s,), of the shared unknowns
     effects : names of the last shared unknowns
     sigma : of the errors, to which those of the static positions are added
     """
@@ -159,20 +159,25 @@ def static_equations(
         if position.mark is not None or not position.is_known:
             own = horizontal_axes(position)
             axes[i, : len(own)] = own
-    # The product M · earth is linear about the present M; the earth is small, so is the error.
+    unknown = [turned_all(axes[:, i], abouts, angles) for i in (0, 1, 2)]
+    named = [horizontal_names(position) for position in positions]
+    sizes = np.zeros((n, 3))
+    for i, names in enumerate(named):
+        sizes[i, : len(names)] = [point.levels.get(name, 0.0) for name in names]
+    found = np.einsum("kn,nki->ni", sizes.T, np.stack(unknown, axis=1))
+    # The products M · earth are linear about the present M and horizontal rate of each position.
     rows = np.zeros((n, 3, s + 4))
     for row in range(3):
-        rows[:, row, 3 * row : 3 * row + 3] = known + earth.up * ups
+        rows[:, row, 3 * row : 3 * row + 3] = known + found + earth.up * ups
         rows[:, row, 9 + row] = 1.0
-    rows[:, :, UNKNOWNS] = ups @ matrix.T
+    rows[:, :, UNKNOWNS] = ups @ point.matrix.T
     rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
     for i in (0, 1, 2):
-        rows[:, :, s + i] = turned_all(axes[:, i], abouts, angles) @ matrix.T
+        rows[:, :, s + i] = unknown[i] @ point.matrix.T
     rows[:, :, -1] = np.array([st.mean for st in statics]) + rows[:, :, UNKNOWNS] * earth.up
-    rows[:, :, -1] -= rows[:, :, :s] @ prior
+    rows[:, :, -1] += found @ point.matrix.T - rows[:, :, :s] @ prior
     result = []
-    for i, static in enumerate(statics):
-        names = horizontal_names(static.position)
+    for i, (static, names) in enumerate(zip(statics, named, strict=True)):
         sigma |= dict.fromkeys(names, horizontal_sigma(static.position, earth))
         columns = np.r_[: s + len(names), s + 3]
         block = whitened(rows[i][:, columns], static.sigma, names)

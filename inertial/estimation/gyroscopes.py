@@ -172,7 +172,7 @@ class LinearisedEquations:
     def with_statics(self, statics: Sequence[StaticRate]) -> "LinearisedEquations":
         """The same with the equations of static positions, before the others."""
         prior, effects, sigma = self._prior, list(self.effect_sigma), dict(self.sigma)
-        static = static_equations(statics, self.point.matrix, self.earth, prior, effects, sigma)
+        static = static_equations(statics, self.point, self.earth, prior, effects, sigma)
         return replace(self, blocks=[*static, *self.blocks], sigma=sigma)
 
     def only(self, used: Sequence[bool]) -> "LinearisedEquations":
