@@ -95,6 +95,15 @@ def test_120_spikes_in_12_logs_are_one_finding_and_every_turn_is_whole():
     assert_true(results)
 
 
+def test_spikes_of_all_accelerometers_take_no_time_from_the_gyros():
+    """Of each turn they lose ten samples: counted for half, they were 270 sigma of a scale."""
+    at = {"log": "all", "lines": list(range(303, 1203, 83))[:10], "size_m_s2": 3.0}
+    spikes = [{"spikes": at | {"channel": f"accel_{axis}"}} for axis in "xyz"]
+    results = run(chain.short(faults=spikes), "gyroscope")
+    assert results["quality/findings"]["cause"].tolist() == ["spike"]
+    assert_true(results)
+
+
 def test_a_gap_in_a_turn_is_one_finding_with_the_angle_that_it_hides():
     document = chain.demo(faults=[{"lose": {"log": "x-forward.asc", "line": 2001, "samples": 640}}])
     wanted = ("x-up", "x-down", "x-forward", "x-backward")
