@@ -84,6 +84,7 @@ _KIND = {
 # What a recording shows of its circumstances: no fault; whether it matters follows from the model.
 CIRCUMSTANCES = ("temperature_drift", "rests_divided")
 MAX_WALK_P = 0.005  # as of all names together, of a random walk that is a cause and no mere noise
+ANOTHER_IMU = "another_imu"
 PER_RUN = ("accel_bias_per_log", "gyro_bias_per_log")
 MISFITS = ("unexplained", "unknown_structure")
 PERFORMANCE = (
@@ -100,7 +101,6 @@ MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
 # Faults that change all that a sensor reads: from what they spoil no effect is named. A wrong clock
 # changes it in proportion, so only effects in proportion to a rate, a force, or the earth's rate.
 SPOILING = (
-    "another_imu",
     "clock_scale",
     "wrong_time_unit",
     "wrong_scale_factor",
@@ -223,6 +223,8 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         return False
     if _rank(cause) > _rank(other) and _same_cause(cause, other) and same_sensor(cause, other):
         return True
+    if ANOTHER_IMU in (cause.cause, other.cause):  # whatever the model says is of two instruments
+        return cause.cause == ANOTHER_IMU and other.stage == MODEL
     if other.stage == POSITIONS:
         return _explains_position(cause, other)
     if other.cause == "bias_jump" and _without_law(cause):
@@ -232,15 +234,20 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
     if _uncertain(other):
         return _explains_uncertain(cause, other)
     if other.named:
-        if not _unresolved(cause) or not same_sensor(cause, other):
-            return False
-        if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
-            return other.cause == "oscillation" and _size(other) < _size(cause)
-        return cause.cause in SPOILING and (cause.cause != "clock_scale" or _in_proportion(other))
+        return _explains_named(cause, other)
     return any(
         cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
         for rule in EXPLANATIONS
     )
+
+
+def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
+    """The same of an effect that was named."""
+    if not _unresolved(cause) or not same_sensor(cause, other):
+        return False
+    if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
+        return other.cause == "oscillation" and _size(other) < _size(cause)
+    return cause.cause in SPOILING and (cause.cause != "clock_scale" or _in_proportion(other))
 
 
 def circumstances(findings: Sequence[Row]) -> Iterator[Row]:

@@ -7,6 +7,7 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
+from inertial.campaign.explanations import ANOTHER_IMU
 from inertial.model_selection.cause import FOUND
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Effect, Parameter, Reading, Truth
@@ -17,7 +18,6 @@ from inertial.text.messages import _
 from stages.criticism.finding_rows import TableRow, finding_id, snr_of
 from stages.criticism.selection import Selection
 
-ANOTHER_IMU = "another_imu"
 MIN_CAUSES = 3  # named; one or two are what they are named
 CAUSE_PRICE = 10.0  # of −2 log of the odds: one campaign in 150 has a cause of one kind
 MIN_GAIN = 10.0  # of −2 log of the evidence, over all that is named

@@ -46,6 +46,11 @@ ACTION = _(
     "State position_sigma_arcsec: {found} in the campaign file and run it again; see how the "
     "positions were set, and whether the table keeps what is stated of it."
 )
+ACTION_OF_ANOTHER_CAUSE = _(
+    "Look for its cause first: whether the IMU was mounted anew or shifted, or is another one in "
+    "some logs. A larger position_sigma_arcsec would only hide it."
+)
+MAX_PLAUSIBLE = 100.0  # of the stated sigma: no table scatters by so much more than is stated
 
 Selected = tuple[Selection, Tested, Campaign]
 
@@ -64,6 +69,11 @@ class PositionScatter:
     stated: float
     drops: Mapping[str, float]
     rivals: tuple[str, ...] = ()
+
+    @property
+    def _action(self) -> str:
+        plausible = self.value < MAX_PLAUSIBLE * self.stated and not self.rivals
+        return ACTION if plausible else ACTION_OF_ANOTHER_CAUSE
 
     def rows(self, mount: str) -> Iterator[TableRow]:
         """The finding, of the sensor that shows it, or of both."""
@@ -93,7 +103,7 @@ class PositionScatter:
                 "severity": 3,
                 "sentence": sentence,
                 "consequence": CONSEQUENCE,
-                "action": ACTION.format(found=found),
+                "action": self._action.format(found=found),
                 "verdict": "one_of_class" if self.rivals else "found",
             },
         )
