@@ -20,21 +20,28 @@ from pathlib import Path
 from commands.no_result import NoResult, no_results
 from inertial import tables
 from inertial.campaign.explanations import ExplainedFindings, circumstances, compete
-from inertial.campaign.hypotheses import Findings, hypotheses
-from inertial.campaign.records import Performed, performed_of, rows_of
+from inertial.campaign.hypotheses import MODEL, Findings, hypotheses
+from inertial.campaign.records import Performed, Row, performed_of, rows_of
 from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened, visible
-from stages.diagnosis.causes import INTERPOLATED, LEFT_OUT, MASKED, MAX_MOVE, NONE
+from stages.diagnosis.causes import (
+    INTERPOLATED,
+    LEFT_OUT,
+    MASKED,
+    MAX_HARMLESS_MOVE,
+    MAX_MOVE,
+    NONE,
+)
 from stages.diagnosis.declared import DECLARED
 
 LINE_WIDTH = 100
 MAX_FULL_CAUSES = 20  # of further ones only the names are listed
 APPLIED = ("applied", "confirmed")  # states of a repair
 WITHOUT_IT = (MASKED, INTERPOLATED, LEFT_OUT)  # cures
-SPOILING, WEAKENING = 3, 2  # severities
+SPOILING, WEAKENING, HARMLESS = 3, 2, 1  # severities
 SPOILS, SET_RIGHT, WEAKENS, GOOD_TO_KNOW = range(4)
 GRADES = {
     SPOILS: (_("spoils a result"), _("spoil a result")),
@@ -97,32 +104,55 @@ def recording_of(derived: Path) -> Recording:
         for row in rows_of(tables.ACCOUNTS.read(derived / "decode/accounts.parquet"))
         if row["kind"] == "refused"
     }
-    severities = _severities(derived / "diagnosis/causes.parquet")
-    explained = [_as_diagnosed(each, severities) for each in compete(list(hypotheses(findings)))]
+    diagnosed = _diagnosed(derived / "diagnosis/causes.parquet")
+    severities = _severities(diagnosed)
+    sentences = {row["id"]: row["sentence"] for row in diagnosed}
+    competed = compete(list(hypotheses(findings)))
+    explained = [_as_diagnosed(each, severities, sentences) for each in competed]
     causes = sorted(explained, key=_worst_first)
     remarks = [row["sentence"] for row in circumstances(rows_of(findings.segment_findings))]
     return Recording(list(no_results(derived)), causes, list(performed.values()), refused, remarks)
 
 
-def _severities(diagnosed: Path) -> dict[tuple[str, str], int]:
-    """By cause and sensor, how grave it is once cured, or not; empty without a diagnosis."""
-    rows = rows_of(tables.CAUSES.read(diagnosed)) if diagnosed.exists() else []
-    return {
-        (row["cause"], row["sensor"]): SPOILING if row["cure"] == NONE else WEAKENING
-        for row in rows
-        if row["cure"] in WITHOUT_IT or (row["cure"] == NONE and (row["moves"] or 0.0) > MAX_MOVE)
-    }
+def _diagnosed(path: Path) -> list[Row]:
+    """The causes of the diagnosis; none where there is none."""
+    return rows_of(tables.CAUSES.read(path)) if path.exists() else []
+
+
+def _severities(diagnosed: Sequence[Row]) -> dict[tuple[str, str], int]:
+    """By cause and sensor, how grave it is once cured, or not, where the diagnosis knows."""
+    severities: dict[tuple[str, str], int] = {}
+    for row in diagnosed:
+        if (severity := _severity(row)) is not None:
+            key = row["cause"], row["sensor"]
+            severities[key] = max(severity, severities.get(key, 0))
+    return severities
+
+
+def _severity(row: Row) -> int | None:
+    if row["cure"] in WITHOUT_IT:
+        return WEAKENING
+    if row["cure"] != NONE or row["moves"] is None:
+        return None
+    if row["moves"] > MAX_MOVE:
+        return SPOILING
+    return HARMLESS if row["moves"] < MAX_HARMLESS_MOVE else None
 
 
 def _as_diagnosed(
-    each: ExplainedFindings, severities: Mapping[tuple[str, str], int]
+    each: ExplainedFindings,
+    severities: Mapping[tuple[str, str], int],
+    sentences: Mapping[str, str],
 ) -> ExplainedFindings:
-    """The same, as grave as it is by the diagnosis: nothing spoils of which no record is used."""
+    """The same, as grave as it is by the diagnosis, which tells the sizes of the result."""
     row = each.cause.row
     severity = severities.get((row["cause"], row["sensor"]))
     if severity is None or (severity == WEAKENING and row["severity"] < SPOILING):
-        return each
-    return replace(each, cause=replace(each.cause, row={**row, "severity": severity}))
+        severity = row["severity"]
+    told = {**row, "severity": severity}
+    if each.cause.stage == MODEL:
+        told["sentence"] = sentences.get(f"diagnosis/{row['id']}", row["sentence"])
+    return replace(each, cause=replace(each.cause, row=told))
 
 
 def _worst_first(each: ExplainedFindings) -> tuple[int, float, int, str]:
