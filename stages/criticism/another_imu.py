@@ -67,9 +67,12 @@ class OfAnotherImu(Effect):
 
 def another_imu(campaign: Campaign, selection: Selection, mount: str) -> Iterator[TableRow]:
     """The finding, where one change of everything explains more than all that is named."""
-    motion, named = campaign.motion, selection.named.causes
+    named = selection.named.causes
+    if len(named) < MIN_CAUSES or not campaign.recorded:
+        return
+    motion = campaign.motion
     runs = np.unique(motion.run).tolist()
-    if len(named) < MIN_CAUSES or len(runs) < 2 or not without_clock(motion):
+    if len(runs) < 2 or not without_clock(motion):
         return
     parts = [*(runs[k:] for k in range(1, len(runs))), *([run] for run in runs[:-1])]
     changes = [OfAnotherImu(number, part) for number, part in enumerate(parts)]
