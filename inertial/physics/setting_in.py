@@ -15,6 +15,8 @@ from inertial.text.messages import _
 BETWEEN_LOGS = Scan(
     "manoeuvre", "1", _("place in the plan of the first manoeuvre after it"), between=False
 )
+SHORT_RUNS = _("Each log holds so little that a bias of its own in each would explain as much.")
+MIN_VISITS = 2  # of a log, on average: of more manoeuvres the bias of one of them is no scatter
 BY_LOG = _("it sets in between two logs, and a reading does not tell of which it is")
 JUMP_TIMES = 72  # that are tried: a jump between two of them loses 2 to 4 % of its SNR²
 
@@ -64,7 +66,8 @@ class SettingIn(Effect):
 class Jump(SettingIn, Drift):
     """Reading += b H(t − t₀): a bias of each axis that jumps once; t₀ is scanned.
 
-    Unlike a drift it is instantaneous.
+    Unlike a drift it is instantaneous. Where logs without a common clock hold a manoeuvre or two,
+    biases of each run, which are a scatter of the manoeuvres, stand for it.
     """
 
     cause = _(
@@ -74,5 +77,17 @@ class Jump(SettingIn, Drift):
     scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
     times = JUMP_TIMES
 
+    def blind(self, motion: Motion) -> str:
+        return super().blind(motion) or (SHORT_RUNS if _of_short_runs(motion) else "")
+
+    def grid(self, motion: Motion) -> Array:
+        return np.zeros(0) if _of_short_runs(motion) else super().grid(motion)
+
     def course(self, motion: Motion) -> Array:
         return self.since(motion)
+
+
+def _of_short_runs(motion: Motion) -> bool:
+    """Whether logs without a common clock hold hardly more than a manoeuvre each."""
+    runs, visits = (len(np.unique(each)) for each in (motion.run, motion.visit))
+    return bool(without_clock(motion)) and visits <= MIN_VISITS * runs
