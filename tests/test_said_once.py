@@ -68,6 +68,22 @@ def test_gyros_that_clip_at_a_planned_rate_are_one_finding_and_nothing_else():
     assert_true(results)
 
 
+def test_turns_whose_gyro_clips_show_no_other_rate_of_the_table():
+    """360° at 60 °/s, ramps of 2 s: at 53.7 °/s 26.5° are cut off, 7 %, and 10.5 % of the rate."""
+    clip = {"log": "all", "channel": "gyro_z", "limit_rad_s": float(np.radians(53.7))}
+    document = chain.short(faults=[{"clip": clip}])
+    for one in document["campaign"]["plan"]:
+        if one["do"] == "turn":
+            one["accel_deg_s2"] = 30
+    results = run(document, "segment")
+    (one,) = found(results)
+    assert (one["cause"], one["sensor"], one["axis"]) == ("saturation", "gyro", "z")
+    assert results["segment/repairs"].empty
+    turns = results["segment/performed"].set_index("manoeuvre").loc[["z-forward", "z-backward"]]
+    assert turns["found"].all()
+    assert turns["sentence"].str.contains("an angle that is not measured").all()
+
+
 @pytest.mark.parametrize("above", [0.0, pytest.param(1.0, marks=pytest.mark.slow), 2.0])
 def test_a_position_whose_noise_is_cut_off_gives_no_mean_of_that_channel(above):
     """`above`: scatters of a reading by which the limit lies above the mean reading."""

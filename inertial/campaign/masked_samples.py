@@ -231,6 +231,24 @@ class Masks:
             censored = self._repairs.channel_masks(log, censored)
         return Masked(lost & ~repeated, repeated, channels, censored)
 
+    def censored_between(self, log: str, edges: Integers) -> Booleans:
+        """Which channels have readings that are censored from edge to edge, (k, 6).
+
+        Parameters
+        ----------
+        edges : (k + 1,), records of the log, ascending
+        """
+        k = len(edges) - 1
+        begun = np.zeros((k + 1, len(CHANNELS)))
+        for kind, first, after in self._by_log.get(log, ()):
+            if kind.startswith(CENSORED):
+                channel = CHANNELS.index(kind.removeprefix(CENSORED))
+                starts = np.searchsorted(edges, first, side="right") - 1
+                np.add.at(begun[:, channel], np.clip(starts, 0, k), 1)
+                np.add.at(begun[:, channel], np.searchsorted(edges[:k], after), -1)
+        censored = np.cumsum(begun, axis=0)[:k] > 0
+        return censored if self._repairs is None else self._repairs.channel_masks(log, censored)
+
 
 @dataclass(frozen=True, eq=False)
 class MaskedSamples:

@@ -19,6 +19,7 @@ from inertial.signal.detector import (
     occurrences,
     read_in,
 )
+from inertial.signal.held_readings import readings_of
 from inertial.signal.rests_and_motions import MIN_HAND_RATE
 from inertial.signal.scatter import (
     BLOCK,
@@ -147,7 +148,7 @@ class DeadAxis(Detector):
     alike = "records"
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
-        channels = [_Channel.of(*_readings(piece, log, i)) for i in range(6)]
+        channels = [_Channel.of(*readings_of(piece, log, i)) for i in range(6)]
         noise = [channel.noise for channel in channels]
         loudest = max(np.nan_to_num(noise))
         for sensor, axes in COLUMNS.items():
@@ -313,16 +314,6 @@ class _Channel:
             alike = self.equal_elsewhere(k) ** self.length[k]
             chance[k] = tests[k] * max(_chance(self.length[k : k + 1], beside)[0], alike)
         return np.asarray(chance)
-
-
-def _readings(piece: Piece, log: Log, i: int) -> tuple[Integers, Array]:
-    """Where a channel is recorded, and what it reads there; of a slower sensor what is new."""
-    places, values = piece.channel(i)
-    if not log.held[i // 3] or not len(places):
-        return places, values
-    axes = piece.values[places, 3 * (i // 3) : 3 * (i // 3) + 3]
-    new = np.append(True, (np.diff(axes, axis=0) != 0).any(axis=1))
-    return places[new], values[new]
 
 
 def _turned(piece: Piece, axis: int, gyros: Sequence[_Channel]) -> FreeRotation:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inertial.arrays import Booleans
 from inertial.sensors import COLUMNS
 from inertial.signal.detector import (
     Description,
@@ -16,6 +17,7 @@ from inertial.signal.detector import (
     names_of_logs,
     read_in,
 )
+from inertial.signal.held_readings import new_readings
 from inertial.signal.phase_folding import Glitch
 from inertial.signal.runs import joined
 from inertial.text.messages import _
@@ -56,7 +58,7 @@ class PeriodicGlitch(Detector):
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for glitch in log.glitches:
             own = range(6)[COLUMNS[glitch.sensor]] if glitch.channel is None else [glitch.channel]
-            places = np.flatnonzero(glitch.falls_on(piece.time))
+            places = np.flatnonzero(_falls_on(glitch, piece, log))
             for start, end in joined(places, 0):
                 for i in own:
                     readings = piece.values[start:end, i]
@@ -104,6 +106,17 @@ class PeriodicGlitch(Detector):
                 period=f"{glitch.period:g}",
             ),
         )
+
+
+def _falls_on(glitch: Glitch, piece: Piece, log: Log) -> Booleans:
+    """Which records have a reading of this phase, (n,): a reading that is held is off again."""
+    off = glitch.falls_on(piece.time)
+    own = COLUMNS[glitch.sensor]
+    if not log.held[own.start // 3]:
+        return off
+    new = new_readings(piece.values[:, own])
+    number = np.cumsum(new)
+    return np.isin(number, number[off & new])
 
 
 def _or_shorter(glitch: Glitch) -> str:

@@ -35,8 +35,10 @@ MAX_VISIT_BREAK = 8  # readings at the most between two visits that are one
 MAX_RUN_SHARE = 0.5
 MIN_NOISE_COUNTS = 0.8  # counts of noise with that of rounding, which is up to 0.53 in increments
 OUTSIDE_READINGS = 64  # readings before the first visit and after the last, and between them
-# Readings before and after a visit, in which the channel must run up to the limit
+# Readings before and after a visit, at the least, in which the channel must run up to the limit
 SIDE_READINGS = 8
+# s, at the most: a motion that begins at 5 °/s² takes gravity away by 8 scatters of 1 mm/s² in it
+SIDE_S = 1.0
 # Scatters of those readings: so far away from the limit it must have been
 MIN_DISTANCE_SCATTER = 8.0
 MIN_LEAP_RATIO = 10.0  # times the changes beside a visit, by which readings leap to it and back
@@ -48,7 +50,12 @@ MAX_NOISE_SIGMA = 6.0  # from the median of steady readings: beyond it is the ra
 
 
 def pile_at_top(
-    values: Array, most: float, count: float, noise: float, width: int = 1
+    values: Array,
+    most: float,
+    count: float,
+    noise: float,
+    width: int = 1,
+    side: int = SIDE_READINGS,
 ) -> tuple[Integers, float]:
     """The readings at the largest value of a log, if they pile up there, and the chance of it.
 
@@ -67,6 +74,7 @@ def pile_at_top(
     noise : sigma of a reading
     width : how many of the largest values count as one: increments at a limit between two counts
         alternate, for what a count leaves over goes into the next
+    side : readings beside a visit, at the most, in which the channel runs up to the limit
     """
     none = np.empty(0, np.int64)
     if most == 0 or not np.isfinite(count):
@@ -89,7 +97,7 @@ def pile_at_top(
         chance = TESTS * _by_what_is_below(values, most, count, width)
     else:
         return none, 1.0  # the crests of an oscillation: one reading each
-    if chance < MAX_CHANCE and _runs_into(values, pile, noise):
+    if chance < MAX_CHANCE and _runs_into(values, pile, noise, side):
         return pile, chance
     return none, 1.0
 
@@ -175,24 +183,35 @@ def _by_what_is_below(values: Array, most: float, count: float, width: int = 1) 
     return chance
 
 
-def _runs_into(values: Array, pile: Integers, noise: float) -> bool:
-    """Whether a pile is noise cut off, or one visit that the channel runs into and out of."""
+def _runs_into(values: Array, pile: Integers, noise: float, most: int) -> bool:
+    """Whether a pile is noise cut off, or one visit that the channel runs into and out of.
+
+    `most`: readings in which it does so.
+    """
     start, end = max(joined(pile, 0), key=lambda run: run[1] - run[0])
     if end - start < max(MAX_RUN_SHARE * len(pile), SIDE_READINGS):
         return True
     start, end = max(joined(pile, MAX_VISIT_BREAK), key=lambda run: run[1] - run[0])
     sides = [
         np.abs(values[start] - side)
-        for side in (
-            values[max(start - SIDE_READINGS, 0) : start][::-1],
-            values[end : end + SIDE_READINGS],
-        )
-        if len(side) == SIDE_READINGS
+        for side in (values[max(start - most, 0) : start][::-1], values[end : end + most])
+        if len(side) >= SIDE_READINGS
     ]
-    return bool(sides) and all(
-        away[-1] > MIN_DISTANCE_SCATTER * noise and away[0] <= 2 * np.abs(np.diff(away)).max()
-        for away in sides
-    )
+    return bool(sides) and all(_runs_away(away, noise) for away in sides)
+
+
+def _runs_away(away: Array, noise: float) -> bool:
+    """Whether readings beside a visit, nearest first, leave the limit without a leap.
+
+    Parameters
+    ----------
+    away : (k,), by how much they differ from the limit
+    """
+    far = np.flatnonzero(away[SIDE_READINGS - 1 :] > MIN_DISTANCE_SCATTER * noise)
+    if not len(far):
+        return False
+    change = np.abs(np.diff(away[: SIDE_READINGS + int(far[0])]))
+    return bool(away[0] <= 2 * change.max())
 
 
 # Counts of converters
@@ -342,9 +361,11 @@ class Saturation(Detector):
 def _unstated(upward: Array, most: float, log: Log, i: int) -> tuple[Integers, float]:
     """The readings at a limit that nothing states, and the chance of them."""
     count = float(log.quantum[i])
-    pile, p_value = pile_at_top(upward, most, count, log.noise[i])
+    known = np.isfinite(log.step)
+    side = max(SIDE_READINGS, round(SIDE_S / log.step)) if known else SIDE_READINGS
+    pile, p_value = pile_at_top(upward, most, count, log.noise[i], side=side)
     if log.increments and (not len(pile) or _alternates(upward, most, count)):
-        wider, chance = pile_at_top(upward, most, count, log.noise[i], width=2)
+        wider, chance = pile_at_top(upward, most, count, log.noise[i], width=2, side=side)
         pile, p_value = (wider, chance) if len(wider) else (pile, p_value)
     if len(pile):
         return pile, p_value

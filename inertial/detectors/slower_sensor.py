@@ -7,6 +7,7 @@ import numpy as np
 
 from inertial.sensors import COLUMNS, PLURAL
 from inertial.signal.detector import Description, Detector, Event, Log
+from inertial.signal.held_readings import records_of_a_reading
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
@@ -44,7 +45,7 @@ class SlowerSensor(Detector):
         for sensors in [slower] if together else [[name] for name in slower]:
             share = float(log.held[list(COLUMNS).index(sensors[0])])
             yield log.event(
-                1 / (1 - share),
+                records_of_a_reading(share),
                 sensor=None if together else sensors[0],
                 facts=_Slower(tuple(sensors), log.step),
             )

@@ -347,7 +347,7 @@ def _turned(resting: Resting, own: list[Jump], tilt: Array, length: int) -> Agre
     size = float(np.sum(uneven**2))
     level = resting.level(rotation)
     wander = float(np.sum((rotation @ resting.up) ** 2))
-    white = float(np.max(resting.noise[COLUMNS["gyro"]])) * resting.interval
+    white = float(np.max(resting.mean_noise[COLUMNS["gyro"]])) * resting.interval
     wander = max(wander, k / 15 * white**2 * k * length)
     if size <= 0:
         return UNCONFIRMED

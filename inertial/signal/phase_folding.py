@@ -8,6 +8,7 @@ from scipy.stats import norm
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import CHANNELS, COLUMNS
+from inertial.signal.held_readings import new_readings, records_of_a_reading
 from inertial.signal.scatter import MAD_TO_SIGMA, MIN_RELATIVE_STEP, median
 
 PERIODS = (60.0, 30.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)  # s, each divides the first
@@ -24,12 +25,14 @@ MAX_SLOPE_SIGMA = 4.0  # from the readings before to those after: more is a ramp
 BEND_READINGS, MAX_BEND_SIGMA = 24, 4.0  # of those so far before and after, against those between
 MIN_LEVEL_SIGMA = 10.0  # of a reading of which a share can be off: less is in part its own noise
 MAX_INTERVALS = 1.5  # intervals between neighbours
+MAX_RECORDS_MISFIT = 0.1  # how far the records of a reading may be above a whole number
 MIN_OCCURRENCES = 4.0  # records at the phase
 FALSE_ALARM_LEVEL = 1e-4  # for all phases, periods and channels of a campaign
 COMPARABLE_SHARE = 0.5  # of its significance, by which other phases are off as well
 MIN_COMPARABLE_SIGMA = 3.0
 MAX_COMPARABLE = 0.1  # of the phases of a period; where more are, it oscillates
 LIKELIER = 9.0  # chi-squared by which a period must be better, for another to be excluded
+NOT_HELD = np.zeros(2)  # share of the records that repeat a reading, by sensor
 # What may be off: a channel by a constant, or all of a sensor by a share of what they read.
 SIGNATURES: tuple[tuple[str, int | None], ...] = (
     *((channel.partition("_")[0], i) for i, channel in enumerate(CHANNELS)),
@@ -102,29 +105,44 @@ class Folded:
         # Σ (w·y)² of what counts, Σ w², and the sum of the products of neighbours.
         self.squares = np.zeros((3, len(SIGNATURES)))
 
-    def add(self, time: Array, values: Array) -> None:
-        """Consecutive records: stamps, (n,), s, NaN where there is none; readings, (n, 6)."""
+    def add(self, time: Array, values: Array, held: Array = NOT_HELD) -> None:
+        """Consecutive records: stamps, (n,), s, NaN where there is none; readings, (n, 6).
+
+        held : share of the records in which the accelerometers, or the gyros, repeat a reading;
+            there only new ones are compared, for those held make steps of any motion
+        """
+        for number, own in enumerate(COLUMNS.values()):
+            readings, interval = values[:, own], self.interval
+            if held[number]:
+                new = new_readings(readings)
+                interval *= float(np.ceil(records_of_a_reading(held[number]) - MAX_RECORDS_MISFIT))
+                self._add(number, time[new], readings[new], interval)
+            else:
+                self._add(number, time, readings, interval)
+
+    def _add(self, number: int, time: Array, readings: Array, interval: float) -> None:
+        """The readings, (n, 3), of the accelerometers, 0, or the gyros, 1."""
         if len(time) < MIN_BLOCK or not self.places:
             return
-        off, level, sigma = _compared(np.ascontiguousarray(values.T))
-        near = np.abs(np.diff(time)) < MAX_INTERVALS * self.interval
+        off, level, sigma = _compared(np.ascontiguousarray(readings.T))
+        near = np.abs(np.diff(time)) < MAX_INTERVALS * interval
         beside = np.all(np.lib.stride_tricks.sliding_window_view(near, 2 * SIDE), axis=1)
         known = beside & np.isfinite(off) & (sigma > 0)
         off[~known], sigma[~known] = 0.0, np.inf
         y = off / sigma
         phase = phases(time[SIDE:-SIDE] + self.origin, self.places)
-        for i in range(len(CHANNELS)):
+        for i in range(3):
             there = known[i].astype(np.float64)
             counted = np.clip(y[i], -MAX_OFF_SIGMA, MAX_OFF_SIGMA)
-            self._take(i, phase, counted, there, there, off[i], there)
-        for number, own in enumerate(COLUMNS.values(), len(CHANNELS)):
-            s = np.where(known[own], level[own], 0.0) / sigma[own]
-            s[np.abs(s) < MIN_LEVEL_SIGMA] = 0.0
-            square, w2 = s**2, np.sum(np.abs(s), axis=0)
-            most = MAX_OFF_SIGMA * np.sqrt(w2)
-            along = np.sum(np.copysign(np.sqrt(np.abs(s)), s) * y[own], axis=0)
-            fraction = np.sum(s * y[own], axis=0), np.sum(square, axis=0)
-            self._take(number, phase, np.clip(along, -most, most), w2, w2**2, *fraction)
+            self._take(3 * number + i, phase, counted, there, there, off[i], there)
+        s = np.where(known, level, 0.0) / sigma
+        s[np.abs(s) < MIN_LEVEL_SIGMA] = 0.0
+        square, w2 = s**2, np.sum(np.abs(s), axis=0)
+        most = MAX_OFF_SIGMA * np.sqrt(w2)
+        along = np.sum(np.copysign(np.sqrt(np.abs(s)), s) * y, axis=0)
+        fraction = np.sum(s * y, axis=0), np.sum(square, axis=0)
+        counted = np.clip(along, -most, most)
+        self._take(len(CHANNELS) + number, phase, counted, w2, w2**2, *fraction)
 
     def _take(self, number: int, phase: Integers, counted: Array, w2: Array, *more: Array) -> None:
         self.squares[:, number] += counted @ counted, w2.sum(), counted[:-1] @ counted[1:]

@@ -9,6 +9,7 @@ from inertial.arrays import Array, Booleans, Integers
 from inertial.physics.motion import cross
 from inertial.sensors import CHANNELS, COLUMNS
 from inertial.signal.detector import Log, Piece
+from inertial.signal.held_readings import readings_of, records_of_a_reading
 from inertial.signal.scatter import MAD_TO_SIGMA, median
 from inertial.signal.steps import MAX_SIDE_S, Step, steps
 
@@ -42,7 +43,10 @@ UNCONFIRMED = Agreement(0.0, np.inf)
 
 
 class Resting:
-    """The n records of a rest; where a channel has no reading, it is interpolated.
+    """The n records of a rest; where a channel has no reading of its own, it is interpolated.
+
+    noise: (6,), of a reading; mean_noise: (6,), √n times that of the mean over n records, which
+    is more where a reading is held over several.
 
     When the case turns by a small angle φ, the force in its axes changes by f × φ. So the
     accelerometers show the two level components: φ = δf × u / g with u = f / g. About the
@@ -54,12 +58,14 @@ class Resting:
         self.interval = log.interval
         self.values = np.full((n, 6), np.nan)
         self.noise = np.full(6, np.nan)
+        self.records = np.repeat([records_of_a_reading(share) for share in log.held], 3)
         for i in range(6):
-            there, read = piece.channel(i)
-            if len(there) > max(MIN_RECORDED_SHARE * n, 2):
+            there, read = readings_of(piece, log, i)
+            if len(there) * self.records[i] > max(MIN_RECORDED_SHARE * n, 2):
                 self.values[:, i] = np.interp(np.arange(n), there, read)
                 scatter = MAD_TO_SIGMA / np.sqrt(2) * float(np.median(np.abs(np.diff(read))))
                 self.noise[i] = max(scatter, float(np.nan_to_num(log.quantum[i])) / np.sqrt(12))
+        self.mean_noise = self.noise * np.sqrt(self.records)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -97,7 +103,7 @@ class Resting:
 
     def tilt_noise(self, records: float) -> float:
         """Sigma of a tilt from means over so many records, rad."""
-        level = np.sqrt(np.sum(self.noise[:3] ** 2 * (1 - self.up**2)) / 2)
+        level = np.sqrt(np.sum(self.mean_noise[:3] ** 2 * (1 - self.up**2)) / 2)
         return float(level / np.linalg.norm(self._mean_force) / np.sqrt(records))
 
     def shifted(self, start: int, first: int, after: int, stop: int) -> tuple[Array, Agreement]:
@@ -118,7 +124,7 @@ class Resting:
             return tilt, UNCONFIRMED
         usual = (self.rate[earlier].mean(axis=0) + self.rate[later].mean(axis=0)) / 2
         turned = (self.rate[first:after] - usual).sum(axis=0) * self.interval
-        by_rate = float(np.max(self.noise[3:])) * self.interval * np.sqrt(after - first)
+        by_rate = float(np.max(self.mean_noise[3:])) * self.interval * np.sqrt(after - first)
         shortest = min(first - earlier.start, later.stop - after)
         sigma = float(np.hypot(by_rate, self.tilt_noise(shortest / 2)))
         return tilt, Agreement(float(turned @ tilt) / size**2, sigma / size)
@@ -152,7 +158,8 @@ class Resting:
         both = np.ones(k, bool)
         for sensor in ("accel", "gyro"):
             own = np.flatnonzero(np.isfinite(self.noise[COLUMNS[sensor]])) + COLUMNS[sensor].start
-            change = np.abs(np.diff(self.values[: k * length, own], axis=0))
+            # Between two readings a part of their change is in each record.
+            change = np.abs(np.diff(self.values[: k * length, own], axis=0)) * self.records[own]
             change = np.concatenate([change, change[-1:]]).reshape(k, length, len(own))
             usual = self.noise[own] * np.sqrt(2) / MAD_TO_SIGMA
             both &= (median(change, axis=1) > MIN_JERK_RATIO * usual).any(axis=1)
@@ -164,6 +171,7 @@ class Resting:
 FALSE_ALARM_LEVEL = 1e-4  # accepted for one false jump in a campaign
 CAMPAIGN_RESTS = 50  # of a campaign that pays for the search in each; a rest has six channels
 SHAKE_BLOCK_S = 0.1  # s of a block in which a knock is sought
+MIN_BLOCK_READINGS = 5  # of a sensor, in such a block
 # Sigmas by which two level axes must jump for a tilt, where no gyro confirms it
 MIN_TILT_SIGMA = 5.0
 
@@ -186,7 +194,7 @@ def jumps(piece: Piece, log: Log) -> tuple[Resting, list[Jump]]:
         return resting, []
     all_steps: list[tuple[int, Step]] = []
     for i in range(len(CHANNELS)):
-        there, read = piece.channel(i)
+        there, read = readings_of(piece, log, i)
         if not np.isfinite(resting.noise[i]):
             continue
         interval = log.interval * len(piece) / len(there)
@@ -201,12 +209,13 @@ def jumps(piece: Piece, log: Log) -> tuple[Resting, list[Jump]]:
 
 
 def shaken(resting: Resting) -> Booleans:
-    """Which blocks of 0.1 s jerk in both sensors, (k,)."""
+    """Which blocks of 0.1 s, or longer ones of five readings, jerk in both sensors, (k,)."""
     return resting.shaken(_length(resting))
 
 
 def _length(resting: Resting) -> int:
-    return max(round(SHAKE_BLOCK_S / resting.interval), 5)
+    readings = MIN_BLOCK_READINGS * float(resting.records.max())
+    return max(round(SHAKE_BLOCK_S / resting.interval), round(readings))
 
 
 def _in_records(step: Step, there: Integers) -> Step:

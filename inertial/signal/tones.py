@@ -7,8 +7,8 @@ import numpy as np
 from scipy.fft import rfft
 
 from inertial.arrays import Array, Integers
-from inertial.sensors import COLUMNS
 from inertial.signal.detector import Log, Piece
+from inertial.signal.held_readings import new_readings, records_of_a_reading
 from inertial.signal.spectral_lines import (
     HOP,
     PART_BINS,
@@ -113,9 +113,7 @@ class AxisLine:
 
 def tones(piece: Piece, log: Log) -> Iterator[Tone]:
     """The oscillations of a piece, each with the channel in which it is largest."""
-    triads = [
-        triad for axes in COLUMNS.values() for triad in _triads(piece, log.interval, axes.start)
-    ]
+    triads = [triad for sensor in range(2) for triad in _triads(piece, log, sensor)]
     remaining = [
         line for triad in triads for axis in range(3) for line in _axis_lines(triad, axis, log)
     ]
@@ -128,16 +126,26 @@ def tones(piece: Piece, log: Log) -> Iterator[Tone]:
         yield _tone(largest, alike, triads, log)
 
 
-def _triads(piece: Piece, interval: float, first_channel: int) -> Iterator[Triad]:
-    """The sensor with this first channel, if it is recorded, in even steps of time."""
+def _triads(piece: Piece, log: Log, sensor: int) -> Iterator[Triad]:
+    """The accelerometers, 0, or the gyros, 1, if they are recorded, in even steps of time.
+
+    Of a sensor that is slower than its log, readings alone: held from one to the next they have
+    images of every motion beside the frequency of the sensor, which are in step as a tone is.
+    """
+    first_channel = 3 * sensor
     readings = piece.values[:, first_channel : first_channel + 3]
     there = np.isfinite(readings)
     places = np.flatnonzero(there.any(axis=1))
-    steps = np.rint(np.diff(piece.time[places]) / interval)
+    records = records_of_a_reading(float(log.held[sensor]))
+    if records > 1:
+        places = places[new_readings(readings[places])]
+    steps = np.rint(np.diff(piece.time[places]) / log.interval)
     if not len(places) or not np.isfinite(steps).all():
         return
-    # Stamps may jitter; what counts is how many intervals lie between two readings.
-    steps = np.maximum(steps, 1.0)
+    # Stamps may jitter; what counts is how many intervals lie between two readings. One that is
+    # held for 1.25 records is there once or twice.
+    steps = np.floor((np.maximum(steps, 1.0) - 1) / records) + 1
+    interval = records * log.interval
     read = np.append(0.0, np.cumsum(steps))
     # A few that are missing are interpolated like single channels; a longer gap stays one.
     known = np.repeat(

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
+from inertial.arrays import Array
 from inertial.campaign.detection import Examination, ExaminationOfLogs
 from inertial.campaign.findings import detections_of, masks_of
 from inertial.campaign.log_properties import ChannelStatistics, Stated, windows_of
@@ -14,7 +15,7 @@ from inertial.campaign.records import rows_of
 from inertial.campaign.sums import Sums
 from inertial.detectors.repeated_records import Duplicate, HeldRecord
 from inertial.signal.detector import Log, Windows
-from inertial.signal.phase_folding import PERIODS, Folded, Glitch, glitches
+from inertial.signal.phase_folding import NOT_HELD, PERIODS, Folded, Glitch, glitches
 from inertial.tables import CHANNELS
 from inertial.tables.parquet import Stream
 
@@ -39,17 +40,25 @@ def properties(samples: Stream, stated: Stated) -> tuple[dict[str, Log], pd.Data
 def _passed(
     samples: Stream, stated: Stated, masks: Masks | None
 ) -> tuple[dict[str, Log], ChannelStatistics]:
-    """One pass over the samples, without what is masked of them."""
+    """Of the samples without what is masked of them; one pass, where no sensor is slower."""
     statistics, sums = ChannelStatistics(), windows_of(stated.clocks)
-    folded = _FoldedClocks(stated.clocks)
-    accumulators: list[Accumulator] = [statistics, sums, folded]
-    if masks is not None:
-        accumulators = [_Unmasked(each, masks) for each in accumulators]
-    read_once(samples, accumulators)
+    folded = _FoldedClocks(stated.clocks, {})
+    _read(samples, [statistics, sums, folded], masks)
     made = stated.logs(statistics.table(), _windows(sums.result(), masks is not None))
+    held = {name: log.held for name, log in made.items() if log.held.any()}
+    if held:  # which of the readings are new is known only now
+        folded = _FoldedClocks(stated.clocks, held)
+        _read(samples, [folded], masks)
     off = folded.glitches()
     logs = {name: replace(log, glitches=off.get(name, ())) for name, log in made.items()}
     return logs, statistics
+
+
+def _read(samples: Stream, accumulators: list[Accumulator], masks: Masks | None) -> None:
+    """The samples once, without what is masked of them."""
+    if masks is not None:
+        accumulators = [_Unmasked(each, masks) for each in accumulators]
+    read_once(samples, accumulators)
 
 
 def _windows(sums: Mapping[str, Sums], masked: bool) -> dict[str, Windows]:
@@ -82,12 +91,13 @@ class _Unmasked:
 class _FoldedClocks:
     """The records of all logs folded by the phase of their stamps, clock by clock.
 
-    Logs of a receiver share its clock, any other log has its own.
+    Logs of a receiver share its clock, any other log has its own. `held`: by log, as of `Log`.
     """
 
     columns = ("time", *CHANNELS)
 
-    def __init__(self, clocks: pd.DataFrame) -> None:
+    def __init__(self, clocks: pd.DataFrame, held: Mapping[str, Array]) -> None:
+        self._held = held
         self._clock: dict[str, str] = {}
         self._folded: dict[str, Folded] = {}
         for row in rows_of(clocks):
@@ -101,7 +111,8 @@ class _FoldedClocks:
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
         if batch.log in self._clock:
-            self._folded[self._clock[batch.log]].add(batch["time"], batch.readings)
+            folded = self._folded[self._clock[batch.log]]
+            folded.add(batch["time"], batch.readings, self._held.get(batch.log, NOT_HELD))
 
     def glitches(self) -> dict[str, tuple[Glitch, ...]]:
         """What is off at one phase of a period, by log."""

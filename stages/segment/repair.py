@@ -169,8 +169,11 @@ class _Campaign:
         repairs = Repairs(tables.CHANNEL_REPAIRS.frame(channels))
         self._channels += channels
         for k, one in enumerate(self._binned):
-            six = repairs.readings(one.window.log, np.hstack([one.forces, one.rates]))
-            self._binned[k] = replace(one, forces=six[:, :3], rates=six[:, 3:])
+            log, cut_off = one.window.log, one.censored
+            six = repairs.readings(log, np.hstack([one.forces, one.rates]))
+            if cut_off is not None:
+                cut_off = repairs.channel_masks(log, cut_off)
+            self._binned[k] = replace(one, forces=six[:, :3], rates=six[:, 3:], censored=cut_off)
 
     def _plan_again(self, plan: Sequence[Manoeuvre]) -> None:
         """Take another plan, whose manoeuvres may stand in other windows."""

@@ -213,11 +213,14 @@ def _forces(windows: Sequence[Located], gravity: float) -> Iterator[Multiple]:
 
 
 def _turns(windows: Sequence[Located], level: Array) -> Iterator[Multiple]:
-    """Every turn that was found, over its plan; where no rate is planned, its angle."""
+    """Every turn that was found, over its plan; where no rate is planned, its angle.
+
+    Where its gyro is cut off, its rate and angle are those of the range, not of the turn.
+    """
     for located in windows:
         for m in located.plan:
             place = located.place(m)
-            if m.do != "turn" or place is None:
+            if m.do != "turn" or place is None or _cut_off(located, place, m):
                 continue
             angle = np.nan
             if m.angle and m.recorded == "whole":
@@ -226,6 +229,12 @@ def _turns(windows: Sequence[Located], level: Array) -> Iterator[Multiple]:
             rate = _rate(located, place, m, level) if m.rate else angle
             if np.isfinite(rate):
                 yield Multiple(m.name, located.binned.window.log, rate, angle)
+
+
+def _cut_off(located: Located, place: int, m: Manoeuvre) -> bool:
+    """Whether a gyro about the axis of a turn is cut off in it."""
+    first, after = motion(located.binned, located.stretches, place)
+    return located.binned.cuts_off(m.axis, first, after)
 
 
 def _rate(located: Located, place: int, m: Manoeuvre, level: Array) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.arrays import Array, Integers
+from inertial.arrays import Array, Booleans, Integers
 from inertial.campaign.masked_samples import Batch, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.sums import MeansOver
@@ -41,7 +41,8 @@ class Binned:
 
     `edges`: (k + 1,), records; `rates`, `forces`: (k, 3), rad/s and m/s², NaN where not
     recorded; where a gyro is masked its rate is on a straight line; `seconds`: (k,), what the
-    means are sums over; `first_s`, `last_s`: (k,).
+    means are sums over; `first_s`, `last_s`: (k,); `censored`: (k, 6), where a channel is cut off
+    at the end of its range, None where none is.
     """
 
     window: Window
@@ -51,6 +52,7 @@ class Binned:
     seconds: Array
     first_s: Array
     last_s: Array
+    censored: Booleans | None = None
 
     @property
     def bins(self) -> int:
@@ -70,6 +72,12 @@ class Binned:
     def about(self, axis: Array, level: Array) -> Array:
         """Rate about an axis, (k,), rad/s; `level` is what the gyros read at rest."""
         return rate_about(axis, self.rates - level)
+
+    def cuts_off(self, axis: Array, first: int, after: int) -> bool:
+        """Whether a gyro that measures the rate about an axis is cut off in bins [first, after)."""
+        if self.censored is None:
+            return False
+        return bool((self.censored[first:after, 3:].any(axis=0) & (axis != 0)).any())
 
     def duration(self, first: int, after: int) -> float:
         """From the first record of the bins [first, after) to the last, s; 0 without time."""
@@ -139,6 +147,7 @@ class Bins(MeansOver):
         )
         self._windows = windows
         self._clocks = clocks
+        self._censoring = masks
 
     def binned(self) -> Iterator[Binned]:
         """The windows, once every batch was added."""
@@ -148,14 +157,16 @@ class Bins(MeansOver):
             part = slice(used[window.log], used[window.log] + len(first))
             used[window.log] += len(first)
             own = means[window.log]
+            edges = np.append(first, after[-1:])
             yield Binned(
                 window,
-                np.append(first, after[-1:]),
+                edges,
                 _straight(own.mean[part, 3:]),
                 own.mean[part, :3],
                 own.count[part] * self._clocks[window.log].step if len(first) else np.array([]),
                 own.first[part],
                 own.last[part],
+                self._censoring.censored_between(window.log, edges) if len(first) else None,
             )
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from on_a_table import BIAS, RATE, profile, recorded, rest, tumble, turn
-from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
+from on_a_table import BIAS, RATE, carried, profile, recorded, rest, tumble, turn
+from recorded_by_hand import COUNT, GRAVITY, INTERVAL, NOISE, assert_told
 
 from inertial.detectors.saturation import Saturation, _by_the_other_side, pile_at_top
 
@@ -72,6 +72,23 @@ def test_a_turn_cut_off_without_a_stated_limit_is_found(sigma):
     assert touched[0] - 30 <= events[0].first <= touched[0]
     assert touched[-1] < events[-1].after <= touched[-1] + 31
     assert sum(event.size for event in events) >= len(touched)
+
+
+@pytest.mark.parametrize("sigma", [-5, -10])
+def test_a_position_beyond_the_limit_that_is_come_to_slowly_is_found(sigma):
+    """Set upright from 30° at 5 °/s²: in 0.08 s beside a limit of 5 sigma less it gains 2 sigma."""
+    away = np.radians(5) / 2 * np.clip(np.abs(np.arange(6000) - 3000) - 2000, 0, 346) ** 2
+    truth = np.tile(BIAS, (6000, 1))
+    truth[:, 1] += GRAVITY * np.sin(away * INTERVAL**2)
+    truth[:, 2] += GRAVITY * np.cos(away * INTERVAL**2)
+    values = carried(truth, 5)
+    after, touched = clipped(values, 2, BIAS[2] + GRAVITY + sigma * NOISE[2])
+    (event,) = found(after)
+    assert event.channel == 2 and event.p_value < 1e-6
+    assert (event.first, event.after - 1) == pytest.approx((touched[0], touched[-1]), abs=30)
+    # A reading that stays the same while it stands was come to by none of that.
+    values[2000:4000, 2] = values[:, 2].max()
+    assert found(values) == []
 
 
 @pytest.mark.parametrize("sigma", [-5, -1, 0.5, 1.5])

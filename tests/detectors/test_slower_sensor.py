@@ -6,13 +6,18 @@ from types import SimpleNamespace
 import chain
 import numpy as np
 import pytest
-from recorded_by_hand import NOISE, piece, rest, seen, stamps
+from on_a_table import tumble
+from recorded_by_hand import INTERVAL, NOISE, piece, rest, seen, stamps
 
 import laboratory
 from inertial.campaign.log_properties import ChannelStatistics
 from inertial.detectors.dead_axis import DeadAxis
+from inertial.detectors.oscillation import Oscillation
+from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.repeated_records import HeldRecord
 from inertial.detectors.slower_sensor import SlowerSensor
+from inertial.detectors.table_moving import TableMoving
+from inertial.signal.phase_folding import Folded, glitches
 
 RECORDS = 20_000
 MEMS = np.array([0.04] * 3 + [1e-3] * 3)  # one count of a consumer MEMS: m/s², rad/s
@@ -92,6 +97,68 @@ def test_what_it_repeats_is_neither_held_nor_dead_but_a_longer_run_is():
     values[4000:4080] = values[4000]
     (event,) = seen(HeldRecord(), piece(values, stamps(RECORDS)), held=shares)
     assert (event.first, event.after) == (4001, 4080)
+
+
+# 25 to 80 of a hundred records are new.
+SHARES = [25, 50, 80]
+
+
+@pytest.mark.parametrize("readings", SHARES)
+def test_its_images_of_a_motion_are_no_oscillation_but_a_tone_is_one(readings):
+    """A tumble at 10 °/s, held, is in step beside the sensor's own frequency, as no noise is."""
+    shares = np.full(2, 1 - readings / 100)
+    tumbling = np.vstack([tumble(seed) for seed in range(3)])
+    of_record = np.floor(np.arange(len(tumbling)) * readings / 100).astype(int)
+    one = piece(tumbling[of_record], stamps(len(tumbling)))
+    assert not seen(Oscillation(), one, held=shares)
+    if readings == 50:
+        assert seen(Oscillation(), one)  # as if each record were a reading
+    time = np.arange(len(tumbling))[:, None] / readings
+    tone = np.sin(2 * np.pi * 7.3 * time) * 20 * NOISE * (np.arange(6) == 4)
+    one = piece((tumbling + tone)[of_record], stamps(len(tumbling)))
+    events = seen(Oscillation(), one, held=shares)
+    assert {event.channel for event in events} == {4}
+    for event in events:
+        assert event.facts.tone.frequency == pytest.approx(7.3, abs=0.01)
+        assert event.size == pytest.approx(20 * NOISE[4], rel=0.05)
+        assert event.facts.tone.rate == pytest.approx(readings)
+
+
+def folded(values: np.ndarray, time: np.ndarray, shares: np.ndarray):
+    sums = Folded(INTERVAL)
+    sums.add(time, values, shares)
+    return glitches({"clock": sums})["clock"]
+
+
+def test_its_steps_are_no_glitch_but_a_reading_that_is_off_is_masked_in_both_records():
+    shares, tumbling = np.array([0.5, 0.5]), np.vstack([tumble(seed) for seed in range(12)])
+    n = len(tumbling)
+    time = stamps(n)
+    values = held(tumbling, 50)
+    assert folded(values, time, shares) == ()
+    at = np.mod(np.arange(n) - 24, 500) == 0  # every 5 s, from 0.24 s on
+    tumbling[at, 3] += 40 * NOISE[3]
+    values = held(tumbling, 50)
+    (glitch,) = folded(values, time, shares)
+    assert (glitch.channel, glitch.period) == (3, 5.0)
+    assert glitch.phase == pytest.approx(0.24)
+    assert glitch.size == pytest.approx(40 * NOISE[3], rel=0.05)
+    events = seen(PeriodicGlitch(), piece(values, time), held=shares, glitches=(glitch,))
+    assert [event.first for event in events] == np.flatnonzero(at).tolist()
+    assert {event.after - event.first for event in events} == {2}
+
+
+@pytest.mark.parametrize("readings", SHARES)
+def test_a_rest_with_it_is_still_and_a_knock_in_it_is_one(readings):
+    """The changes from record to record are zero where a reading is held, and no noise."""
+    shares, values = np.full(2, 1 - readings / 100), rest(6000)
+    assert not seen(TableMoving(), piece(held(values, readings), stamps(6000)), held=shares)
+    random = np.random.default_rng(8)
+    values[3000:3050] += 30 * NOISE * random.standard_normal((50, 6))
+    one = piece(held(values, readings), stamps(6000))
+    (event,) = seen(TableMoving(), one, held=shares)
+    assert event.facts.motion.kind == "knock"
+    assert abs(event.first - 3000) <= 20 and abs(event.after - 3050) <= 20
 
 
 def test_a_campaign_with_it_is_calibrated_as_well_as_its_readings_allow():
