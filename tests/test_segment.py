@@ -9,7 +9,7 @@ import pytest
 
 import laboratory
 from inertial.campaign.records import Manoeuvre
-from inertial.signal.rests_and_motions import BinStretch, slow_motion
+from inertial.signal.rests_and_motions import BinStretch, slow_motion, steady_part
 from stages.segment import windows
 from stages.segment.located import divide, locate
 from stages.segment.matching import Observation, match, rest_part, turn_parts
@@ -322,6 +322,63 @@ def test_a_masked_tail_is_not_what_the_gyros_read_at_rest():
     one = windows.Binned(window, np.arange(501), rates, forces, seconds, time, time)
     level, _explained = explained_of([one], [], 0.0)
     assert level == pytest.approx(bias, abs=1e-4)
+
+
+NOISE_OF_BIN = np.radians(1e-3)  # rad/s, of a mean over 0.1 s
+
+
+def turned_through(plateau_s: float, poles: np.ndarray, seed: int = 6):
+    """What a gyro shows of a turn at 24 °/s with ramps of 1 s, and the table's rate, in bins.
+
+    The gyro's low pass has these poles, 1/s, and gain 1: each a residue of its partial fractions.
+    """
+    fine, step = 100, 1e-3
+    rate = np.radians(24)
+    time = step * np.arange(round((plateau_s + 3) / step))
+    table = rate * np.clip(np.minimum(time, plateau_s + 2 - time), 0, 1)
+    shown = table.astype(complex) if not len(poles) else np.zeros(len(time), complex)
+    for pole in poles:
+        others = poles[poles != pole]
+        residue = np.prod(-poles) / np.prod(pole - others)
+        kept, state = np.exp(pole * step), 0j
+        for k, value in enumerate(table):
+            state = kept * state + residue * value * (kept - 1) / pole
+            shown[k] += state
+    noise = NOISE_OF_BIN * np.random.default_rng(seed).standard_normal(len(time) // fine)
+    return shown.real.reshape(-1, fine).mean(axis=1) + noise, rate
+
+
+# 1st order 2 Hz; 2nd order 4 Hz with a damping of 0.5, which rings.
+ONE_POLE = np.array([-2 * np.pi * 2 + 0j])
+TWO_POLES = 2 * np.pi * 4 * np.exp(1j * np.pi * np.array([2 / 3, -2 / 3]))
+
+
+@pytest.mark.parametrize("poles", [ONE_POLE, TWO_POLES], ids=["one pole", "two poles"])
+@pytest.mark.parametrize("plateau_s", [5.0, 15.0, 120.0])
+def test_a_rate_is_steady_once_the_gyro_has_settled(poles, plateau_s):
+    """Behind the ramp it lacks c exp(-t/τ): of 24 °/s² and 80 ms 1.9 °/s, in 0.6 s the noise."""
+    about, rate = turned_through(plateau_s, poles)
+    first, after = steady_part(about)
+    # Of a ramp of 1 s the fractions are residue/pole² exp(pole t) since it ended, at 1 s.
+    parts = [np.prod(-poles) / np.prod(p - poles[poles != p]) / p**2 for p in poles]
+    left = rate * np.abs(parts).sum() * np.exp(poles.real.max() * (0.1 * first - 1.0))
+    assert left < NOISE_OF_BIN
+    assert 0.1 * first < 1.0 + 1.3 and abs(after - 10 * (plateau_s + 1.0)) <= 1
+    assert (after - first) >= 7 * plateau_s
+
+
+@pytest.mark.parametrize("plateau_s", [2.0, 15.0])
+def test_a_turn_at_once_at_its_rate_is_steady_from_the_ramp_on(plateau_s):
+    about, _rate = turned_through(plateau_s, np.array([]))
+    first, after = steady_part(about)
+    assert abs(0.1 * first - 1.0) <= 0.11 and abs(0.1 * after - plateau_s - 1.0) <= 0.11
+
+
+def test_a_rate_that_does_not_settle_is_kept_whole():
+    """The drive drifts by 4 % of its rate all along: no settling explains that."""
+    about, _rate = turned_through(15.0, np.array([]))
+    first, after = steady_part(about * np.linspace(1.02, 0.98, len(about)))
+    assert abs(0.1 * first - 1.0) <= 0.11 and abs(0.1 * after - 16.0) <= 0.11
 
 
 MARKS = {"x": "yz", "y": "zx", "z": "xy"}

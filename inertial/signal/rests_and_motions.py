@@ -17,6 +17,9 @@ MAX_SLOW_END_S = 3.0  # s, at most, in which a motion begins or ends below what 
 MAX_SWING_S = 10.0  # s, the same of a table that swings on
 MIN_TURN_SHARE = 0.05  # of the rate of a turn: what is less is no part of it
 MAX_PAUSE_S = 0.3  # s, in which a table that swings on turns back
+MAX_SETTLED = 5.0  # scatters of bins from the plateau of a turn, within which a rate has settled
+SETTLED_BINS = 3  # one after another within it: what rings goes through it as well
+MAX_SETTLING_SHARE = 0.25  # of the plateau, that is left out while the rate settles
 MIN_SLOW_TURN = np.radians(0.05)  # rad, of a motion below what counts as motion
 # In m/s², change of the specific force that counts as motion where no gyro is recorded
 MIN_FORCE_CHANGE = 0.1
@@ -176,19 +179,31 @@ def stretches_of(moves: Booleans) -> list[BinStretch]:
 
 
 def steady_part(rate: Array) -> tuple[int, int]:
-    """The bins [first, after) of one turn in which the table keeps its rate.
+    """The bins [first, after) of one turn in which the table keeps its rate, and the gyro shows it.
+
+    A low pass of the gyro, or the drive, settles behind the ramp: rate = plateau (1 - c exp(-t/τ)).
+    From the ramp to where that is within the scatter of the bins about the plateau it takes some
+    time: in as much time again it becomes less by that factor once more. Where it is within it at
+    once, or never, nothing settles.
 
     Parameters
     ----------
     rate : (k,), rad/s about the axis of the turn, from start to stop
     """
     k = len(rate)
-    plateau = float(np.median(rate[k // 4 : max(k - k // 4, k // 4 + 1)]))
+    middle = rate[k // 4 : max(k - k // 4, k // 4 + 1)]
+    plateau = float(np.median(middle))
     reached = np.flatnonzero(np.abs(rate / plateau) > 0.97) if plateau else np.array([], int)
     if len(reached) < 3:
         return 0, k
     # One bin at each end may hold a part of the ramp.
-    return int(reached[0]) + 1, int(reached[-1])
+    first, after = int(reached[0]) + 1, int(reached[-1])
+    scatter = MAD_TO_SIGMA * float(np.median(np.abs(middle - plateau)))
+    longest = int((after - first) * MAX_SETTLING_SHARE)
+    near = np.abs(rate[first : first + longest + SETTLED_BINS] - plateau) <= MAX_SETTLED * scatter
+    settled = np.convolve(near, np.ones(SETTLED_BINS), "valid") == SETTLED_BINS
+    bins = int(np.argmax(settled)) if settled.any() else 0
+    return first + min(2 * bins + (bins > 0), longest), after
 
 
 def stopped(rate: Array) -> int:
