@@ -67,6 +67,12 @@ class SensorResult:
         return self._smallest(SCALE)
 
     @property
+    def scale_sigmas(self) -> dict[str, float]:
+        """The sigma of each scale factor that is determined, by the name of the parameter."""
+        rows = (row for row in self.chosen.rows if row["parameter"] in SCALE and row["sigma"])
+        return {row["parameter"]: float(row["sigma"]) for row in rows}
+
+    @property
     def bias_sigma(self) -> float | None:
         """The smallest sigma of a bias of the result."""
         return self._smallest(BIAS)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from inertial.campaign.hypotheses import MODEL
 from inertial.text.messages import _, plural
-from inertial.text.numbers import fixed
+from inertial.text.numbers import fixed, significant
 from stages.diagnosis.causes import (
     CURVE,
     INTERPOLATED,
@@ -37,6 +37,7 @@ LIMITS = {
     LEFT_OUT: _("left out"),
 }
 ICE_POINT = 273.15  # K
+MAX_SCALE_SIGMA = 0.01  # of a scale factor: what is known to no better is said of a usable result
 MOST_NAMES = 4  # of causes, or parameters, in a sentence
 
 
@@ -101,13 +102,27 @@ def verdict(
             sensors=sensors,
             causes=_names(own, _limit),
         )
-        return Verdict(WITHIN_LIMITS, sentence)
+        return Verdict(WITHIN_LIMITS, sentence + _coarse(result))
+    if coarse := _coarse(result):
+        return Verdict(WITHIN_LIMITS, _("{sensors}: usable.", sensors=sensors) + coarse)
     return Verdict(
         USABLE,
         _(
             "{sensors}: usable. No fault was detected; the report states the detection limits.",
             sensors=sensors,
         ),
+    )
+
+
+def _coarse(result: SensorResult) -> str:
+    """The scale factors that the recording hardly tells, as a sentence that follows another one."""
+    coarse = {name: sigma for name, sigma in result.scale_sigmas.items() if sigma > MAX_SCALE_SIGMA}
+    if not coarse:
+        return ""
+    return _(
+        " Known to {percent} % only: {names}.",
+        percent=significant(100 * max(coarse.values()), 2),
+        names=", ".join(sorted(coarse)),
     )
 
 
