@@ -206,9 +206,9 @@ def test_a_stage_without_a_fit_rests_on_those_behind_it(trace, data: Path) -> No
 
 
 def test_a_number_that_is_not_determined_says_why(trace) -> None:
-    said = trace("gyroscope/joint/cross_xy")
-    assert said.text.startswith("gyroscope/joint/cross_xy is not determined\n")
-    assert "add one of 360° about y" in said.text
+    said = trace("gyroscope/joint/scale_z")
+    assert said.text.startswith("gyroscope/joint/scale_z is not determined\n")
+    assert "add one of 360° about z" in said.text
 
 
 def test_an_unknown_number_lists_near_ones(trace) -> None:
