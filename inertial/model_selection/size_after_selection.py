@@ -35,6 +35,7 @@ BEYOND = 8.0  # of |z| above the threshold, where nothing is subtracted any more
 NODES, WEIGHTS = (np.array(each) for each in special.roots_sh_legendre(40))  # of 0 to 1
 MIN_CENTRE = 1e-6
 STEP = 1e-3  # of |z|, for a slope
+TINY = 1e-300  # of |z|², of an effect that is exactly zero
 
 
 @dataclass(frozen=True)
@@ -42,16 +43,15 @@ class Selected:
     """What having been selected changes in a least-squares estimate.
 
     `factor`: of the values; `along`, `across`: variance in the direction of the estimate, and
-    perpendicular to it, in units of that by least squares; `statistic`: drop of chi-squared.
+    perpendicular to it, in units of that by least squares.
     """
 
     factor: float
     along: float
     across: float
-    statistic: float
 
 
-NOT_SELECTED = Selected(1.0, 1.0, 1.0, np.inf)
+NOT_SELECTED = Selected(1.0, 1.0, 1.0)
 
 
 def selected(statistic: float, degrees: int, threshold: float) -> Selected:
@@ -74,7 +74,7 @@ def selected(statistic: float, degrees: int, threshold: float) -> Selected:
     centre = np.array(statistic - degrees)
     first, second = (_excess(centre, degrees + more, degrees, threshold) for more in (2, 4))
     curvature = first + centre * (second - first - first**2)
-    return Selected(float(factor), slope**2 * float(1 + curvature), float(factor), statistic)
+    return Selected(float(factor), slope**2 * float(1 + curvature), float(factor))
 
 
 def _excess(centre: Array, degrees: int, selected_by: int, threshold: float) -> Array:
@@ -106,7 +106,8 @@ def corrected(
 ) -> tuple[Array, Array]:
     """Estimates after selection, and their covariance; what is correlated moves along.
 
-    Each effect is taken as selected independently of the others.
+    One effect after the other, each beside what the others have moved by then: of effects that are
+    hard to distinguish the first takes the correction, and no variance falls below zero.
 
     Parameters
     ----------
@@ -114,17 +115,18 @@ def corrected(
     effects : of each the places of its parameters among the values
     """
     known = np.isfinite(values)
-    shift, change = np.zeros_like(values), np.zeros_like(covariance)
+    values, covariance = values.copy(), covariance.copy()
     for places, how in effects.items():
         own = [place for place in places if known[place]]
         if not own or how == NOT_SELECTED:
             continue
-        block, along = covariance[np.ix_(own, own)], values[own] / np.sqrt(how.statistic)
+        block, size = covariance[np.ix_(own, own)], values[own]
         follows = regressed(covariance[:, own], block)
-        shift += (how.factor - 1) * follows @ values[own]
+        along = size / np.sqrt(max(size @ regressed(size[None], block)[0], TINY))
         added = (how.across - 1) * block + (how.along - how.across) * np.outer(along, along)
-        change += follows @ added @ follows.T
-    return values + shift, covariance + change
+        values += (how.factor - 1) * follows @ size
+        covariance += follows @ added @ follows.T
+    return values, covariance
 
 
 def regressed(crossed: Array, block: Array) -> Array:

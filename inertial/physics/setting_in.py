@@ -35,8 +35,7 @@ class SettingIn(Effect):
     def grid(self, motion: Motion) -> Array:
         if not without_clock(motion):
             return evenly(motion, self.times)
-        runs = np.unique(motion.run)
-        return np.unique([np.floor(motion.visit[motion.run == run].min()) for run in runs])[1:]
+        return np.unique(np.floor(motion.visit))[1:]
 
     def candidates(self, motion: Motion) -> Sequence[Self]:
         every = super().candidates(motion)

@@ -8,6 +8,7 @@ from inertial.arrays import Array
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.explanations import ANOTHER_IMU
+from inertial.estimation.least_squares import EffectInformation
 from inertial.model_selection.cause import FOUND
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Effect, Parameter, Reading, Truth
@@ -21,6 +22,7 @@ from stages.criticism.selection import Selection
 MIN_CAUSES = 3  # named; one or two are what they are named
 CAUSE_PRICE = 10.0  # of −2 log of the odds: one campaign in 150 has a cause of one kind
 MIN_GAIN = 10.0  # of −2 log of the evidence, over all that is named
+PRIOR_SIZE = 30.0  # of a parameter, in its typical size
 TYPICAL_BIAS = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}
 TYPICAL_TERM = 1e-4  # of a scale factor or cross term
 
@@ -66,7 +68,10 @@ class OfAnotherImu(Effect):
 
 
 def another_imu(campaign: Campaign, selection: Selection, mount: str) -> Iterator[TableRow]:
-    """The finding, where one change of everything explains more than all that is named."""
+    """The finding, where one change of everything explains more than all that is named.
+
+    None of the sensors contradicts it.
+    """
     named = selection.named.causes
     if len(named) < MIN_CAUSES or not campaign.recorded:
         return
@@ -74,23 +79,28 @@ def another_imu(campaign: Campaign, selection: Selection, mount: str) -> Iterato
     runs = np.unique(motion.run).tolist()
     if len(runs) < 2 or not without_clock(motion):
         return
-    parts = [*(runs[k:] for k in range(1, len(runs))), *([run] for run in runs[:-1])]
+    alone = [[run] for run in runs[:-1]] if len(runs) > 2 else []
+    parts = [*(runs[k:] for k in range(1, len(runs))), *alone]
     changes = [OfAnotherImu(number, part) for number, part in enumerate(parts)]
     fitted = selection.fitted
-    equations = evidence(campaign, [*fitted, *changes]).total
-    place = {name: i for i, name in enumerate(equations.names)}
+    shown = evidence(campaign, [*fitted, *changes])
+    place = {name: i for i, name in enumerate(shown.names)}
 
-    def explained(effects: Collection[Effect]) -> tuple[float, int]:
-        return equations.drop([place[name] for one in effects for name in one.columns])
+    def weighed(effects: Collection[Effect], causes: int, by: EffectInformation) -> float:
+        """2 log of the evidence of effects whose parameters are normal, and of their number."""
+        own = [place[name] for one in effects for name in one.columns]
+        size = np.array([PRIOR_SIZE * p.typical for one in effects for p in one.parameters])
+        right = by.right[own] * size
+        given = np.eye(len(own)) + by.information[np.ix_(own, own)] * np.outer(size, size)
+        occam = float(np.linalg.slogdet(given)[1])
+        return float(right @ np.linalg.solve(given, right)) - occam - causes * CAUSE_PRICE
 
-    def weighed(effects: Collection[Effect], causes: int) -> float:
-        drop, degrees = explained(effects)
-        return drop - degrees * float(np.log(equations.degrees)) - causes * CAUSE_PRICE
-
-    best = max(changes, key=lambda change: weighed([change], 1))
-    if weighed([best], 1) - weighed(fitted, len(named)) < MIN_GAIN:
+    best = max(changes, key=lambda change: weighed([change], 1, shown.total))
+    gain = weighed([best], 1, shown.total) - weighed(fitted, len(named), shown.total)
+    contradicted = min(weighed([best], 0, sensor) for sensor in shown.sensors) < -MIN_GAIN
+    if gain < MIN_GAIN or contradicted:
         return
-    drop, degrees = explained([best])
+    drop, degrees = shown.total.drop([place[name] for name in best.columns])
     there = motion.visit[np.isin(motion.run, best.runs)]
     first, last = (campaign.planned[int(visit)] for visit in (there.min(), there.max()))
     yield (

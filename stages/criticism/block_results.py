@@ -34,6 +34,7 @@ from stages.criticism.another_imu import another_imu
 from stages.criticism.bias_drift import Walk, drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import Row, TableRow, finding_id, member_rows, parameter_row
+from stages.criticism.jump_not_testable import jumps_not_testable
 from stages.criticism.law_sentences import law_action
 from stages.criticism.selection import Selection
 from stages.criticism.without_law import WithoutLaw
@@ -109,6 +110,7 @@ class BlockResults:
             if self._reported_in(cause) == finding_id(cause.effect, self.mount):
                 yield from self._finding(number, cause)
         yield from another_imu(self.campaign, self.selection, self.mount)
+        yield from jumps_not_testable(self.selection, self.mount)
 
     def _reported_in(self, cause: Cause) -> str:
         return self.lawless.finding(cause, self.selection.sensor(cause), self.mount)

@@ -16,6 +16,7 @@ from inertial.campaign.explanations import (
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,
+    JUMP_NOT_TESTABLE,
     LAW,
     MODEL,
     ONE_OF_CLASS,
@@ -65,6 +66,7 @@ OWN_ERROR = _(
 )
 ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
 IN_COVARIANCE = _("The covariance of the result includes it.")
+NO_JUMP = _("The biases of the {sensors} did not change when those of the others did.")
 HARMLESS = _("Nothing need be done about it for this result.")
 
 
@@ -143,6 +145,8 @@ class Cause:
     @property
     def condition(self) -> str | None:
         """What must be true for the result to be right, where nobody has confirmed it."""
+        if self.main.cause == JUMP_NOT_TESTABLE:
+            return NO_JUMP.format(sensors=PLURAL[self.sensors[0]])
         repair = self.main.repair
         return repair["condition"] if repair is not None and repair["state"] == "applied" else None
 

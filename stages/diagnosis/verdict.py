@@ -36,6 +36,8 @@ LIMITS = {
     INTERPOLATED: _("interpolated"),
     LEFT_OUT: _("left out"),
 }
+IF_SET_RIGHT = _("{sensors}: {causes}. Set right; the result is valid on condition: {conditions}.")
+IF_ASSUMED = _("{sensors}: {causes}. The result is valid on condition: {conditions}.")
 ICE_POINT = 273.15  # K
 MAX_SCALE_SIGMA = 0.01  # of a scale factor: what is known to no better is said of a usable result
 MOST_NAMES = 4  # of causes, or parameters, in a sentence
@@ -89,8 +91,12 @@ def verdict(
     conditions = list(dict.fromkeys(cause.condition for cause in own if cause.condition))
     if conditions:
         unconfirmed = [cause for cause in own if cause.condition]
-        sentence = _(
-            "{sensors}: {causes}. Set right; the result is valid on condition: {conditions}.",
+        set_right = _(
+            "{sensors}: {causes}. Set right; the result is valid on condition: {conditions}."
+        )
+        assumed = _("{sensors}: {causes}. The result is valid on condition: {conditions}.")
+        applied = any(cause.cure == REPAIRED for cause in unconfirmed)
+        sentence = (set_right if applied else assumed).format(
             sensors=sensors,
             causes=_names(unconfirmed),
             conditions="; ".join(text.rstrip(".") for text in conditions),

@@ -49,8 +49,9 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         _("usable on condition"),
         "fair",
         _(
-            "Something was set right that nobody has confirmed. The result is valid if the "
-            "condition below holds; “accept” in the campaign file confirms it."
+            "Something was set right that nobody has confirmed, or the plan cannot show whether "
+            "something happened. The result is valid if the condition below holds; “accept” in the "
+            "campaign file confirms what was set right."
         ),
     ),
     "usable_within_limits": (

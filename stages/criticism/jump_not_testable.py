@@ -1,0 +1,60 @@
+"""A change of the biases of one sensor that the other may share unseen, for the plan hides it."""
+
+from collections.abc import Iterator
+
+from inertial.campaign.hypotheses import JUMP_NOT_TESTABLE
+from inertial.model_selection.cause import FOUND, ONE_OF_CLASS
+from inertial.sensors import PLURAL, SENSORS
+from inertial.text.messages import _
+from stages.criticism.finding_rows import TableRow, finding_id
+from stages.criticism.selection import Selection
+
+CHANGES = ("bias_jump", "bias_per_log")  # of a sensor, by the end of the effect's name
+
+SENTENCE = _(
+    "The biases of the {changing} change. Whether those of the {others} changed as well, this plan "
+    "cannot show: where the axes are up before the change and down after it, or no two positions "
+    "are in one log, it reads as bias, scale factors and cross terms."
+)
+CONSEQUENCE = _("If they did, about half of their change is in each parameter.")
+ACTION = _(
+    "Record all positions without a restart; or, with restarts, several positions in each log, "
+    "among them each axis up and down."
+)
+
+
+def jumps_not_testable(selection: Selection, mount: str) -> Iterator[TableRow]:
+    """The finding, where the other sensor shows less of the same change than this one."""
+    named = {
+        cause.effect: cause.value
+        for cause in selection.named.causes
+        if cause.verdict in (FOUND, ONE_OF_CLASS)
+    }
+    searched = {one.name: one for one in selection.searched}
+    total, labels = selection.evidence.total, selection.evidence.labels
+    for sensor, other in zip(SENSORS, SENSORS[::-1], strict=True):
+        changes = {f"{sensor}_{what}": f"{other}_{what}" for what in CHANGES}
+        if not named.keys().isdisjoint(changes.values()) or other not in labels:
+            continue
+        degrees = [
+            [total.drop(searched[name].candidates[named[own]])[1] for name in (own, same)]
+            for own, same in changes.items()
+            if own in named
+        ]
+        if any(of_other < of_own for of_own, of_other in degrees):
+            yield (
+                "findings",
+                {
+                    "id": finding_id(JUMP_NOT_TESTABLE, mount, other),
+                    "mount": mount,
+                    "cause": JUMP_NOT_TESTABLE,
+                    "sensor": other,
+                    "count": 1,
+                    "unit": "",
+                    "severity": 2,
+                    "sentence": SENTENCE.format(changing=PLURAL[sensor], others=PLURAL[other]),
+                    "consequence": CONSEQUENCE,
+                    "action": ACTION,
+                    "verdict": FOUND,
+                },
+            )
