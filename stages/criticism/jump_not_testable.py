@@ -31,13 +31,16 @@ def jumps_not_testable(selection: Selection, mount: str) -> Iterator[TableRow]:
         if cause.verdict in (FOUND, ONE_OF_CLASS)
     }
     searched = {one.name: one for one in selection.searched}
-    total, labels = selection.evidence.total, selection.evidence.labels
+    labels = selection.evidence.labels
     for sensor, other in zip(SENSORS, SENSORS[::-1], strict=True):
         changes = {f"{sensor}_{what}": f"{other}_{what}" for what in CHANGES}
         if not named.keys().isdisjoint(changes.values()) or other not in labels:
             continue
         degrees = [
-            [total.drop(searched[name].candidates[named[own]])[1] for name in (own, same)]
+            [
+                selection.evidence.total.drop(searched[name].candidates[named[own]])[1]
+                for name in (own, same)
+            ]
             for own, same in changes.items()
             if own in named
         ]
