@@ -31,7 +31,8 @@ class Stated:
     given : of all logs
     earth_rate_up : the upward component of the earth's rate at the site, rad/s
     clocks, ranges, imu_types : tables; of each log the type of IMU in its messages
-    angle_sigma : of the angle of a turn, rad
+    angle_sigma, rate_sigma : of the angle of a turn, rad, and of its rate, relative; the latter
+        NaN where it is not stated
     """
 
     given: Given
@@ -40,6 +41,7 @@ class Stated:
     ranges: pd.DataFrame
     imu_types: pd.DataFrame
     angle_sigma: float
+    rate_sigma: float
 
     def logs(
         self, statistics: pd.DataFrame, windows: Mapping[str, Windows] | None = None
@@ -67,7 +69,9 @@ def stated_by(
     given = given_by(campaign, known, count_sizes, clocks, gravity_repairs)
     quantities = known_of(known)
     up, sigma = quantities["earth_rate_up"].number, quantities["turn_angle"].scatter
-    return Stated(given, up, clocks, ranges, imu_types, sigma)
+    assumed = known.set_index("quantity")["assumed"]["turn_rate"]
+    rate_sigma = np.nan if assumed else quantities["turn_rate"].scatter
+    return Stated(given, up, clocks, ranges, imu_types, sigma, rate_sigma)
 
 
 def given_by(

@@ -103,8 +103,7 @@ class ClockScale(Detector):
                 start,
                 end,
                 away / (1 + reference) * 1e6,
-                # Forces are increments by the interval; angles are sums, in which it is not.
-                sensor="accel" if whole and log.recorded_on is not None else None,
+                sensor=_concerned(log) if whole else None,
                 facts=_Facts(
                     here=log.interval * (1 + part.mean),
                     usual=log.interval * (1 + reference),
@@ -141,7 +140,9 @@ class ClockScale(Detector):
             increments=all(log.recorded_on is not None for log in logs.values()),
             evidence=next(iter(evidence.values())) if len(evidence) == 1 else StampEvidence(),
         )
-        yield Event(0, 0, 0, np.nan, np.nan, away * 1e6, facts=facts)
+        concerned = {_concerned(log) for log in logs.values()}
+        sensor = concerned.pop() if len(concerned) == 1 else None
+        yield Event(0, 0, 0, np.nan, np.nan, away * 1e6, sensor=sensor, facts=facts)
 
     def describe(self, event: Event, name: str) -> Description:
         facts = event.facts
@@ -193,6 +194,14 @@ class ClockScale(Detector):
                 "logger and IMU."
             ),
         )
+
+
+def _concerned(log: Log) -> str:
+    """The sensor whose readings the interval is in.
+
+    Forces by increments, whose angles are sums without it; else angles, which are sums of rates.
+    """
+    return "gyro" if log.recorded_on is None else "accel"
 
 
 def _intervals(stamps: Stamps, interval: float) -> tuple[Integers, Array]:

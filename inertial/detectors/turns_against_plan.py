@@ -61,6 +61,7 @@ class WrongTimeUnitOfTurns(PlanDetector):
 
 
 MIN_ALIKE_TURNS = 3  # that show another rate of the samples: two may be cut off alike
+MIN_RATE_SIGMAS = 5.0  # of the table's rate, and of the scatter of its turns
 MAX_TIME_SPREAD = 0.02  # of the ratios of the times of turns to their plan, and of their rates
 
 
@@ -81,8 +82,23 @@ def time_ratio(recorded: Recorded) -> float | None:
     return ratio if as_planned and alike and off else None
 
 
+def slight_time_ratio(recorded: Recorded) -> float | None:
+    """The same where it is small, and beyond what the table's rate is uncertain by."""
+    rate, angle = turn_ratios(recorded)
+    longer = (angle / rate)[np.isfinite(rate) & np.isfinite(angle)]
+    if len(longer) < MIN_ALIKE_TURNS or not np.isfinite(recorded.rate_sigma):
+        return None
+    ratio = float(np.median(longer))
+    sigma = np.hypot(recorded.rate_sigma, np.std(longer))
+    within = abs(ratio - 1) <= recorded.tolerance
+    return ratio if within and abs(ratio - 1) > MIN_RATE_SIGMAS * sigma else None
+
+
 class SampleRateByTurns(PlanDetector):
     """All turns go at the planned rate, and by one ratio farther, or less far, than planned.
+
+    By the reading of a gyro both ratios are off by its scale factor, so what counts is one by the
+    other. Where they differ by little, the speed of the table may be off as well.
 
     Cause: samples are counted by a rate at which they were not taken, or the clock of the logger
     runs fast or slow. Rates are read as they are, so every angle, which is a rate times a time, is
@@ -100,10 +116,14 @@ class SampleRateByTurns(PlanDetector):
             rate, angle = turn_ratios(recorded)
             number = int(np.count_nonzero(np.isfinite(rate) & np.isfinite(angle)))
             yield Deviation(None, "", ratio, self.sensor, count=number)
+        elif (ratio := slight_time_ratio(recorded)) is not None:
+            yield Deviation(None, "", ratio, self.sensor, facts=recorded.rate_sigma, severity=2)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         ratio, stated = deviation.size, 1 / recorded.given.interval
         assert ratio is not None
+        if deviation.facts is not None:
+            return _slightly_off(ratio, deviation.facts, stated)
         rate, angle = turn_ratios(recorded)
         i = int(np.flatnonzero(np.isfinite(rate) & np.isfinite(angle))[0])
         far, planned = np.degrees([recorded.moved[i], recorded.angle[i]]).tolist()
@@ -138,6 +158,33 @@ class SampleRateByTurns(PlanDetector):
                 state=state,
             ),
         )
+
+
+def _slightly_off(ratio: float, rate_sigma: float, stated: float) -> Description:
+    """The time of the logs, or the speed of the table, is off by little."""
+    state = _("how many samples there are in a second by another clock")
+    if np.isfinite(stated):
+        state = f"rate_hz: {fixed(stated * ratio, 3)}"
+    return Description(
+        _(
+            "By the time of the logs all turns are {ppm} ppm {slower} than planned, by their angle "
+            "and by the rate, which the table keeps to {sigma} ppm: either the samples are taken "
+            "at another rate, or the table is that much {slower}.",
+            ppm=significant(1e6 * abs(ratio - 1), 3),
+            slower=_("slower") if ratio > 1 else _("faster"),
+            sigma=significant(1e6 * rate_sigma),
+        ),
+        _(
+            "If it is the samples, the scale factors of all gyros are off by {ppm} ppm; if it is "
+            "the table, they stand, for they are by the angle.",
+            ppm=significant(1e6 * (ratio - 1), 3),
+        ),
+        _(
+            "Nothing is changed. Time some thousand samples by another clock and state {state}; or "
+            "state rate_sigma_ppm of the table as large as its speed is uncertain.",
+            state=state,
+        ),
+    )
 
 
 class IncompleteTurn(PlanDetector):

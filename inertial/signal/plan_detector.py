@@ -116,7 +116,7 @@ class Recorded:
     steady part is planned to be recorded.
     up, about: (m, 3), planned directions, NaN where none; angle, rate, seconds: (m,), planned, the
     first two signed about `about`, NaN where none; by an encoder, where one is used, in place of
-    the stated_angle. angle_sigma: of the table, rad.
+    the stated_angle. angle_sigma, rate_sigma: of the table, rad, and relative (NaN: not stated).
     found, complete, lost: (m,), the last where gaps and masks alone are why it is not complete;
     said: what was recorded of it, in words.
     force: (m, 3), mean of its rest, or of that before its turn; of one that is not found, of what
@@ -149,6 +149,7 @@ class Recorded:
     angle: Array
     stated_angle: Array
     angle_sigma: float
+    rate_sigma: float
     rate: Array
     seconds: Array
     found: Booleans

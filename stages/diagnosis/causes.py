@@ -20,6 +20,7 @@ from inertial.campaign.hypotheses import (
     LAW,
     MODEL,
     ONE_OF_CLASS,
+    PLAN,
     RECORDING,
     UNKNOWN_STRUCTURE,
     Hypothesis,
@@ -48,6 +49,7 @@ SPOILS = 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
 ENCODER_SCALE = "encoder_scale"
+RATE_OFF = "rate_off"
 QUANTISATION = "quantisation"
 MOUNTING_SHIFT = "mounting_shift"  # turns the axes of both sensors, whichever shows it
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
@@ -67,6 +69,7 @@ OWN_ERROR = _(
 ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
 IN_COVARIANCE = _("The covariance of the result includes it.")
 NO_JUMP = _("The biases of the {sensors} did not change when those of the others did.")
+STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
 HARMLESS = _("Nothing need be done about it for this result.")
 
 
@@ -147,6 +150,8 @@ class Cause:
         """What must be true for the result to be right, where nobody has confirmed it."""
         if self.main.cause == JUMP_NOT_TESTABLE:
             return NO_JUMP.format(sensors=PLURAL[self.sensors[0]])
+        if self.main.cause == CLOCK and self.main.sensor == "gyro" and (self.moves or 0) > MAX_MOVE:
+            return STAMPS_RIGHT
         repair = self.main.repair
         return repair["condition"] if repair is not None and repair["state"] == "applied" else None
 
@@ -156,7 +161,7 @@ class Cause:
 
         By how much is not known of what leaves a structure in the residuals.
         """
-        if self.cure != NONE:
+        if self.cure != NONE or self.condition:
             return False
         if self.moves is not None:
             return self.moves > MAX_MOVE
@@ -428,8 +433,12 @@ def _moved_by_measure(cause: Hypothesis, own: Sequence[SensorResult]) -> float |
     for a wrong sampling interval.
     """
     size = abs(cause.row["size"] or 0.0)
-    if cause.cause == ENCODER_SCALE:
+    if cause.cause == RATE_OFF and cause.stage == PLAN:
+        shares = [(abs(size - 1), result.scale_sigma) for result in own]
+    elif cause.cause == ENCODER_SCALE:
         shares = [(size, result.scale_sigma) for result in own]
+    elif cause.cause == CLOCK and cause.sensor == "gyro":
+        shares = [(1e-6 * size, result.scale_sigma) for result in own]
     elif cause.cause == CLOCK and cause.sensor == "accel":
         shares = [
             (1e-6 * size / 2 * unit, sigma)

@@ -259,12 +259,12 @@ class Extension:
             names = {name for effect in further for name in effect.columns}
             columns = frozenset({*candidate.columns, *sized, *names})
             alike = {
-                column: sized[name]
+                f"{other.label}.{parameter.name}": sized[name]
                 for effect in candidate.effects
                 for other in further
                 if other.name == effect.name
-                for name, column in zip(effect.columns, other.columns, strict=True)
-                if name in sized
+                for parameter in other.parameters
+                if (name := f"{effect.label}.{parameter.name}") in sized
             }
             return given(with_columns(every, columns), sized | alike)
 

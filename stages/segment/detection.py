@@ -57,7 +57,7 @@ class Recording:
     segments, blocks : the tables; temperatures of blocks as recorded
     counts : rad, what a count of the gyros is, by log; NaN where not stated
     stated_angles : rad, by manoeuvre, those of the plan before an encoder's took their place
-    angle_sigma : of the table, rad
+    angle_sigma, rate_sigma : of the table, rad, and relative, NaN where not stated
     """
 
     performed: Mapping[str, Performed]
@@ -66,6 +66,7 @@ class Recording:
     counts: Mapping[str, float]
     stated_angles: Mapping[str, float | None]
     angle_sigma: float
+    rate_sigma: float
 
 
 def recorded_of(
@@ -103,6 +104,7 @@ def recorded_of(
         angle=_numbers([m.angle for m in plan]),
         stated_angle=_numbers([recording.stated_angles.get(m.name) for m in plan]),
         angle_sigma=recording.angle_sigma,
+        rate_sigma=recording.rate_sigma,
         rate=_numbers([m.rate for m in plan]),
         seconds=_numbers([m.seconds for m in plan]),
         found=np.array([d.found for d in done], bool),

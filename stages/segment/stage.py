@@ -135,6 +135,7 @@ def segment(
             _counts(by_name)["gyro"],
             {m.name: m.angle for m in made.plan},
             stated.angle_sigma,
+            stated.rate_sigma,
         ),
         stated.given,
         angle_tolerance,
