@@ -105,6 +105,13 @@ CANDIDATES = Table(
             "1",
             "parameters of the sensor that the joint model determines and this one does not",
         ),
+        Column(
+            "open_form",
+            TRUTH,
+            "",
+            "whether its laws of the rate, or of the attitude, have about as many terms as the plan"
+            " has of these, so that no manoeuvre confirms their form",
+        ),
         Column("sentence", SENTENCE, "", "the gain in words"),
     ),
 )

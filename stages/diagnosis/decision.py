@@ -40,6 +40,10 @@ NO_BETTER = _(
     "manoeuvres that the fit has not seen are predicted no better with it (χ² grows "
     "by {growth:.1f})"
 )
+OPEN_FORM = _(
+    "they have about as many terms as the plan has rates, or attitudes, so they would fit any law, "
+    "and what lies between is not confirmed"
+)
 ONE_NOT_DETERMINED = _("beside it one parameter would not be determined")
 NOT_DETERMINED = _("beside it {count} parameters would not be determined")
 REPLACED = _(
@@ -153,6 +157,8 @@ def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
     for row in effects:
         if row["carried_by"] and row["effect"] not in OF_ONE_MANOEUVRE:
             return CARRIED.format(manoeuvre=row["carried_by"], effect=in_words(row["effect"]))
+    if best["open_form"]:
+        return OPEN_FORM
     if not _freed(effects):
         if best["snr_squared"] is None or best["snr_squared"] < MIN_SNR_SQUARED:
             size = max(best["snr_squared"] or 0.0, 0.0)

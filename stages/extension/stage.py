@@ -34,6 +34,7 @@ from stages.extension.combinations import combinations_of, compared
 from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved, unseen_components
+from stages.extension.form_of_laws import form_is_open
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.models import PRIOR_SIGMA, Models, given, models_of, with_columns
 from stages.extension.named_effects import NamedEffects, named_of
@@ -350,6 +351,8 @@ class Extension:
                     "counted": len(validated.counted) if validated else None,
                     "carried_by": carried[0] if carried else None,
                     "undetermined": len(set(before) - set(after)),
+                    "open_form": trainings is not None
+                    and form_is_open(sensor, candidate, trainings.models.extended),
                     "sentence": sentence_of(candidate, validated, carriers),
                 },
             )

@@ -11,7 +11,7 @@ Row = dict[str, Any]
 
 def candidate(method: str = "extended", **changes: Any) -> Row:
     row = {"mount": "", "sensor": "gyro", "method": method, "probability": 1.0}
-    row |= {"drop": 35.0, "snr_squared": 40.0, "undetermined": 0}
+    row |= {"drop": 35.0, "snr_squared": 40.0, "undetermined": 0, "open_form": False}
     return row | changes
 
 
@@ -38,6 +38,7 @@ def test_it_counts_where_others_predict_it_and_nothing_warns():
         ([], {"drop": 1.0, "snr_squared": 2.0}, None, "not cross-validatable"),
         ([], {"undetermined": 1}, None, "one parameter would not be determined"),
         ([], {"undetermined": 3}, None, "3 parameters would not be determined"),
+        ([], {"open_form": True}, None, "so they would fit any law"),
         ([], {}, "x-down", "x-down alone carries gyro bias ramp"),
     ],
 )
