@@ -13,6 +13,7 @@ from inertial.campaign.records import Row, rows_of
 
 FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE = "found", "one_of_class", "unknown_structure"
 LAW = "law"  # of no effect of the catalogue
+SENSE_OF_TURNS = "sense_of_turns"  # an asymmetry of the gyros that may be the table's
 JUMP_NOT_TESTABLE = "jump_not_testable"  # a jump that only the other sensor can show
 RECORDING, PLAN, POSITIONS, MODEL = "quality", "segment", "accelerometer", "criticism"
 COUNTS = "gyroscope"  # the stage that finds counts of another size than stated

@@ -114,6 +114,7 @@ NAMES = {
     "time_backwards": _("time goes backwards"),
     "unknown_structure": _("structure without a name"),
     "wrong_day": _("another day"),
+    "sense_of_turns": _("asymmetry of the gyros or of the table"),
     "jump_not_testable": _("change of the bias that the plan cannot show"),
     "another_imu": _("another IMU in a part of the logs"),
     "wrong_imu_type": _("another type of IMU"),

@@ -22,6 +22,7 @@ from stages.criticism.selection import Selection
 MIN_CAUSES = 3  # named; one or two are what they are named
 CAUSE_PRICE = 10.0  # of −2 log of the odds: one campaign in 150 has a cause of one kind
 MIN_GAIN = 10.0  # of −2 log of the evidence, over all that is named
+MIN_SIGMAS = 3.0  # by which half of the parameters differ that are known to their typical size
 PRIOR_SIZE = 30.0  # of a parameter, in its typical size
 TYPICAL_BIAS = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}
 TYPICAL_TERM = 1e-4  # of a scale factor or cross term
@@ -100,7 +101,13 @@ def another_imu(campaign: Campaign, selection: Selection, mount: str) -> Iterato
     contradicted = min(weighed([best], 0, sensor) for sensor in shown.sensors) < -MIN_GAIN
     if gain < MIN_GAIN or contradicted:
         return
-    drop, degrees = shown.total.drop([place[name] for name in best.columns])
+    columns = [place[name] for name in best.columns]
+    values, covariance = shown.total.estimate(columns)
+    sigma = np.sqrt(np.diag(covariance))
+    told = sigma < [parameter.typical for parameter in best.parameters]
+    if np.count_nonzero(np.abs(values[told]) > MIN_SIGMAS * sigma[told]) < told.sum() / 2:
+        return
+    drop, degrees = shown.total.drop(columns)
     there = motion.visit[np.isin(motion.run, best.runs)]
     first, last = (campaign.planned[int(visit)] for visit in (there.min(), there.max()))
     yield (

@@ -37,6 +37,7 @@ from stages.criticism.finding_rows import Row, TableRow, finding_id, member_rows
 from stages.criticism.jump_not_testable import jumps_not_testable
 from stages.criticism.law_sentences import law_action
 from stages.criticism.selection import Selection
+from stages.criticism.shared_asymmetry import ASYMMETRY, shared_asymmetry
 from stages.criticism.without_law import WithoutLaw
 
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
@@ -151,6 +152,8 @@ class BlockResults:
                 "sentence": sentence,
             },
         )
+        if cause is not None and effect.name == ASYMMETRY and cause.verdict in NAMED:
+            yield from shared_asymmetry(parameters, self.mount)
         for parameter in parameters:
             finding = self._reported_in(cause) if cause else None
             yield parameter_row(self.mount, effect.name, parameter, finding, identifier)

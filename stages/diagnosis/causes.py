@@ -22,6 +22,7 @@ from inertial.campaign.hypotheses import (
     ONE_OF_CLASS,
     PLAN,
     RECORDING,
+    SENSE_OF_TURNS,
     UNKNOWN_STRUCTURE,
     Hypothesis,
 )
@@ -69,6 +70,7 @@ OWN_ERROR = _(
 ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
 IN_COVARIANCE = _("The covariance of the result includes it.")
 NO_JUMP = _("The biases of the {sensors} did not change when those of the others did.")
+OF_GYROS = _("The asymmetry is that of the gyros, and not of the table.")
 STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
 HARMLESS = _("Nothing need be done about it for this result.")
 
@@ -148,6 +150,8 @@ class Cause:
     @property
     def condition(self) -> str | None:
         """What must be true for the result to be right, where nobody has confirmed it."""
+        if self.main.cause == SENSE_OF_TURNS:
+            return OF_GYROS
         if self.main.cause == JUMP_NOT_TESTABLE:
             return NO_JUMP.format(sensors=PLURAL[self.sensors[0]])
         if self.main.cause == CLOCK and self.main.sensor == "gyro" and (self.moves or 0) > MAX_MOVE:
