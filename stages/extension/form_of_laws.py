@@ -43,7 +43,7 @@ def form_is_open(sensor: str, candidate: Candidate, campaign: Campaign) -> bool:
     if sensor == "gyro":
         rates = np.abs(motion.rate[stretches])
         changes = np.abs(motion.acceleration[stretches]) * motion.seconds[stretches]
-        steady = rates[(rates > 0) & (changes < ONE_RATE * rates)]
+        steady = rates[(rates > ONE_RATE * rates.max(initial=0.0)) & (changes < ONE_RATE * rates)]
         rates_held = 1 + np.count_nonzero(np.diff(np.sort(np.log(steady))) > ONE_RATE)
         return bool(rates_held <= len(laws) + 1)
     ups = np.unique(np.round(motion.up[stretches] / ONE_ATTITUDE), axis=0)

@@ -259,14 +259,7 @@ class Extension:
             assert every is not None  # there is one without them
             names = {name for effect in further for name in effect.columns}
             columns = frozenset({*candidate.columns, *sized, *names})
-            alike = {
-                f"{other.label}.{parameter.name}": sized[name]
-                for effect in candidate.effects
-                for other in further
-                if other.name == effect.name
-                for parameter in other.parameters
-                if (name := f"{effect.label}.{parameter.name}") in sized
-            }
+            alike = told_of_equals(candidate.effects, further, sized)
             return given(with_columns(every, columns), sized | alike)
 
         own = given(with_columns(system, frozenset({*candidate.columns, *sized})), sized)
@@ -365,6 +358,23 @@ class Extension:
                 yield from gain_of_ripple(turns, effect, values, mount)
             elif "frequency" in values:
                 yield from gain_of_line(turns, values["frequency"], mount)
+
+
+def told_of_equals(
+    effects: Sequence[Effect], others: Sequence[Effect], told: Mapping[str, tuple[float, float]]
+) -> dict[str, tuple[float, float]]:
+    """What is told of the parameters of effects, by the columns of equal ones in other forms.
+
+    Another form, as of a function of temperature, may lack some of them and have more.
+    """
+    return {
+        f"{other.label}.{parameter.name}": told[name]
+        for effect in effects
+        for other in others
+        if other.name == effect.name
+        for parameter in other.parameters
+        if (name := f"{effect.label}.{parameter.name}") in told
+    }
 
 
 STAGE = Stage(

@@ -328,11 +328,12 @@ def test_a_turn_that_goes_too_far_lacks_nothing(name):
     assert "missing" not in finding["sentence"] and "rounded" not in finding["consequence"]
 
 
-def counted_by_100_hz(rate: float, folder: Path) -> chain.Results:
+def counted_by_100_hz(rate: float, folder: Path, **table: float) -> chain.Results:
     """The short campaign in columns without stamps, with turns of two angles, sampled at `rate`."""
     document = chain.short()
     document["receiver"] |= {"message": "columns", "line_end": "lf", "rate_hz": rate}
     document["campaign"]["instrument"] = {"name": "simulated", "rate_hz": 100}
+    document["campaign"]["table"] |= table
     for one in document["campaign"]["plan"]:
         if one["do"] == "turn" and one["up"] == "+y":
             one["degrees"] *= 2
@@ -354,8 +355,18 @@ def test_samples_that_are_counted_by_another_rate_are_one_finding(rate, tmp_path
     assert performed(results)["found"].all()
 
 
+def test_a_rate_that_is_off_by_more_than_the_table_is_asked_about(tmp_path):
+    """1000 ppm where the table keeps its rate to 100: all scale factors were off, "no fault"."""
+    results = counted_by_100_hz(100.1, tmp_path, rate_sigma_ppm=100)
+    (finding,) = found_in(results).to_dict("records")
+    assert (finding["cause"], finding["sensor"], finding["severity"]) == ("rate_off", "gyro", 2)
+    assert finding["size"] == pytest.approx(1.001, abs=1e-4)
+    assert "or the table is that much slower" in finding["sentence"]
+    assert performed(results)["complete"].all()
+
+
 def test_samples_that_are_counted_by_their_rate_raise_nothing(tmp_path):
-    results = counted_by_100_hz(100, tmp_path)
+    results = counted_by_100_hz(100, tmp_path, rate_sigma_ppm=100)
     assert found_in(results).empty and performed(results)["complete"].all()
 
 

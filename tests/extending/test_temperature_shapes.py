@@ -11,6 +11,7 @@ from stages.diagnosis.result import Result
 from stages.diagnosis.temperature_curves import curve_rows
 from stages.extension.estimates import Solved
 from stages.extension.models import PRIOR_SIGMA
+from stages.extension.stage import told_of_equals
 from stages.extension.temperature_shapes import with_shapes
 
 NOISE = 1e-6  # rad/s, of a reading
@@ -132,3 +133,12 @@ def test_a_straight_line_stays_as_it_is():
     line = TemperatureModel("gyro", [Piece("bias_x", 1)])
     fit = Solved("gyro", [{"parameter": "gyro_temperature.bias_x_1"}] * 13, np.eye(13), None, 0.0)
     assert with_shapes(fit, [line], None, None) is fit
+
+
+def test_what_is_told_of_a_function_holds_for_its_other_forms_as_far_as_they_have_it():
+    """Forms with more columns, or less, ended the stage with an exception."""
+    named = TemperatureModel("gyro", [Piece("bias_x", 1), Piece("bias_x", 2)], {}, 0.0).fixed(0.0)
+    other = TemperatureModel("gyro", [Piece("bias_x", n) for n in (1, 3)], {}, 0.0).fixed(0.0)
+    first, second = named.columns
+    told = told_of_equals([named], [other], {first: (1.0, 0.1), second: (2.0, 0.2)})
+    assert told == {other.columns[0]: (1.0, 0.1)}
