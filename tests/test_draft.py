@@ -192,6 +192,15 @@ def test_without_a_clock_gravity_shows_the_rate(tmp_path):
     assert "how many samples a second" in " ".join(text.replace("#", "").split())
 
 
+def test_a_clock_stays_one_through_pauses(tmp_path):
+    """Of a recording that was paused seven times a column `time` was not used, the rate a guess."""
+    log = by_hand_log(2)
+    samples = np.arange(len(log.force))
+    time = samples / RATE + 60.0 * np.digitize(samples, np.linspace(0, len(samples), 9)[1:-1])
+    folder = drafted({"log.txt": written([time, log.rate, log.force])}, tmp_path)
+    assert told(folder)["instrument"]["format"]["time"] == {"column": 1, "unit": "s"}
+
+
 def test_unsigned_counts_of_sensors_with_a_log_each(tmp_path):
     log = by_hand_log(3)
     time = np.arange(len(log.force)) / RATE
@@ -340,3 +349,12 @@ def test_what_is_no_log_is_refused_and_nothing_is_written(text, tmp_path, capsys
     error = refused(capsys, [str(log), "--name", "june", "--data", str(tmp_path / "data")])
     assert "log.txt" in error and "cure:" in error
     assert not (tmp_path / "data").exists()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_bytes_that_are_no_log_are_refused(seed, tmp_path, capsys):
+    """Some ended with an exception: fields that look named, of which no line holds numbers."""
+    log = tmp_path / "log.csv"
+    log.write_bytes(np.random.default_rng(seed).bytes(50_000))
+    error = refused(capsys, [str(log), "--name", "june", "--data", str(tmp_path / "data")])
+    assert "log.csv" in error and "cure:" in error

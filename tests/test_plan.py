@@ -163,6 +163,7 @@ MISTAKES = {
         "{name: by hand, position_sigma_arcsec: 3600}",
         ["plan[1]", "degrees_sigma"],
     ),
+    "a day that is none": ("2026-11-02", "2026-13-45", ["date", "2026-13-45", "YYYY-MM-DD"]),
     "rate with a sign": ("rate_deg_s: 10", "rate_deg_s: -10", ["plan[1].rate_deg_s", "magnitude"]),
     "a turn that cannot last so long": (
         "accel_deg_s2: 5",

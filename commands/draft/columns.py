@@ -138,8 +138,11 @@ def _grows(values: Array) -> bool:
     if len(values) < 2 * CLOCK_PARTS:
         return False
     steps = np.diff(values)
-    if np.median(steps) > 0 and np.mean(steps == np.median(steps)) >= 1 - MAX_RESETS:
+    usual_step = np.median(steps)
+    if usual_step > 0 and np.mean(steps == usual_step) >= 1 - MAX_RESETS:
         return True  # it counts, though it begin again at times
+    if usual_step > 0 and (steps >= 0).all() and np.mean(steps < 2 * usual_step) >= 1 - MAX_RESETS:
+        return True  # though the recording pause
     growth = np.diff(values[np.linspace(0, len(values) - 1, CLOCK_PARTS + 1).astype(int)])
     usual = float(np.median(growth))
     alike = np.abs(growth - usual) < usual / 2

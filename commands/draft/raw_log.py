@@ -60,7 +60,8 @@ def text_layout(path: Path) -> TextLayout | None:
     labelled = sum(len(names) >= MIN_NUMBERS for names in labels)
     if labelled and labelled >= plain.rows:
         bare = [without_names(line.encode()).decode() for line in lines]
-        return _layout(bare, _separated(bare), labels)
+        if (separated := _separated(bare)).rows:
+            return _layout(bare, separated, labels)
     return _layout(lines, plain) if plain.rows else None
 
 

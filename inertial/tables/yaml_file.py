@@ -5,6 +5,7 @@ Dates stay text, as YAML 1.2 has it.
 
 import difflib
 from collections.abc import Sequence
+from datetime import date
 from functools import cache
 from math import isfinite
 from pathlib import Path
@@ -38,6 +39,15 @@ class _DatesAreText(VersionedResolver):
     def resolve(self, kind: Any, value: Any, implicit: Any) -> Any:
         tag = super().resolve(kind, value, implicit)
         return "tag:yaml.org,2002:str" if str(tag).endswith(":timestamp") else tag
+
+
+FORMATS = jsonschema.FormatChecker(formats=())
+
+
+@FORMATS.checks("day", ValueError)
+def _is_day(text: object) -> bool:
+    """Whether a text that looks like a date is one of the calendar."""
+    return not isinstance(text, str) or text == "unknown" or bool(date.fromisoformat(text))
 
 
 class YamlFile:
@@ -91,7 +101,7 @@ class YamlFile:
         if entries:
             of_each = {"$ref": f"#/$defs/{entries}"}
             rules = {"type": "object", "additionalProperties": of_each, "$defs": rules["$defs"]}
-        validator = jsonschema.Draft202012Validator(rules)
+        validator = jsonschema.Draft202012Validator(rules, format_checker=FORMATS)
         part = self.content
         for name in within:
             part = part[name]
@@ -137,7 +147,8 @@ class YamlFile:
         while not meaning and above is not None and isinstance(above.schema, dict):
             meaning, above = above.schema.get("description", ""), above.parent
         told = f"{meaning} ({error.message})" if meaning else error.message
-        expected = meaning if meaning and error.validator == "pattern" else told
+        by_form = error.validator in ("pattern", "format")
+        expected = meaning if meaning and by_form else told
         return self.refuse(key, error.instance, expected, "correct the value")
 
     def refuse_text(self, key: Key, found: str, expected: str, cure: str) -> Refusal:

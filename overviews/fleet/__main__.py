@@ -43,7 +43,8 @@ def main() -> None:
                 writer.write(name, table.frame(rows[name]))
         files = [given.derived / c / read.place for c in given.campaigns for read in READ.values()]
         share = settings["false_discoveries"]
-        html = fleet_page(rows, searched, share, given.name, files, code)
+        simulated = any(member.simulated for member in members)
+        html = fleet_page(rows, searched, share, given.name, files, code, simulated=simulated)
         write_whole({given.reports / f"fleet-{given.name}.html": html.encode()})
     except Refusal as refusal:
         sys.exit(visible(f"fleet: {refusal}"))

@@ -47,7 +47,14 @@ CORRELATED = 0.05  # share of false ones among the correlations that are shown
 
 
 def fleet_page(
-    rows: Rows, searched: int, false_discoveries: float, name: str, files: Sequence[Path], code: str
+    rows: Rows,
+    searched: int,
+    false_discoveries: float,
+    name: str,
+    files: Sequence[Path],
+    code: str,
+    *,
+    simulated: bool,
 ) -> str:
     """One HTML page, without network and script."""
     campaigns = rows["campaigns"]
@@ -74,7 +81,7 @@ def fleet_page(
             campaign=title,
             instrument=", ".join(counts),
             running=title,
-            simulated=False,
+            simulated=simulated,
             chapters=chapters,
         )
     )

@@ -5,7 +5,7 @@ import json
 import sys
 from pathlib import Path
 
-from inertial.text.messages import speak_as_set
+from inertial.text.messages import _, speak_as_set
 
 if __name__ == "__main__":
     speak_as_set(sys.argv)
@@ -15,6 +15,7 @@ from inertial.tables.errors import Refusal
 from inertial.tables.whole_files import write_whole
 from inertial.text.numbers import visible
 from overviews.history.page import history_page
+from overviews.known import serials
 from overviews.units import imus_of
 
 
@@ -32,6 +33,17 @@ def main() -> None:
     settings = {"tolerance": {}} | given.settings["history"]
     try:
         imus = imus_of(given.archive, given.serial, given.derived, **settings)
+        if not imus:
+            raise Refusal(
+                str(given.archive),
+                _("serial number {serial}", serial=given.serial),
+                _("no calibration of it"),
+                _(
+                    "one of {serials}",
+                    serials=", ".join(serials(given.archive)) or _("none"),
+                ),
+                _("name one that is there; a report puts its campaign into the archive"),
+            )
         code = hash_of(code_of("history", "overviews"))
         html = history_page(imus, given.archive, given.reports, code)
         write_whole({given.reports / "history" / f"{given.serial}.html": html.encode()})

@@ -263,11 +263,12 @@ def _filter_head(
     """What the numbers of the filter are, and why they are comments."""
     yield _(
         "Noise for {filter_name}, at the end of this head as comments: remove the # to use a "
-        "number, after a test in the vehicle. They are lower bounds, by an IMU at rest on a table; "
-        "{name}'s defaults contain the vibration of a vehicle. Keep the larger of the two: with "
-        "too small a number {filter_name} refuses good measurements. {filter_name} adds "
-        "(number * dt)^2 to a variance in each step of dt = {period:g} s, so a number is the "
-        "density, or the random walk, divided by sqrt dt; of the noisiest axis:",
+        "number, after a test in the vehicle. They are of an IMU at rest on a table, and contain "
+        "what these parameters cannot correct, such as cross-axis terms; {name}'s defaults contain "
+        "the vibration of a vehicle. Keep the larger of the two, as far as the range of the "
+        "parameter goes: with too small a number {filter_name} refuses good measurements. "
+        "{filter_name} adds (number * dt)^2 to a variance in each step of dt = {period:g} s, so a "
+        "number is the density, or the random walk, divided by sqrt dt; of the noisiest axis:",
         filter_name=autopilot.filter_name,
         name=autopilot.name,
         period=autopilot.period,

@@ -193,7 +193,7 @@ def test_the_filter_of_an_autopilot_predicts_the_variances_of_the_noise(
         bias = steps * (float(numbers[walk_name]) * period) ** 2
         assert angle == pytest.approx(max(one.density for one in noise) ** 2 * T, rel=2e-3)
         assert bias == pytest.approx(max(one.walk or 0.0 for one in noise) ** 2 * T, rel=2e-3)
-    assert "lower bounds" in " ".join(text.replace("\n#", "").split())
+    assert "at rest on a table" in " ".join(text.replace("\n#", "").split())
 
 
 def test_the_document_has_values_with_sigma_and_limits_as_limits() -> None:

@@ -141,9 +141,13 @@ def _forecast(rows: Sequence[Record]) -> Iterator[outline.Part]:
             [_forecast_row(row) for row in known],
             note=_("The first is due on {date}.", date=min(due)) if due else "",
         )
-    reasons = dict.fromkeys(row["reason"] for row in rows if row["reason"])
+    reasons = {row["reason"]: row["due"] for row in rows if row["reason"]}
     yield outline.Sentences(
-        tuple(f"{numbers.shortened(reason, 200).capitalize()}." for reason in reasons)
+        tuple(
+            _("Due —: {reason}.", reason=text) if due is None else f"{text.capitalize()}."
+            for reason, due in reasons.items()
+            for text in [numbers.shortened(reason, 200)]
+        )
     )
 
 
