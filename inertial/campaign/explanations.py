@@ -8,7 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from inertial.campaign.hypotheses import LAW, MAX_CARRYING, MODEL, POSITIONS, Hypothesis
+from inertial.campaign.hypotheses import (
+    JUMP_NOT_TESTABLE,
+    LAW,
+    MAX_CARRYING,
+    MODEL,
+    POSITIONS,
+    Hypothesis,
+)
 from inertial.campaign.records import Row
 from inertial.sensors import SENSORS
 
@@ -229,8 +236,9 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         return _explains_position(cause, other)
     if other.cause == "bias_jump" and _without_law(cause):
         return cause.sensor == other.sensor
-    if cause.cause == "bias_removed" and other.cause in PER_RUN:  # each log lacks a mean of its own
-        return same_sensor(cause, other)
+    # Each log lacks a mean of its own: no biases changed, so none of the other sensor may have.
+    if cause.cause == "bias_removed" and other.cause in (*PER_RUN, JUMP_NOT_TESTABLE):
+        return same_sensor(cause, other) == (other.cause in PER_RUN)
     if _uncertain(other):
         return _explains_uncertain(cause, other)
     if other.named:

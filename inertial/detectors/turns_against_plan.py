@@ -86,7 +86,8 @@ def slight_time_ratio(recorded: Recorded) -> float | None:
     """The same where it is small, and beyond what the table's rate is uncertain by."""
     rate, angle = turn_ratios(recorded)
     longer = (angle / rate)[np.isfinite(rate) & np.isfinite(angle)]
-    if len(longer) < MIN_ALIKE_TURNS or not np.isfinite(recorded.rate_sigma):
+    as_recorded = bool(recorded.restated)  # rates in place of the plan's: by the gyros themselves
+    if len(longer) < MIN_ALIKE_TURNS or as_recorded or not np.isfinite(recorded.rate_sigma):
         return None
     ratio = float(np.median(longer))
     sigma = np.hypot(recorded.rate_sigma, np.std(longer))
