@@ -40,7 +40,7 @@ HIDDEN = {
     "table_wobble": ({"east_arcsec": 0, "north_arcsec": 5}, {}),
 }
 # One of each kind in the quick tests; `make test-slow` hides them all.
-QUICK = ("gyro_bias_jump", "accel_quadratic", "lever_arm", "table_wobble")
+QUICK = ("gyro_bias_jump", "lever_arm", "table_wobble")
 NOT_NEEDED = ("studies", "comparison", "compensation")  # by criticism and extension
 # What this plan cannot tell from it.
 CLASS = {
@@ -178,6 +178,7 @@ def test_why_an_effect_is_not_named_is_true(demo_criticised):
     assert not told.str.contains("No manoeuvre excites it").any()
 
 
+@pytest.mark.slow
 def test_a_random_walk_is_no_ramp_and_no_g_sensitivity():
     document = chain.demo(seed=61)
     document["noise"] = {**document["noise"], "gyro_rate_random_walk_deg_h_sqrt_h": 0.5}
@@ -189,6 +190,7 @@ def test_a_random_walk_is_no_ramp_and_no_g_sensitivity():
     assert "random walk of 0." in walk and "°/h/√h" in walk
 
 
+@pytest.mark.slow
 def test_an_oscillation_that_beats_with_the_blocks_is_no_structure():
     """39.6 Hz is 7.9 periods in a block of 0.2 s: what is left of it beats at 2 Hz."""
     ringing = {"frequency_hz": 39.567, "amplitude_rad_s": 0.0038, "axis": "+y"}

@@ -422,6 +422,7 @@ def test_beside_power_cycles_an_effect_is_found_and_they_are_estimated_beside_it
     assert 0.5 < size / (np.radians(4) / 3600) < 1.5
 
 
+@pytest.mark.slow
 def test_what_rests_on_one_bias_allows_for_that_of_each_switch_on(tmp_path):
     """Checks and navigation have it in their sigmas; figures of the sensors are without it."""
     document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document

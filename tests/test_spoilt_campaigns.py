@@ -108,6 +108,7 @@ def test_the_earth_rate_does_not_leak_into_the_g_sensitivity(clean):
     assert degrees_per_hour.abs().max() < 1
 
 
+@pytest.mark.slow
 def test_a_position_that_is_off_is_noticed_and_what_it_spoils_is_named():
     told = good()
     leaning = [0.0, 1.0, tan(radians(OFF))]  # y up, off towards z

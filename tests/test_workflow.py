@@ -166,7 +166,10 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
         pytest.param(
             *("inertial/estimation/spectrum.py", {"noise", *ESTIMATION}), marks=pytest.mark.slow
         ),
-        ("inertial/estimation/least_squares.py", {"segment", "noise", *ESTIMATION}),
+        pytest.param(
+            *("inertial/estimation/least_squares.py", {"segment", "noise", *ESTIMATION}),
+            marks=pytest.mark.slow,
+        ),
         ("inertial/text/numbers.py", {"plan", "decode", *AFTER_DECODE}),
         pytest.param(
             *("inertial/text/cause_names.py", {"criticism", "extension", *DIAGNOSED}),

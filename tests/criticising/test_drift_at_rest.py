@@ -18,6 +18,7 @@ def criticised(effects: dict[str, Any]) -> tuple[dict[str, Any], Any]:
     return document, chain.in_memory_of(document, "criticism", chain.BESIDE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sensor", "effects", "stage", "truth"),
     [
@@ -26,7 +27,6 @@ def criticised(effects: dict[str, Any]) -> tuple[dict[str, Any], Any]:
             {"accel_flicker": {"instability_micro_g": 50}},
             "accelerometer",
             "accelerometer",
-            marks=pytest.mark.slow,
         ),
         ("gyro", {"gyro_flicker": {"instability_deg_h": 5}}, "gyroscope", "gyro"),
     ],

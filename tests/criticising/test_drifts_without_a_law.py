@@ -50,7 +50,8 @@ def test_telegraph_noise_is_no_jump_but_a_law_of_two_levels():
     assert abs(abs(between) - 4.0) < 0.2  # from −2 to 2 °/h
 
 
-@pytest.mark.parametrize("seed", [1801, pytest.param(102, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1801, 102])
 def test_a_ramp_of_one_gyro_is_no_walk_of_all(seed):
     ramp = {"gyro_bias_ramp": {"ramp_deg_h_h": [0, 1.24, 0]}}  # SNR 9
     results = criticised(seed, ramp, {})

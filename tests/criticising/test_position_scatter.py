@@ -26,9 +26,8 @@ def criticised(seed: int, tilted: str, sigma: float, stated: float | None = None
     return chain.in_memory(recording, "criticism", chain.BESIDE)
 
 
-@pytest.mark.parametrize(
-    ("seed", "tilted"), [pytest.param(73, "case", marks=pytest.mark.slow), (72, "axis")]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "tilted"), [(73, "case"), (72, "axis")])
 def test_positions_worse_than_stated_are_named_and_nothing_else(seed: int, tilted: str) -> None:
     results = criticised(seed, tilted, 60.0, 2.0)
     (found,) = results["criticism/findings"].query("verdict in @CLEAR").to_dict("records")

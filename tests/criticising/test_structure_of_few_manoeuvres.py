@@ -16,6 +16,7 @@ def swaying(channel, log):
     return criticised(chain.short(seed=1801), {"oscillate": {"log": log, "line": 1, **sway}})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("channel", "manoeuvre"),
     [

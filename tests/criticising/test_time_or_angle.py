@@ -134,7 +134,8 @@ def two_rates(**changes: Any) -> dict[str, Any]:
 RIPPLE = {"order": 36, "amplitude_arcsec": 0.7, "phase_deg": 50, "at_rate_deg_s": 30}
 
 
-@pytest.mark.parametrize("power", [*(pytest.param(p, marks=pytest.mark.slow) for p in (0, -1)), -2])
+@pytest.mark.slow
+@pytest.mark.parametrize("power", [0, -1, -2])
 def test_the_ripple_of_the_laboratory(power):
     """Its rate goes with the table's; is the same at both; is the inverse."""
     effects = {"table_ripple": {**RIPPLE, "rate_power": power}}

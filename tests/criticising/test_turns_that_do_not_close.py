@@ -19,6 +19,7 @@ def test_only_the_ripple_is_named(order):
     assert set(results["criticism/findings"]["cause"]) == {"table_ripple"}
 
 
+@pytest.mark.slow
 def test_rests_of_a_tumble_are_off_by_the_ripple_too():
     """15.5 periods a turn at 16.3″: at 45°, 135° … the table stands up to 16″ beside its angle."""
     ripple = {"order": 15.5, "amplitude_arcsec": 16.3, "phase_deg": 257.6}

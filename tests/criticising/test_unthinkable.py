@@ -5,6 +5,7 @@ import pytest
 from hidden import hidden_plans
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plan", ["positions", pytest.param("stops", marks=pytest.mark.slow)])
 def test_twice_the_earth_rate_is_not_left_out(plan):
     """On the other hemisphere, with azimuths unknown: “earth rate left out, s = 2000070 ppm”."""

@@ -170,6 +170,7 @@ def test_gyros_zeroed_at_the_beginning_of_each_log_keep_their_scale_factors(tmp_
         assert abs(row["value"] - (truth[i][j] - (i == j))) < 4 * row["sigma"], name
 
 
+@pytest.mark.slow
 def test_gyros_less_the_mean_of_each_log_are_told_as_such(tmp_path):
     """All turns were "missing"."""
     tables = zeroed(tmp_path, None)

@@ -34,7 +34,7 @@ def rounded(seed: int, noise: float, *, carries: bool) -> dict:
     return document
 
 
-@pytest.fixture(scope="module", params=[0.3, 0.15])
+@pytest.fixture(scope="module", params=[pytest.param(0.3, marks=pytest.mark.slow), 0.15])
 def results(request):
     """Of each seed what was hidden and what came of it."""
     documents = [rounded(seed, request.param, carries=False) for seed in SEEDS]

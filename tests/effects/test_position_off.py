@@ -66,6 +66,7 @@ def test_it_is_found_with_its_size_or_its_opposite_is(campaign):
     assert statistic == pytest.approx((estimate / sigma) @ (estimate / sigma), rel=0.1)
 
 
+@pytest.mark.slow
 def test_a_shift_between_the_opposite_positions_explains_as_much(campaign):
     """No more: what follows the shift is the other half of M."""
     position, shift = (

@@ -18,7 +18,7 @@ import pytest
 from inertial.tables import CERTIFICATE
 from stages.report import origins
 from stages.report.outline import Heading, Paragraph, Part, Section, Table
-from stages.report.sections import certificate, ideal_triad, uncertainty_budget
+from stages.report.sections import certificate, characteristics, ideal_triad, uncertainty_budget
 from stages.report.sections.parameters import PARAMETERS
 from stages.report.stage import ANNEXES, EVIDENCE, STAGE, report
 from tests.report import synthetic, synthetic_faults, synthetic_unmodelled
@@ -591,7 +591,7 @@ def test_a_section_reads_no_table_but_those_it_declares() -> None:
 
 
 def test_a_bandwidth_says_what_it_is_of() -> None:
-    text = Page(synthetic.report_on(synthetic.campaign(logs=("x-up.asc",)))["html"]).text
+    text = Page(synthetic.section_on(synthetic.campaign(), characteristics.SECTION)).text
     assert "gyro: ramps, by the encoder of the table: response to rates" in text
     assert "53.05" in text
     assert "accelerometer, bandwidth: not determined, for nothing changes fast." in text

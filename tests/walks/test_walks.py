@@ -41,6 +41,7 @@ def test_the_likelihood_of_a_walk_is_that_of_its_path():
     assert limits(known, known.of(campaign), 12.0)[kind] == pytest.approx(exact, abs=1.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["walk of one axis", "gyro_bias_jump"])
 def test_a_clear_drift_is_called_what_it_is(kind):
     """At an SNR of 30 the likelihood ratio and the stages say the same."""
