@@ -135,7 +135,9 @@ class TimeBackwards(Detector):
                 from_s=fixed(event.from_s, 3),
                 records=records,
             )
-        look = _("Look for logs that were joined, or for a clock that was set.")
+        look = _(
+            "Look for logs that were joined, a clock that was set, or records out of order."
+        )
         if facts.period:
             sentence += " " + _(
                 "So does a counter that begins again after {period} s.",
@@ -157,7 +159,7 @@ class TimeBackwards(Detector):
                 size=event.size,
             ),
             _(
-                "{masked}; a turn in which time goes back is left out. {look}",
+                "{masked}; a turn whose duration is in doubt for it is left out. {look}",
                 masked=masked,
                 look=look,
             ),

@@ -13,6 +13,7 @@ from inertial.effects.accel_hysteresis import AccelHysteresis
 from inertial.effects.accel_quadratic import AccelQuadratic
 from inertial.effects.accel_saturation import AccelSaturation
 from inertial.effects.accel_scale_asymmetry import AccelScaleAsymmetry
+from inertial.effects.accel_scale_jump import AccelScaleJump
 from inertial.effects.accel_scale_ramp import AccelScaleRamp
 from inertial.effects.accel_scale_temperature import AccelScaleTemperature
 from inertial.effects.accel_vibration_rectification import AccelVibrationRectification
@@ -35,6 +36,7 @@ from inertial.effects.gyro_saturation import GyroSaturation
 from inertial.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
 from inertial.effects.gyro_scale_cubic import GyroScaleCubic
 from inertial.effects.gyro_scale_g_dependence import GyroScaleGDependence
+from inertial.effects.gyro_scale_jump import GyroScaleJump
 from inertial.effects.gyro_scale_quadratic import GyroScaleQuadratic
 from inertial.effects.gyro_scale_ramp import GyroScaleRamp
 from inertial.effects.gyro_scale_temperature import GyroScaleTemperature
@@ -77,6 +79,7 @@ CATALOGUE: dict[str, Effect] = {
         GyroBiasTemperature(),
         GyroScaleTemperature(),
         GyroBiasJump(),
+        GyroScaleJump(),
         GyroRandomWalk(),
         GyroFlicker(),
         *(GyroDeadBand(axis) for axis in "xyz"),
@@ -94,6 +97,7 @@ CATALOGUE: dict[str, Effect] = {
         AccelBiasTemperature(),
         AccelScaleTemperature(),
         AccelBiasJump(),
+        AccelScaleJump(),
         AccelVibrationRectification(),
         AccelHysteresis(),
         AccelSaturation(),

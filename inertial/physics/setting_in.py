@@ -8,7 +8,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.physics.drift import Drift, after, evenly, without_clock
-from inertial.physics.effect import Effect, Scan
+from inertial.physics.effect import Effect, Reading, Scan, Truth
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
@@ -19,6 +19,11 @@ SHORT_RUNS = _("Each log holds so little that a bias of its own in each would ex
 MIN_VISITS = 2  # of a log, on average: of more manoeuvres the bias of one of them is no scatter
 BY_LOG = _("it sets in between two logs, and a reading does not tell of which it is")
 JUMP_TIMES = 72  # that are tried: a jump between two of them loses 2 to 4 % of its SNR²
+MIN_SENSED = 0.25  # of the most along an axis: what shows its scale factor
+NEVER_BOTH_WAYS = _(
+    "There is no time before and after which every axis is sensed both ways, so that a scale "
+    "factor that jumps would be told from one that depends on direction, rate or attitude."
+)
 
 
 class SettingIn(Effect):
@@ -90,3 +95,40 @@ def _of_short_runs(motion: Motion) -> bool:
     """Whether logs without a common clock hold hardly more than a manoeuvre each."""
     runs, visits = (len(np.unique(each)) for each in (motion.run, motion.visit))
     return bool(without_clock(motion)) and visits <= MIN_VISITS * runs
+
+
+class ScaleJump(SettingIn):
+    """Reading_i += k_i H(t − t₀) times what is sensed along i: scale factors that jump once.
+
+    t₀ is scanned, over the times before and after which every axis is sensed both ways. Told from
+    a bias that jumps by the directions, from a drift of the scale factors by being instantaneous.
+    """
+
+    cause = _("the instrument is restarted, set to another range, or knocked")
+    source = "IEEE Std 528-2019, 'repeatability'"
+    sensor: ClassVar[str]
+    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
+    times = JUMP_TIMES
+    thinkable = 10.0
+
+    def blind(self, motion: Motion) -> str:
+        return super().blind(motion) or ("" if len(self.grid(motion)) else NEVER_BOTH_WAYS)
+
+    def grid(self, motion: Motion) -> Array:
+        shown = [self._shown(motion, float(at)) for at in super().grid(motion)]
+        return super().grid(motion)[np.array(shown, bool)]
+
+    def _shown(self, motion: Motion, at: float) -> bool:
+        """Whether each axis is sensed both ways before a jump and after it."""
+        sensed = motion.omega if self.sensor == "gyro" else motion.up
+        clear = np.abs(sensed) > MIN_SENSED * np.abs(sensed).max(axis=0)
+        after = self.fixed(at).since(motion)
+        return all(
+            (clear & (way * sensed > 0))[after == side].any(axis=0).all()
+            for side in (0, 1)
+            for way in (1, -1)
+        )
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        sensed = truth.rate if self.sensor == "gyro" else truth.force
+        return reading.plus(self.sensor, self.since(motion)[:, None] * sensed * values)

@@ -16,6 +16,7 @@ from laboratory.effects.accel_hysteresis import AccelHysteresis
 from laboratory.effects.accel_quadratic import AccelQuadratic
 from laboratory.effects.accel_saturation import AccelSaturation
 from laboratory.effects.accel_scale_asymmetry import AccelScaleAsymmetry
+from laboratory.effects.accel_scale_jump import AccelScaleJump
 from laboratory.effects.accel_scale_ramp import AccelScaleRamp
 from laboratory.effects.accel_scale_temperature import AccelScaleTemperature
 from laboratory.effects.accel_vibration_rectification import AccelVibrationRectification
@@ -49,6 +50,7 @@ from laboratory.effects.gyro_saturation import GyroSaturation
 from laboratory.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
 from laboratory.effects.gyro_scale_cubic import GyroScaleCubic
 from laboratory.effects.gyro_scale_g_dependence import GyroScaleGDependence
+from laboratory.effects.gyro_scale_jump import GyroScaleJump
 from laboratory.effects.gyro_scale_quadratic import GyroScaleQuadratic
 from laboratory.effects.gyro_scale_ramp import GyroScaleRamp
 from laboratory.effects.gyro_scale_temperature import GyroScaleTemperature
@@ -115,6 +117,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_scale_g_dependence": GyroScaleGDependence.specified,
     "gyro_scale_temperature": GyroScaleTemperature.specified,
     "gyro_scale_ramp": GyroScaleRamp.specified,
+    "gyro_scale_jump": GyroScaleJump.specified,
     "gyro_rate_power": GyroRatePower.specified,
     "gyro_stray_field": GyroStrayField.specified,
     "gyro_dead_band": GyroDeadBand.specified,
@@ -145,6 +148,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "accel_cross_products": AccelCrossProducts.specified,
     "accel_scale_asymmetry": AccelScaleAsymmetry.specified,
     "accel_scale_ramp": AccelScaleRamp.specified,
+    "accel_scale_jump": AccelScaleJump.specified,
     "accel_scale_temperature": AccelScaleTemperature.specified,
     "accel_bias_ramp": AccelBiasRamp.specified,
     "accel_warm_up": AccelWarmUp.specified,

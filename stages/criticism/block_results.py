@@ -82,6 +82,8 @@ UNEXPLAINED = _(
     "effect of the catalogue explains it."
 )
 SCATTER = _("The joint estimate allows for it as a scatter between manoeuvres.")
+MAX_LISTED = 2  # manoeuvres at which a jump may be
+LATER = _("{first}, or later up to {last}")
 INSPECT = _("Look at the residuals of each manoeuvre, and how the positions were set.")
 
 
@@ -130,9 +132,7 @@ class BlockResults:
                 effect, test, next(iter(reasons), NOT_EXCITED), self.campaign.blind(effect)
             )
         else:
-            sentence = sentences.cause_sentence(
-                cause, effect, parameters, [name for name, _ in self._positions(effect)]
-            )
+            sentence = sentences.cause_sentence(cause, effect, parameters, self._places(effect))
         yield (
             "scores",
             {
@@ -208,8 +208,7 @@ class BlockResults:
             sentence = sentences.per_log_sentence(cause, difference, UNITS[sensor])
             size = (difference, UNITS[sensor]) if self._long_runs() else (cause.snr, "sigma")
         else:
-            names = [name for name, _ in positions]
-            sentence = sentences.cause_sentence(cause, effect, parameters, names)
+            sentence = sentences.cause_sentence(cause, effect, parameters, self._places(effect))
             size = cause.snr, "sigma"
         yield (
             "findings",
@@ -279,8 +278,17 @@ class BlockResults:
         searched = next(s for s in self.selection.searched if s.name == effect.name)
         drops = [total.drop([*columns, *others])[0] for columns in searched.candidates]
         near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - MAX_RIVAL_DROP]
+        if isinstance(effect, SettingIn):
+            near.sort(key=lambda i: family[i].at or 0)
         names = self.campaign.places(effect)
         return [(names[int(family[i].at or 0)], float(drops[i])) for i in near]
+
+    def _places(self, effect: Effect | None) -> list[str]:
+        """The same in words; of what sets in at one of many, and stays, the first and the last."""
+        names = [name for name, _ in self._positions(effect)]
+        if isinstance(effect, SettingIn) and len(names) > MAX_LISTED:
+            return [LATER.format(first=names[0], last=names[-1])]
+        return names
 
     def _same_rate(self, effect: Effect, parameter: str) -> str | None:
         """The gain from turns with the axis up and down at the same rate, unlike those of S3."""

@@ -237,7 +237,8 @@ def _clipped(parts: Sequence[Part], masks: Masks) -> dict[tuple[str, str], Boole
 def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Array:
     """The time that is missing before each block of a turn, (k,), s; negative where time goes back.
 
-    By the stamps; where they give a whole number of samples within their own scatter, that.
+    By the stamps; where they give a whole number of samples within their own scatter, that. Of
+    records that came too early nothing is missing, though time leaps before them.
     """
     missing = np.zeros(len(turn))
     step = clock.duration
@@ -250,7 +251,23 @@ def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Array:
     whole = step * np.round(pause / step)
     near = np.abs(pause - whole) <= max(3 * scatter, 1e-3 * step)
     missing[1:] = np.where(hole, np.where(near, whole, pause), 0.0)
+    spanned = (turn["last"] - turn["first"]).to_numpy() - step * (turn["count"].to_numpy() - 1)
+    within = step * np.round(np.nan_to_num(spanned) / step)
+    if (whole < -step).any() or (within < 0).any():
+        missing[1:] = _in_order(np.where(hole, missing[1:], whole) + within[1:])
     return missing
+
+
+def _in_order(missing: Array) -> Array:
+    """What is missing before blocks, (k,), s, of adjacent ones, some of them negative, together."""
+    starts = np.flatnonzero((missing != 0) & (np.append(0.0, missing[:-1]) == 0))
+    ordered = missing.copy()
+    for start in starts:
+        own = slice(start, start + int(np.argmin(np.append(missing[start:], 0.0) != 0)))
+        if (missing[own] < 0).any():
+            ordered[own] = 0.0
+            ordered[start] = missing[own].sum()
+    return ordered
 
 
 class Traces(ExtremesOver):

@@ -181,12 +181,14 @@ def six_positions(plan: Plan, seconds: float = 300.0) -> Plan:
     return plan
 
 
-def plan_b(**kind: bool) -> Plan:
+def plan_b(times: int = 1, **kind: bool) -> Plan:
     """Six positions of five minutes, then a turn forward and one back about each axis, up."""
-    plan = six_positions(Plan(**kind))
-    for name in ("+x", "+y", "+z"):
-        for degrees in (360, -360):
-            plan.turn(axis(name), axis(MARK[name]), axis(name), degrees, 10, 10)
+    plan = Plan(**kind)
+    for _ in range(times):
+        six_positions(plan)
+        for name in ("+x", "+y", "+z"):
+            for degrees in (360, -360):
+                plan.turn(axis(name), axis(MARK[name]), axis(name), degrees, 10, 10)
     return plan
 
 

@@ -27,8 +27,8 @@ def motion():
 
 
 def with_a_tumble() -> Motion:
-    """Plan b, three oblique rests, and a turn about a level axis."""
-    plan = plans.plan_b()
+    """Plan b twice, three oblique rests, and a turn about a level axis."""
+    plan = plans.plan_b(2)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
         plan.rest(0.6 * np.eye(3)[i] + 0.8 * np.eye(3)[j], np.eye(3)[k], 60)
     plan.turn(np.eye(3)[2], np.eye(3)[1], np.eye(3)[0], 90, 20, 20)
@@ -92,9 +92,9 @@ def test_sensor_effects_touch_their_sensor_alone(motion):
 def test_what_is_scanned_has_candidates_of_its_own(motion):
     scanned = [effect for effect in CATALOGUE.values() if effect.scan]
     assert {e.name for e in scanned} == {
-        "gyro_warm_up", "gyro_bias_jump",
+        "gyro_warm_up", "gyro_bias_jump", "gyro_scale_jump",
         "gyro_dead_band_x", "gyro_dead_band_y", "gyro_dead_band_z",
-        "accel_warm_up", "accel_bias_jump", "table_ripple", "table_position_error",
+        "accel_warm_up", "accel_bias_jump", "accel_scale_jump", "table_ripple", "table_position_error",
         "table_axis_error", "turn_angle_error", "mounting_shift",
     }  # fmt: skip
     for effect in CATALOGUE.values():
@@ -116,8 +116,9 @@ def test_a_family_acts_with_the_middle_of_its_candidates(motion):
 
 BLIND = {
     "clock": {
-        "gyro_bias_ramp", "gyro_scale_ramp", "gyro_warm_up", "gyro_bias_jump",
+        "gyro_bias_ramp", "gyro_scale_ramp", "gyro_warm_up", "gyro_bias_jump", "gyro_scale_jump",
         "accel_bias_ramp", "accel_scale_ramp", "accel_warm_up", "accel_bias_jump",
+        "accel_scale_jump",
         "mounting_shift",
     },
     "temperature": {
@@ -132,7 +133,7 @@ BLIND = {
 
 @pytest.mark.parametrize("lacking", BLIND)
 def test_it_says_why_a_campaign_cannot_show_it(lacking):
-    campaign = plans.plan_b(**{lacking: False}).campaign()
+    campaign = plans.plan_b(2, **{lacking: False}).campaign()
     told = {name: campaign.blind(effect) for name, effect in CATALOGUE.items()}
     assert {name for name, why in told.items() if why} == BLIND[lacking]
     assert all(why.endswith(".") for why in told.values() if why)
@@ -153,8 +154,15 @@ def test_vibration_that_is_not_known_everywhere_tells_nothing(motion):
 
 
 def test_nothing_is_blind_where_all_is_known():
-    motion = plans.plan_b().campaign().motion
+    motion = plans.plan_b(2).campaign().motion
     assert not any(effect.blind(motion) for effect in CATALOGUE.values())
+
+
+def test_a_jump_of_scale_factors_needs_every_axis_both_ways_before_it_and_after_it():
+    once, twice = (plans.plan_b(times).campaign().motion for times in (1, 2))
+    for jump in (CATALOGUE["gyro_scale_jump"], CATALOGUE["accel_scale_jump"]):
+        assert jump.blind(once).startswith("There is no time before and after which")
+        assert not len(jump.grid(once)) and len(jump.grid(twice)) > 5
 
 
 def written_out(effect: Effect, motion: Motion, values: np.ndarray) -> np.ndarray:

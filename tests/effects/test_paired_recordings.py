@@ -47,6 +47,7 @@ GROUPS = (
     ("table_wobble", "table_angle_scale"),
     ("mounting_shift",),
     ("gyro_scale_ramp", "accel_scale_ramp"),
+    ("accel_scale_jump",),
 )
 FAST = GROUPS[:1]  # the others draw as many campaigns again
 

@@ -99,6 +99,9 @@ WAYS: Mapping[str, Way] = {
     "accel_bias_temperature": _three("k_micro_g_k", MICRO_G, "k", plans=RATES),
     "accel_scale_temperature": _three("k_ppm_k", PPM, "k", plans=RATES),
     "accel_bias_jump": _three("size_micro_g", MICRO_G, "b", **AT),
+    "accel_scale_jump": _three(
+        "k_ppm", PPM, "k", plans=RATES, scan=("at_s", 0.58, 0.86), share=True
+    ),
     "accel_hysteresis": _three("offset_micro_g", MICRO_G, "h", plans=RATES),
     "lever_arm": _three("arm_m", 1.0, "r"),
     "mounting_shift": _three("rotation_arcsec", ARC_SECOND, "theta", **AT),

@@ -76,6 +76,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     "gyro_anisoelasticity": ({"k_deg_h_g2": ZERO}, {"k_deg_h_g2": [100] * 3}),
     "gyro_remanence": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
     "gyro_scale_ramp": ({"k_ppm_h": ZERO}, {"k_ppm_h": [1e4] * 3}),
+    "gyro_scale_jump": ({"k_ppm": ZERO, "at_s": 9}, {"k_ppm": [1e4] * 3, "at_s": 9}),
     "gyro_rate_power": (
         {"at_10_deg_s_deg_h": ZERO, "power": 1.5},
         {"at_10_deg_s_deg_h": ONE, "power": 1.5},
@@ -123,6 +124,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     ),
     "accel_scale_asymmetry": ({"asymmetry_micro_g_g": ZERO}, {"asymmetry_micro_g_g": ONE}),
     "accel_scale_ramp": ({"k_ppm_h": ZERO}, {"k_ppm_h": [1e4] * 3}),
+    "accel_scale_jump": ({"k_ppm": ZERO, "at_s": 9}, {"k_ppm": [1e4] * 3, "at_s": 9}),
     "accel_scale_temperature": ({"k_ppm_k": ZERO}, {"k_ppm_k": ONE}),
     "accel_bias_ramp": ({"ramp_m_s2_h": ZERO}, {"ramp_m_s2_h": ONE}),
     "accel_warm_up": (
