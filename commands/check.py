@@ -17,7 +17,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
-from commands.no_result import NoResult, no_results
+from commands.no_result import SEE_REPORT, NoResult, no_results
 from inertial import tables
 from inertial.campaign.explanations import ExplainedFindings, circumstances, compete
 from inertial.campaign.hypotheses import MODEL, Findings, hypotheses
@@ -218,6 +218,9 @@ def _without(each: NoResult, causes: Sequence[ExplainedFindings]) -> str:
         for one in causes
         if _grade(one) == SPOILS and each.sensor and one.cause.sensor in (None, each.sensor)
     )
+    if not spoiling and each.action == SEE_REPORT:  # by what is said of the other sensor
+        named = (in_words(one.cause.cause) for one in causes)
+        spoiling = dict.fromkeys(name for name in named if name in each.sentence)
     what = _("Why, and what helps: {action}", action=each.action)
     if spoiling:
         what = _("Set right first what spoils it: {causes}, below.", causes=", ".join(spoiling))

@@ -23,6 +23,7 @@ from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
 from inertial.physics.effect import Effect
 from inertial.physics.setting_in import SettingIn
+from inertial.physics.site import EARTH_RATE
 from inertial.sensors import PLURAL, UNITS
 from inertial.tables import AXES
 from inertial.text.cause_names import in_words
@@ -187,11 +188,14 @@ class BlockResults:
                 },
             )
 
-    def _action(self, cause: Cause) -> str:
+    def _action(self, cause: Cause, parameters: Sequence[Estimated]) -> str:
         if cause.verdict not in NAMED:
             return sentences.ACTION_WITHOUT_LAW
         if cause.effect in LAWS:
             return law_action(cause.effect, self.mount)
+        if cause.effect == "latitude_error":
+            known = np.arcsin(self.campaign.solution.site.earth_up / EARTH_RATE)
+            return sentences.action_against_latitude(known + (parameters[0].value or 0.0))
         return sentences.action_against(KNOWN.get(cause.effect))
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
@@ -226,7 +230,8 @@ class BlockResults:
                 "consequence": sentences.CONSEQUENCE
                 if clear
                 else sentences.CONSEQUENCE_WITHOUT_LAW,
-                "action": self._action(cause) + sentences.split_sentence(split if clear else None),
+                "action": self._action(cause, parameters)
+                + sentences.split_sentence(split if clear else None),
                 "verdict": cause.verdict,
                 "statistic": cause.statistic,
                 "degrees": cause.degrees,

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
 from inertial.effects.law import Law
 from inertial.model_selection.cause import Cause, EffectTest
@@ -16,7 +18,7 @@ from inertial.physics.effect import Effect
 from inertial.physics.setting_in import Jump
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import p_is, significant
+from inertial.text.numbers import fixed, p_is, significant
 from inertial.text.parameters import sign_of
 from inertial.text.typography import capital
 from inertial.text.units import quantity
@@ -43,6 +45,10 @@ ACTION_OF_JUMP = _(
     "If the IMU was switched off and on at that time, state power_cycle: true in the first "
     "manoeuvre after it; else remove it at its origin, or compensate readings with its terms too, "
     "which the export holds."
+)
+ACTION_OF_LATITUDE = _(
+    "By the gyros the table stands at {latitude}°: correct latitude_deg, from which the earth's rate "
+    "and normal gravity follow; or heading_deg, if that is uncertain."
 )
 ACTION_WITHOUT_LAW = _(
     "Look at the residuals against time; record again with the IMU switched on long before."
@@ -164,6 +170,11 @@ def action_against(effect: Effect | None) -> str:
     if effect.terms:
         return ACTION
     return ACTION_WITHOUT_TERMS.format(stays=effect.stays)
+
+
+def action_against_latitude(latitude: float) -> str:
+    """What to do where the gyros show another latitude, rad."""
+    return ACTION_OF_LATITUDE.format(latitude=fixed(float(np.degrees(latitude)), 2))
 
 
 def split_sentence(split: Splitting | None) -> str:
