@@ -115,8 +115,9 @@ class ScaleJump(SettingIn):
         return super().blind(motion) or ("" if len(self.grid(motion)) else NEVER_BOTH_WAYS)
 
     def grid(self, motion: Motion) -> Array:
-        shown = [self._shown(motion, float(at)) for at in super().grid(motion)]
-        return super().grid(motion)[np.array(shown, bool)]
+        every = super().grid(motion)
+        shown = [self._shown(motion, float(at)) for at in every]
+        return np.asarray(every[np.array(shown, bool)])
 
     def _shown(self, motion: Motion, at: float) -> bool:
         """Whether each axis is sensed both ways before a jump and after it."""
@@ -124,7 +125,7 @@ class ScaleJump(SettingIn):
         clear = np.abs(sensed) > MIN_SENSED * np.abs(sensed).max(axis=0)
         after = self.fixed(at).since(motion)
         return all(
-            (clear & (way * sensed > 0))[after == side].any(axis=0).all()
+            bool((clear & (way * sensed > 0))[after == side].any(axis=0).all())
             for side in (0, 1)
             for way in (1, -1)
         )

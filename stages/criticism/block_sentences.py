@@ -47,8 +47,8 @@ ACTION_OF_JUMP = _(
     "which the export holds."
 )
 ACTION_OF_LATITUDE = _(
-    "By the gyros the table stands at {latitude}°: correct latitude_deg, from which the earth's rate "
-    "and normal gravity follow; or heading_deg, if that is uncertain."
+    "By the gyros the table stands at {latitude}°: correct latitude_deg, from which the earth's "
+    "rate and normal gravity follow; or heading_deg, if that is uncertain."
 )
 ACTION_WITHOUT_LAW = _(
     "Look at the residuals against time; record again with the IMU switched on long before."
