@@ -68,7 +68,7 @@ def test_what_is_wrong_with_the_demo(data: Path, capsys: pytest.CaptureFixture[s
     said = capsys.readouterr().out
     lines = said.splitlines()
     assert lines[0] == "demo: 12 of 12 manoeuvres found, 11 complete."
-    assert "1197 samples are missing between 2771.800 s and 2783.780 s" in " ".join(said.split())
+    assert "1 197 samples are missing between 2771.800 s and 2783.780 s" in " ".join(said.split())
     assert (
         said.count("What it does: ") == said.count("In the laboratory: ") == said.count(" · ") / 2
     )

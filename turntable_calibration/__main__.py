@@ -56,7 +56,13 @@ def _folder(ctx: click.Context | None) -> Path:
     default=Path(),
     help="Holds data/raw/<campaign>/, and gets data/derived/ and reports/.",
 )
-@click.option("--cores", default=2, show_default=True, help="Processors that it may use.")
+@click.option(
+    "--cores",
+    type=click.IntRange(min=1),
+    default=2,
+    show_default=True,
+    help="Processors that it may use.",
+)
 @click.version_option(package_name=PROGRAM)
 @click.pass_context
 def main(ctx: click.Context, folder: Path, cores: int) -> None:
@@ -113,7 +119,11 @@ def check(of: tuple[Path, int], campaign: str) -> int:
 @main.command()
 @click.argument("logs", nargs=-1, required=True, type=click.Path())
 @click.option("--name", default="", help="Of the campaign; left out: of the first log.")
-@click.option("--rate", type=float, help="Samples per second, where no log states it.")
+@click.option(
+    "--rate",
+    type=click.FloatRange(min=0, min_open=True),
+    help="Samples per second, where no log states it.",
+)
 @click.pass_obj
 def draft(of: tuple[Path, int], logs: tuple[str, ...], name: str, rate: float | None) -> int:
     """Write a first campaign file from the logs alone."""

@@ -13,6 +13,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from commands.draft.campaign_file import campaign_file
 from commands.draft.manoeuvres import plan_of
 from commands.draft.questions import names_of_logs, without_clock
@@ -57,7 +59,7 @@ def draft(logs: Sequence[Path], name: str, data: Path, rate: float | None = None
         raise Refusal("LOG", "", _("no log"), _("the logs of one session"), _('name them: LOG="…"'))
     name = name or re.sub(r"[^a-z0-9]+", "-", logs[0].stem.lower()).strip("-")
     folder = free_folder(name, data)
-    _check(logs)
+    _check(logs, rate)
     kinds = kinds_of([raw_log(path) for path in logs], rate)
     plan = plan_of(kinds)
     if not plan:
@@ -95,13 +97,15 @@ def _nothing_done(kinds: Sequence[Kind]) -> Refusal:
     )
 
 
-def _check(logs: Sequence[Path]) -> None:
-    """Whether the logs are there, with names that a plan can hold."""
+def _check(logs: Sequence[Path], rate: float | None) -> None:
+    """Whether the logs are there, with names that a plan can hold, and the rate can be one."""
+    if rate is not None and not 0 < rate < np.inf:
+        wanted = _("samples per second, above 0")
+        raise Refusal("RATE", "", f"{rate:g}", wanted, _("correct it: RATE=…, or --rate"))
     for path in logs:
         if not path.is_file():
-            raise Refusal(
-                str(path), "", _("no such file"), _("a log"), _("correct its name: LOG=…")
-            )
+            found = _("a folder") if path.is_dir() else _("no such file")
+            raise Refusal(str(path), "", found, _("a log"), _("correct its name: LOG=…"))
         same = [other for other in logs if other.name == path.name]
         if len(same) > 1 or not LOG.fullmatch(path.name) or path.name == "campaign.yaml":
             raise Refusal(

@@ -117,12 +117,13 @@ def number_of(campaign: Campaign, identifier: str) -> Number:
         )
     if identifier not in numbers:
         similar = difflib.get_close_matches(identifier, numbers, n=MAX_SUGGESTIONS, cutoff=0.5)
+        likely = similar or list(numbers)[:MAX_SUGGESTIONS]
         raise Refusal(
             str(campaign.derived),
             "",
             _("no number {identifier!r}", identifier=identifier),
-            _("one of {join}", join=", ".join(similar or numbers)),
-            "give one of these: ID=<number>",
+            _("one of {count}, such as {names}", count=len(numbers), names=", ".join(likely)),
+            _("give one of them: ID=…"),
         )
     return numbers[identifier]
 

@@ -21,8 +21,8 @@ BY_LOG = _("it sets in between two logs, and a reading does not tell of which it
 JUMP_TIMES = 72  # that are tried: a jump between two of them loses 2 to 4 % of its SNR²
 MIN_SENSED = 0.25  # of the most along an axis: what shows its scale factor
 NEVER_BOTH_WAYS = _(
-    "There is no time before and after which every axis is sensed both ways, so that a scale "
-    "factor that jumps would be told from one that depends on direction, rate or attitude."
+    "There is no time before and after which every axis is sensed both ways, by which a scale "
+    "factor that jumps is told from one that depends on direction, rate or attitude."
 )
 
 

@@ -59,6 +59,9 @@ _language = ENGLISH
 _chosen = NullTranslations()
 
 
+THIN_SPACE = "\u202f"  # between thousands
+
+
 def speak(language: str) -> None:
     """What follows in this process is said in a language of `LOCALES`."""
     global _language, _chosen
@@ -101,7 +104,7 @@ def noun(name: str) -> str:
 
 def plural(one: str, many: str, count: int, **values: Any) -> str:
     """The same in the form that goes with a count, which the sentence names as `{count}`."""
-    values = values | {"count": count}
+    values = values | {"count": f"{count:,}".replace(",", THIN_SPACE)}
     text = _chosen.ngettext(one, many, count).format_map(values)
     if _language == ENGLISH:
         used = one if count == 1 else many

@@ -6,12 +6,11 @@ import re
 from collections.abc import Iterable, Sequence
 from math import floor, isfinite, log10
 
-from inertial.text.messages import ENGLISH, _, language, noun
+from inertial.text.messages import ENGLISH, THIN_SPACE, _, language, noun
 from inertial.text.recipes import Recipe, remember
 
 FIGURE_SPACE = "\u2007"  # as wide as a digit
 POINT_SPACE = "\u2008"  # as wide as a decimal point
-THIN_SPACE = "\u202f"
 KEPT = frozenset(("\n", FIGURE_SPACE, POINT_SPACE, THIN_SPACE))  # no control characters
 DIGITS_OF_SIGMA = 2
 MOST_DECIMALS = 15

@@ -147,7 +147,7 @@ def _table(tables: Tables) -> Table:
             cells, high = [], False
             for values in _ratios(tables, sensor, axis):
                 if not len(values):
-                    cells += ["0", "—", "—"]
+                    cells += ["—", "—", "—"]
                     continue
                 ratio = float(np.sqrt(np.mean(values**2)))
                 beyond = int((np.abs(values) > MAX_SIGMAS).sum())

@@ -123,6 +123,13 @@ def _cell(row: Record | None, unit: Unit) -> str:
     return numbers.plus_minus(value, sigma)
 
 
+HOW = _(
+    "The interval allows for a scatter of the days, a random walk and a drift, each of which may be "
+    "absent: it is the mean over all of them by their probabilities, so it need not lie about the "
+    "straight line of the drift."
+)
+
+
 def _forecast(rows: Sequence[Record]) -> Iterator[outline.Part]:
     """Drift and the interval of the next calibration; why there is none, once."""
     known = [row for row in rows if row["low"] is not None]
@@ -139,7 +146,7 @@ def _forecast(rows: Sequence[Record]) -> Iterator[outline.Part]:
                 outline.Column(_("due"), "name"),
             ),
             [_forecast_row(row) for row in known],
-            note=_("The first is due on {date}.", date=min(due)) if due else "",
+            note=" ".join([*([_("The first is due on {date}.", date=min(due))] if due else []), HOW]),
         )
     reasons = {row["reason"]: row["due"] for row in rows if row["reason"]}
     yield outline.Sentences(
