@@ -216,7 +216,8 @@ def test_an_unknown_number_lists_near_ones(trace) -> None:
     assert said.code == 1
     assert BIAS in said.text
     assert "no number 'gyroscope/join/bias_x'" in said.text
-    assert "accelerometer/joint/bias_x" in trace("x").text
+    of_any = trace("x").text
+    assert "such as accelerometer/joint/" in of_any and of_any.count("joint/") <= 6
 
 
 def test_a_campaign_without_results_says_how_to_get_them(trace) -> None:
