@@ -80,11 +80,13 @@ def _with_rates(campaign: Campaign, effects: Sequence[Effect], noise_degrees: fl
         degrees = {**by_hand.degrees, "gyro": rests if scatter.rate else np.inf}
         campaign = _with(campaign, scatter=scatter, degrees=degrees)
         residuals = _residuals(campaign, effects, found.estimate)
-        at_rest = sum(i < len(by_hand.handled.stops) for i in residuals)
-        worst = contradicting(list(residuals.values()), at_rest)
-        if worst is None:
+        stops, numbers = len(by_hand.handled.stops), list(residuals)
+        firsts = [by_hand.handled.passages[i - stops].passage.first for i in numbers if i >= stops]
+        at_rest = [i for i in numbers if i < stops]
+        worst = contradicting(list(residuals.values()), at_rest, firsts)
+        if not worst:
             return campaign
-        campaign = _with(campaign, left_out=by_hand.left_out | {list(residuals)[worst]})
+        campaign = _with(campaign, left_out=by_hand.left_out | {numbers[i] for i in worst})
 
 
 def _degrees(estimate: Estimate, effects: Sequence[Effect]) -> int:

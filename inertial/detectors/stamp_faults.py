@@ -135,9 +135,7 @@ class TimeBackwards(Detector):
                 from_s=fixed(event.from_s, 3),
                 records=records,
             )
-        look = _(
-            "Look for logs that were joined, a clock that was set, or records out of order."
-        )
+        look = _("Look for logs that were joined, a clock that was set, or records out of order.")
         if facts.period:
             sentence += " " + _(
                 "So does a counter that begins again after {period} s.",

@@ -61,7 +61,7 @@ class WrongTimeUnitOfTurns(PlanDetector):
 
 
 MIN_ALIKE_TURNS = 3  # that show another rate of the samples: two may be cut off alike
-MIN_RATE_SIGMAS = 5.0  # of the table's rate, and of the scatter of its turns
+MIN_RATE_SIGMAS = 5.0  # of the table's rate, and of the scatter of its turns and within them
 MAX_TIME_SPREAD = 0.02  # of the ratios of the times of turns to their plan, and of their rates
 
 
@@ -74,23 +74,27 @@ def time_ratio(recorded: Recorded) -> float | None:
     known = np.isfinite(rate) & np.isfinite(angle)
     if np.count_nonzero(known) < MIN_ALIKE_TURNS or thousands_longer(recorded):
         return None
+    unsteady = float(np.median(recorded.unsteady[known]))
     rate, longer = rate[known], angle[known] / rate[known]
     ratio = float(np.median(longer))
     as_planned = np.abs(rate - 1).max() <= MAX_RATIO_SPREAD
     alike = ratio > 0 and np.abs(longer / ratio - 1).max() <= MAX_TIME_SPREAD
-    off = abs(ratio - 1) > recorded.tolerance
+    off = abs(ratio - 1) > max(recorded.tolerance, MIN_RATE_SIGMAS * unsteady)
     return ratio if as_planned and alike and off else None
 
 
 def slight_time_ratio(recorded: Recorded) -> float | None:
     """The same where it is small, and beyond what the table's rate is uncertain by."""
     rate, angle = turn_ratios(recorded)
-    longer = (angle / rate)[np.isfinite(rate) & np.isfinite(angle)]
+    known = np.isfinite(rate) & np.isfinite(angle)
+    longer = angle[known] / rate[known]
     as_recorded = bool(recorded.restated)  # rates in place of the plan's: by the gyros themselves
     if len(longer) < MIN_ALIKE_TURNS or as_recorded or not np.isfinite(recorded.rate_sigma):
         return None
     ratio = float(np.median(longer))
-    sigma = np.hypot(recorded.rate_sigma, np.std(longer))
+    # Of turns without a steady rate its mean is none of the table's.
+    scatter = np.std(longer), np.median(recorded.unsteady[known])
+    sigma = float(np.linalg.norm([recorded.rate_sigma, *scatter]))
     within = abs(ratio - 1) <= recorded.tolerance
     return ratio if within and abs(ratio - 1) > MIN_RATE_SIGMAS * sigma else None
 

@@ -123,14 +123,17 @@ def fit(
             found, about = replace(found, estimate=estimate), in_order(estimate, data.names)
         parts = dict(rows_of_rates(data, about))
         residuals = [_whitened(parts[i], data, scatter) for i in range(len(parts))]
-        worst = contradicting(residuals, len(stops))
-        if worst is None:
+        firsts = [passages[i].first for i in places]
+        worst = contradicting(residuals, range(len(stops)), firsts)
+        if not worst:
             return found, sorted(left_out)
-        if worst < len(stops):
-            stops[worst] = replace(stops[worst], mean=np.full(3, np.nan))
-            left_out.append(worst)
-        else:
-            left_out.append(len(stops) + places.pop(worst - len(stops)))
+        for number in worst:
+            if number < len(stops):
+                stops[number] = replace(stops[number], mean=np.full(3, np.nan))
+                left_out.append(number)
+            else:
+                left_out.append(len(stops) + places[number - len(stops)])
+        places = [i for i in places if len(stops) + i not in left_out]
 
 
 def _whitened(rows: Rows, data: "Unknowns", scatter: Scatter) -> Array:

@@ -71,25 +71,43 @@ def _resting(
     return lambda size: fit(replace(about, rate=size, sways=sways))
 
 
-def contradicting(residuals: Sequence[Array], rests: int) -> int | None:
-    """The rest or motion that contradicts all others, by the residuals in units of their sigma.
+def contradicting(
+    residuals: Sequence[Array], stops: Sequence[int], firsts: Sequence[int]
+) -> list[int]:
+    """The places of rests and motions that contradict all others, the worst first.
 
-    The share of one in the sum of squares of its kind follows the F distribution; None where none
-    is too large. The first are the `rests`.
+    The share of one in the sum of squares of its kind follows the F distribution; without those
+    that are too large the next is compared with the others. Of two beside each other the worse one
+    alone, for its error is in both.
+
+    Parameters
+    ----------
+    residuals : in units of their sigma, of the rests `stops`, by number, and of the motions from
+        the rests `firsts` to the next
     """
+    rests = len(stops)
     found: list[tuple[float, int]] = []
     for fitted, first, some in zip(
         FITTED, (0, rests), (residuals[:rests], residuals[rests:]), strict=True
     ):
         squares = np.array([float(each @ each) for each in some])
         counts = np.array([len(each) for each in some])
-        degrees = int(counts.sum()) - fitted
-        if degrees <= 2 * fitted:
-            continue
-        worst = int(np.argmax(squares))
-        own = int(counts[worst])
-        others = max(float(squares.sum() - squares[worst]), np.finfo(float).tiny)
-        ratio = float(squares[worst]) / own / others * (degrees - own)
-        found.append((float(f_sf(ratio, own, degrees - own)) * len(squares), first + worst))
-    p_value, place = min(found, default=(1.0, 0))
-    return place if p_value < FALSE_OMISSIONS else None
+        left = int(counts.sum()) - fitted, float(squares.sum())
+        for worst in np.argsort(-squares).tolist():
+            degrees, own = left[0], int(counts[worst])
+            if degrees <= 2 * fitted:
+                break
+            others = max(left[1] - float(squares[worst]), np.finfo(float).tiny)
+            ratio = float(squares[worst]) / own / others * (degrees - own)
+            p_value = float(f_sf(ratio, own, degrees - own)) * len(squares)
+            if p_value >= FALSE_OMISSIONS:
+                break
+            found.append((p_value, first + worst))
+            left = degrees - own, others
+    ends = [{stop} for stop in stops] + [{first, first + 1} for first in firsts]
+    apart, touched = list[int](), set[int]()
+    for _p_value, place in sorted(found):
+        if not ends[place] & touched:
+            apart.append(place)
+        touched |= {stop + k for stop in ends[place] for k in (-1, 0, 1)}
+    return apart

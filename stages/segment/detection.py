@@ -24,7 +24,7 @@ from inertial.signal.plan_detector import (
     SpansOff,
     Swapped,
 )
-from inertial.tables import STATIC_PHASES
+from inertial.tables import GYRO, STATIC_PHASES
 from stages.segment.located import AS_PLANNED, Located
 from stages.segment.matching import Part, motion
 from stages.segment.recording_explanations import ExplainedRecording, unlike
@@ -115,6 +115,7 @@ def recorded_of(
         turned=_vectors([turned for _, turned in observations]),
         moved=_numbers([d.angle for d in done]),
         speed=_numbers([d.rate for d in done]),
+        unsteady=_unsteady(plan, recording.blocks),
         lacking=_numbers([d.missing_angle for d in done]),
         lacking_s=_numbers([d.missing_s for d in done]),
         duration=_numbers([d.seconds for d in done]),
@@ -144,6 +145,18 @@ Left = TypeVar("Left", Misread, Swapped)
 def _beside(left: Left, undone: Undone) -> Left:
     """What is not set right, with what explains as much."""
     return replace(left, rivals=undone.rivals.get(left.repair, ()))
+
+
+def _unsteady(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
+    """What the rates of the steady blocks of each turn scatter by, relative; 0 of others."""
+    steady = blocks[blocks["phase"] == "steady"].groupby("manoeuvre")
+    rates = {name: own[list(GYRO)].to_numpy(np.float64) for name, own in steady}
+    scatter = np.zeros(len(plan))
+    for i, m in enumerate(plan):
+        if m.about is not None and len(rates.get(m.name, ())) > 1:
+            about = rates[m.name] @ m.about
+            scatter[i] = np.std(about) / abs(np.mean(about))
+    return scatter
 
 
 Place = tuple[int, int, float | None, float | None]

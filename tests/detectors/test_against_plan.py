@@ -370,6 +370,17 @@ def test_samples_that_are_counted_by_their_rate_raise_nothing(tmp_path):
     assert found_in(results).empty and performed(results)["complete"].all()
 
 
+def test_turns_that_are_hardly_steady_do_not_tell_the_rate():
+    """Ramps of 13 s of 31: they count for steady in part, so 3 % were asked about, "not usable"."""
+    document = chain.short()
+    document["campaign"]["table"] |= {"rate_sigma_ppm": 100}
+    for one in document["campaign"]["plan"]:
+        if one["do"] == "turn":
+            one |= {"rate_deg_s": 20, "accel_deg_s2": 1.5}
+    results = run(document)
+    assert found_in(results).empty and performed(results)["complete"].all()
+
+
 @pytest.mark.parametrize(("line", "samples"), [(500, 60), (330, 100)], ids=["steady", "ramp"])
 def test_what_a_gap_takes_from_a_turn_is_told_by_the_gap_alone(line, samples):
     fault = {"lose": {"log": "z-backward.asc", "line": line, "samples": samples}}

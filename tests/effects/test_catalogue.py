@@ -95,7 +95,8 @@ def test_what_is_scanned_has_candidates_of_its_own(motion):
         "gyro_warm_up", "gyro_bias_jump", "gyro_scale_jump",
         "gyro_dead_band_x", "gyro_dead_band_y", "gyro_dead_band_z",
         "accel_warm_up", "accel_bias_jump", "accel_scale_jump",
-        "table_ripple", "table_position_error", "table_axis_error", "turn_angle_error", "mounting_shift",
+        "table_ripple", "table_position_error", "table_axis_error",
+        "turn_angle_error", "mounting_shift",
     }  # fmt: skip
     for effect in CATALOGUE.values():
         candidates = effect.candidates(motion)

@@ -124,9 +124,9 @@ def _cell(row: Record | None, unit: Unit) -> str:
 
 
 HOW = _(
-    "The interval allows for a scatter of the days, a random walk and a drift, each of which may be "
-    "absent: it is the mean over all of them by their probabilities, so it need not lie about the "
-    "straight line of the drift."
+    "The interval allows for a scatter of the days, a random walk and a drift, each of which may "
+    "be absent: it is the mean over all of them by their probabilities, so it need not lie about "
+    "the straight line of the drift."
 )
 
 
@@ -135,6 +135,7 @@ def _forecast(rows: Sequence[Record]) -> Iterator[outline.Part]:
     known = [row for row in rows if row["low"] is not None]
     if known:
         due = [row["due"] for row in known if row["due"] is not None]
+        first = [_("The first is due on {date}.", date=min(due))] if due else []
         yield outline.Table(
             _("Drift by weighted regression, and what the next calibration may find."),
             (
@@ -146,7 +147,7 @@ def _forecast(rows: Sequence[Record]) -> Iterator[outline.Part]:
                 outline.Column(_("due"), "name"),
             ),
             [_forecast_row(row) for row in known],
-            note=" ".join([*([_("The first is due on {date}.", date=min(due))] if due else []), HOW]),
+            note=" ".join([*first, HOW]),
         )
     reasons = {row["reason"]: row["due"] for row in rows if row["reason"]}
     yield outline.Sentences(
