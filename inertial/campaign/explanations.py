@@ -115,7 +115,9 @@ SPOILING = (
     "wrong_direction",
     "axis_swap",
     "sign_flip",
+    "samples_lost",
 )
+OF_ANGLES = ("clock_scale", "samples_lost")  # of these what is in proportion, and one turn's angle
 OF_TRIADS = ("axis_swap", "sign_flip", "wrong_scale_factor", "manoeuvre_swapped")
 IN_PROPORTION = frozenset(
     {
@@ -215,6 +217,7 @@ EXPLANATIONS = (
         ("gravity_error",), _is("wrong_scale_factor", "gravity_error", *MISFITS), same_sensor
     ),
     Explanation(("latitude_error",), _is("gravity_error"), anywhere),
+    Explanation(("samples_lost",), _is(*MISFITS), same_sensor),
     # What was recorded is no turn as planned, at whatever rate it is.
     Explanation(("incomplete_turn",), _is("wrong_rate"), same_manoeuvre),
     # A table that moves: the readings are right, the position is not the planned one.
@@ -257,7 +260,10 @@ def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
         return False
     if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
         return other.cause == "oscillation" and _size(other) < _size(cause)
-    return cause.cause in SPOILING and (cause.cause != "clock_scale" or _in_proportion(other))
+    if cause.cause not in OF_ANGLES:
+        return cause.cause in SPOILING
+    of_one_turn = cause.cause == "samples_lost" and "turn_angle_error" in other.causes
+    return of_one_turn or _in_proportion(other)
 
 
 def circumstances(findings: Sequence[Row]) -> Iterator[Row]:

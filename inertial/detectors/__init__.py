@@ -47,6 +47,7 @@ from inertial.detectors.temperatures import (
 )
 from inertial.detectors.turns_against_plan import (
     IncompleteTurn,
+    LostSamplesOfTurns,
     SampleRateByTurns,
     WrongDirection,
     WrongRate,
@@ -115,6 +116,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     ManoeuvreMissing(),
     WrongDirection(),
     IncompleteTurn(),
+    LostSamplesOfTurns(),
     WrongRate(),
     EncoderScale(),
     ShortRest(),

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from inertial.arrays import Booleans
 from inertial.detectors.stamps_misstated import TIME_UNITS
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled, Reversed
@@ -11,6 +12,7 @@ from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, tu
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
 
+MAX_LISTED = 3  # turns that a sentence names
 MIN_TURNS = 2  # that show a unit of the time
 MAX_TIME_RATIO = 1.1  # of the thousands by which all turns take longer
 
@@ -93,8 +95,8 @@ def slight_time_ratio(recorded: Recorded) -> float | None:
         return None
     ratio = float(np.median(longer))
     # Of turns without a steady rate its mean is none of the table's.
-    scatter = np.std(longer), np.median(recorded.unsteady[known])
-    sigma = float(np.linalg.norm([recorded.rate_sigma, *scatter]))
+    scatter = np.hypot(np.std(longer), np.median(recorded.unsteady[known]))
+    sigma = np.hypot(recorded.rate_sigma, scatter)
     within = abs(ratio - 1) <= recorded.tolerance
     return ratio if within and abs(ratio - 1) > MIN_RATE_SIGMAS * sigma else None
 
@@ -190,6 +192,78 @@ def _slightly_off(ratio: float, rate_sigma: float, stated: float) -> Description
             state=state,
         ),
     )
+
+
+MIN_SHORT_TURNS = 2  # of one alone the table may have stopped elsewhere: the model has it
+ASSUMED_RATE_SIGMA = 1e-3  # of a table, relative, where none is stated
+MIN_LOST_SAMPLES = 1.0
+
+
+def short_turns(recorded: Recorded) -> Booleans:
+    """Which whole turns have too small an angle for their rate, by that of most others, (m,)."""
+    rate, angle = turn_ratios(recorded)
+    known = np.isfinite(rate) & np.isfinite(angle) & recorded.complete & (rate > 0)
+    short = np.zeros(len(known), bool)
+    if not known.any() or recorded.restated:
+        return short
+    longer = angle[known] / rate[known]
+    of_table = np.nan_to_num(recorded.rate_sigma, nan=ASSUMED_RATE_SIGMA)
+    lacking = 1 - longer / np.median(longer)
+    seconds = np.abs(recorded.angle[known] / recorded.rate[known])
+    least = np.maximum(
+        MIN_RATE_SIGMAS * np.hypot(of_table, recorded.unsteady[known]),
+        MIN_LOST_SAMPLES * recorded.given.interval / seconds,
+    )
+    short[known] = lacking > least
+    few = MIN_SHORT_TURNS <= np.count_nonzero(short) < np.count_nonzero(known) / 2
+    return short if few else np.zeros(len(known), bool)
+
+
+class LostSamplesOfTurns(PlanDetector):
+    """Turns whose angle is short though their rate is not, as none of most others is.
+
+    Cause: samples are lost, and the stamps are counted as if none were. An asymmetry of the gyros
+    changes the rate they read as well; a table that stops before does not.
+    """
+
+    name = "samples_lost"
+    source = "5 samples of 50 Hz lost in a turn at 40 °/s: 356° in place of 360°"
+    unit = "°"
+    severity = 3
+    sensor = "gyro"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        short = np.flatnonzero(short_turns(recorded))
+        if len(short):
+            lacking = np.degrees(np.abs(recorded.angle[short]) - np.abs(recorded.moved[short]))
+            worst = float(lacking.max())
+            yield Deviation(None, "", worst, self.sensor, count=len(short), facts=short)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        short = deviation.facts
+        listed = [
+            _(
+                "{name} ({far}° of {planned}°)",
+                name=recorded.name[i],
+                far=fixed(float(np.degrees(recorded.moved[i])), 2),
+                planned=fixed(float(np.degrees(recorded.angle[i])), 0),
+            )
+            for i in short[:MAX_LISTED]
+        ]
+        return Description(
+            _(
+                "{turns} have too small an angle for their rate, which is as in the others: "
+                "{listed}. Samples are lost there that the stamps do not show, or the table "
+                "stopped before.",
+                turns=counted(len(short), "turn"),
+                listed=", ".join(listed),
+            ),
+            _("Taken as planned, they make an asymmetry of the gyros, or wrong scale factors."),
+            _(
+                "Record them again with a counter or a clock in which lost samples show; if it was "
+                "the table, state the degrees through which it turned."
+            ),
+        )
 
 
 class IncompleteTurn(PlanDetector):

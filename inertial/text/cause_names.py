@@ -20,6 +20,7 @@ NAMES = {
     "table_ripple": _("table ripple"),
     "oscillation": _("oscillation"),
     "bias_jump": _("bias jump"),
+    "samples_lost": _("lost samples that the stamps do not show"),
     "bias_removed": _("mean subtracted from the readings"),
     "copied_channel": _("axis that is a copy of another"),
     "dead_axis": _("dead axis"),

@@ -370,6 +370,28 @@ def test_samples_that_are_counted_by_their_rate_raise_nothing(tmp_path):
     assert found_in(results).empty and performed(results)["complete"].all()
 
 
+def test_lost_samples_that_no_stamp_shows_make_no_asymmetry(tmp_path):
+    """An asymmetry of 5500 ppm in two axes; a scale factor was 1300 sigma off, "within limits"."""
+    document = chain.short(seed=3)
+    document["receiver"] |= {"message": "columns", "line_end": "lf"}
+    document["campaign"]["instrument"] = {"name": "simulated", "rate_hz": 100}
+    document["campaign"]["table"] |= {"rate_sigma_ppm": 100}
+    folder = chain.simulate(document, tmp_path / "campaign")
+    campaign = folder / "campaign.yaml"
+    text = campaign.read_text()
+    campaign.write_text(text.replace("time: {column: time, unit: s}", "time: {rate_hz: 100}"))
+    for name in ("x-backward", "y-backward"):
+        lines = (folder / f"{name}.asc").read_text().splitlines(keepends=True)
+        middle = len(lines) // 2
+        (folder / f"{name}.asc").write_text("".join(lines[:middle] + lines[middle + 8 :]))
+    results = chain.run(folder, tmp_path / "derived", "diagnosis", chain.BESIDE)
+    (cause,) = results["diagnosis/causes"].query("sensor == 'gyro'").to_dict("records")
+    assert (cause["cause"], cause["count"]) == ("samples_lost", 2)
+    assert "x-backward (−355." in cause["sentence"] and "y-backward" in cause["sentence"]
+    verdicts = results["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts["gyro"] == "not_usable"
+
+
 def test_turns_that_are_hardly_steady_do_not_tell_the_rate():
     """Ramps of 13 s of 31: they count for steady in part, so 3 % were asked about, "not usable"."""
     document = chain.short()
