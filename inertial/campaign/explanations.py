@@ -208,6 +208,7 @@ EXPLANATIONS = (
     Explanation(
         ("clock_scale", "rate_off"), _is("clock_scale", "rate_off", "wrong_rate"), anywhere
     ),
+    Explanation(("encoder_scale",), _is("rate_off"), anywhere),
     Explanation(
         ("wrong_time_unit",),
         _is(*PERFORMANCE, *MISFITS, "wrong_scale_factor", "clock_scale", "bias_jump"),

@@ -196,7 +196,7 @@ def _slightly_off(ratio: float, rate_sigma: float, stated: float) -> Description
 
 MIN_SHORT_TURNS = 2  # of one alone the table may have stopped elsewhere: the model has it
 ASSUMED_RATE_SIGMA = 1e-3  # of a table, relative, where none is stated
-MIN_LOST_SAMPLES = 1.0
+NORMAL_MEDIAN = 1.4826  # sigma of a normal distribution over its median absolute deviation
 
 
 def short_turns(recorded: Recorded) -> Booleans:
@@ -207,14 +207,10 @@ def short_turns(recorded: Recorded) -> Booleans:
     if not known.any() or recorded.restated:
         return short
     longer = angle[known] / rate[known]
-    of_table = np.nan_to_num(recorded.rate_sigma, nan=ASSUMED_RATE_SIGMA)
     lacking = 1 - longer / np.median(longer)
-    seconds = np.abs(recorded.angle[known] / recorded.rate[known])
-    least = np.maximum(
-        MIN_RATE_SIGMAS * np.hypot(of_table, recorded.unsteady[known]),
-        MIN_LOST_SAMPLES * recorded.given.interval / seconds,
-    )
-    short[known] = lacking > least
+    of_table = np.nan_to_num(recorded.rate_sigma, nan=ASSUMED_RATE_SIGMA)
+    scatter = np.hypot(of_table, NORMAL_MEDIAN * np.median(np.abs(lacking)))
+    short[known] = lacking > MIN_RATE_SIGMAS * np.hypot(scatter, recorded.unsteady[known])
     few = MIN_SHORT_TURNS <= np.count_nonzero(short) < np.count_nonzero(known) / 2
     return short if few else np.zeros(len(known), bool)
 

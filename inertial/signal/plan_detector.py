@@ -122,7 +122,7 @@ class Recorded:
     force: (m, 3), mean of its rest, or of that before its turn; of one that is not found, of what
     its log holds instead; turned: (m, 3), angles of its motion; NaN where not recorded.
     moved: (m,), angle about `about`; speed: (m,), mean rate of its steady part about `about`;
-    unsteady: (m,), what its blocks there scatter by, relative, 0 where not known;
+    unsteady: (m,), what quarters of that scatter by, relative, 0 where not known;
     lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, of the rest
     or from start to stop.
     first, after: (m,), records of it, or of what its log holds instead, −1 where there are none;

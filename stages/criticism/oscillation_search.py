@@ -122,11 +122,16 @@ def oscillation_of(
     turns: Sequence[SteadyTurn],
     lowest: float,
     level: float,
-) -> Oscillation:
-    """What a detection with its p-value is, by its hypotheses, the likeliest first."""
+) -> Oscillation | None:
+    """What a detection with its p-value is, by its hypotheses, the likeliest first.
+
+    None where no turn has a line at its frequency, as of readings that are nearly always equal.
+    """
     likeliest = hypotheses[0]
     lines = _lines(turns, likeliest, lowest)
     clear = _clear(lines, turns, level)
+    if not clear:
+        return None
     names = [line.manoeuvre for line in clear]
     showing = [turn for turn in turns if turn.name in names]
     return Oscillation(
@@ -284,7 +289,10 @@ def _searched(searches: dict[Removed, Search], favoured: str) -> SearchResult:
     while current.largest and current.hypotheses and len(oscillations) < MAX_OSCILLATIONS:
         hypotheses = favouring(current.hypotheses, favoured)
         p_value, lowest, level = current.largest.p_value, current.lowest, current.level
-        oscillations.append(oscillation_of(hypotheses, p_value, current.turns, lowest, level))
+        found = oscillation_of(hypotheses, p_value, current.turns, lowest, level)
+        if found is None:
+            break
+        oscillations.append(found)
         frequencies = hypotheses[0].frequencies
         removed = (*removed, tuple(frequencies.items()))
         if removed not in searches:

@@ -31,6 +31,7 @@ from stages.segment.recording_explanations import ExplainedRecording, unlike
 from stages.segment.steps import BY_GRAVITY, Exchanged, axes_step, exchange_step
 
 UNKNOWN = np.full(3, np.nan)
+QUARTERS = 4  # of the steady part of a turn
 
 
 @dataclass(frozen=True)
@@ -148,14 +149,18 @@ def _beside(left: Left, undone: Undone) -> Left:
 
 
 def _unsteady(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
-    """What the rates of the steady blocks of each turn scatter by, relative; 0 of others."""
+    """What the mean rates of quarters of the steady part of each turn scatter by, relative.
+
+    0 where it has less than a block for each.
+    """
     steady = blocks[blocks["phase"] == "steady"].groupby("manoeuvre")
     rates = {name: own[list(GYRO)].to_numpy(np.float64) for name, own in steady}
     scatter = np.zeros(len(plan))
     for i, m in enumerate(plan):
-        if m.about is not None and len(rates.get(m.name, ())) > 1:
-            about = rates[m.name] @ m.about
-            scatter[i] = np.std(about) / abs(np.mean(about))
+        if m.about is not None and len(rates.get(m.name, ())) >= QUARTERS:
+            quarters = np.array_split(rates[m.name] @ m.about, QUARTERS)
+            means = [float(quarter.mean()) for quarter in quarters]
+            scatter[i] = np.std(means) / abs(np.mean(means))
     return scatter
 
 
