@@ -15,6 +15,7 @@ from inertial.tables import STATIC_PHASES
 from stages.segment.matching import BETWEEN, SETTLING, Part
 
 TRACE_POINTS = 1200  # per log, what a figure shows
+MAX_EARLY = 50  # samples, by which a record comes too early in a log
 
 
 class _Spans:
@@ -253,8 +254,10 @@ def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Array:
     missing[1:] = np.where(hole, np.where(near, whole, pause), 0.0)
     spanned = (turn["last"] - turn["first"]).to_numpy() - step * (turn["count"].to_numpy() - 1)
     within = step * np.round(np.nan_to_num(spanned) / step)
-    if (whole < -step).any() or (within < 0).any():
-        missing[1:] = _in_order(np.where(hole, missing[1:], whole) + within[1:])
+    # A clock that goes back farther was set, or began again.
+    leaps, within = (np.where(np.abs(t) < MAX_EARLY * step, t, 0.0) for t in (whole, within))
+    if (leaps < -step).any() or (within < 0).any():
+        missing[1:] = _in_order(np.where(hole, missing[1:], leaps) + within[1:])
     return missing
 
 
