@@ -41,8 +41,7 @@ def evidence(
         ]
     )
     information = sum((np.diag(reduced.information) for _, reduced in against), np.zeros(1))
-    known = np.sqrt(np.maximum(information, 0.0))
-    observable = (largest * known > MIN_OBSERVABLE_SIGMAS).astype(np.float64)
+    observable = (largest * np.sqrt(information) > MIN_OBSERVABLE_SIGMAS).astype(np.float64)
     return Evidence(
         tuple(_restricted(reduced, observable) for _, reduced in informative),
         tuple(sensor for sensor, _ in informative),
@@ -69,10 +68,9 @@ def _informative(
 
 
 def _restricted(reduced: EffectInformation, observable: Array) -> EffectInformation:
-    """The same with zeros in the columns that are not observable, (k,), or hold only rounding."""
-    kept = observable * (np.diag(reduced.information) > 0)
+    """The same with zeros in the columns that are not observable, (k,)."""
     return replace(
         reduced,
-        information=reduced.information * np.outer(kept, kept),
-        right=reduced.right * kept,
+        information=reduced.information * np.outer(observable, observable),
+        right=reduced.right * observable,
     )

@@ -45,14 +45,12 @@ from inertial.detectors.temperatures import (
     TemperatureMisstated,
     WrongTemperatureUnit,
 )
-from inertial.detectors.turns_against_plan import (
-    IncompleteTurn,
+from inertial.detectors.time_of_turns import (
     LostSamplesOfTurns,
     SampleRateByTurns,
-    WrongDirection,
-    WrongRate,
     WrongTimeUnitOfTurns,
 )
+from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate
 from inertial.detectors.wrong_imu_type import WrongImuType
 from inertial.detectors.wrong_scale_factor import (
     GravityRemoved,
