@@ -220,12 +220,16 @@ class _Channels:
         return new if held > MIN_HELD_SHARE * len(new) and new.any() else None
 
     def held_share(self) -> Array:
-        """The share of records that hold the readings of each sensor throughout, (2,); else 0."""
+        """The share of records that hold the readings of each sensor throughout, (2,); else 0.
+
+        Where only one of several axes changes at all, the counts are coarse.
+        """
         share = np.zeros(2)
         for sensor, windows in enumerate(self.windows):
             own = slice(3 * sensor, 3 * sensor + 3)
             moving = self.smallest[own] < self.largest[own]
-            if not moving.any() or not sum(map(len, windows)):
+            recorded = np.isfinite(self.smallest[own])
+            if moving.sum() < min(2, recorded.sum()) or not sum(map(len, windows)):
                 continue
             held, pairs = self.held[sensor], self.pairs[own][moving]
             alone = (self.unchanged[own][moving] - held) / np.maximum(pairs - held, 1)

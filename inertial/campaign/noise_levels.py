@@ -54,7 +54,8 @@ def effective_levels(
     """The table of effective levels, by the levels of all manoeuvres.
 
     `drifts`: see `drift_of`, by channel; `rounding`: what coarse counts add, by manoeuvre, phase
-    and channel; a channel that stands still in a manoeuvre has no level there, but this.
+    and channel; a channel that stands still in a manoeuvre has no level there, but this. One that
+    stands still in all has no noise that its counts would show, and this alone.
 
     The common variance is the mean of theirs, weighted with w = (N/σ)², their relative precision,
     for else a level that came out low would weigh more for it. Then the common level has the
@@ -94,7 +95,11 @@ def effective_levels(
             )
         for key in [key for key in rounding if key[-1] == channel]:
             place = dict(zip(("manoeuvre", "phase", "channel"), key, strict=True))
-            rows.append(place | common | {"rounding": rounding[key]})
+            rows.append(place | common | {"rounding": rounding.pop(key)})
+    still = {"white_noise": 0.0, "sigma": 0.0, "source": COMMON, "degrees": np.inf}
+    for (manoeuvre, phase, channel), size in rounding.items():
+        place = {"manoeuvre": manoeuvre, "phase": phase, "channel": channel}
+        rows.append(place | still | {"rounding": size})
     return pd.DataFrame(rows, columns=LEVEL_COLUMNS) if rows else tables.LEVELS.empty()
 
 

@@ -9,7 +9,6 @@ from inertial import tables
 from inertial.arrays import Array
 from inertial.estimation.spectrum import NoiseShape, in_band, level_of_pieces, shape_of
 from inertial.sensors import COLUMNS
-from inertial.signal.scatter import smallest_step
 
 MIN_SAMPLES = 16  # fewer give no level
 
@@ -17,8 +16,8 @@ MIN_SAMPLES = 16  # fewer give no level
 class Spectra:
     """The band levels of one manoeuvre, piece by piece, for each sensor by itself.
 
-    Accelerometers and gyros may come in records of their own. `steps`: the smallest changes of the
-    channels; `carried`: sensors whose counts carry over what they leave.
+    Accelerometers and gyros may come in records of their own. A channel whose readings are all
+    equal has no level. `carried`: sensors whose counts carry over what they leave.
     """
 
     def __init__(self) -> None:
@@ -28,7 +27,6 @@ class Spectra:
         self.sums = np.zeros(6)
         self.samples: dict[str, int] = {}
         self.seconds: dict[str, list[float]] = {}
-        self.steps = np.full(6, np.inf)
         self.carried: set[str] = set()
 
     def add(self, values: Array, rate: float, band: tuple[float, float]) -> None:
@@ -38,15 +36,14 @@ class Spectra:
             part = part[np.isfinite(part).any(axis=1)]
             if len(part) >= MIN_SAMPLES:
                 whole = np.isfinite(part).all(axis=0)
-                frequency, levels = in_band(np.where(whole, part, 0.0), rate, band)
+                varies = np.ptp(part, axis=0) > 0  # else their mean is off by its last digit
+                frequency, levels = in_band(np.where(whole & varies, part, 0.0), rate, band)
                 self.frequencies.setdefault(sensor, []).append(frequency)
                 self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))
                 self.squares[columns] += np.var(part, axis=0) * len(part)
                 self.sums[columns] += part.sum(axis=0)
                 self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
                 self.seconds.setdefault(sensor, []).append(len(part) / rate)
-                steps = [smallest_step(channel) for channel in part.T]
-                self.steps[columns] = np.minimum(self.steps[columns], steps)
 
     def rows(
         self, manoeuvre: str, phase: str, shapes: Mapping[str, Sequence[NoiseShape]]

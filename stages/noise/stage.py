@@ -12,7 +12,7 @@ from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
 from inertial.sensors import COLUMNS
-from inertial.signal.scatter import noise_before_rounding, rounded_mean
+from inertial.signal.scatter import noise_before_rounding, rounded_mean, smallest_step
 from inertial.tables.stage import Stage, Tables
 from stages.noise.declared import DECLARED
 from stages.noise.spectra import Spectra, shapes_of
@@ -48,7 +48,11 @@ def noise(
     lengths = [row["to_record"] - row["from_record"] for row in quiet if row["phase"] != "steady"]
     static = StaticStretches(max(lengths, default=0))
     number = 0
+    changes = np.full(len(tables.CHANNELS), np.inf)
+    levels_seen: list[Array] = []
     for log, record, values, continues in _unbroken(masked_samples, gaps):
+        changes = np.minimum(changes, [smallest_step(channel) for channel in values.T])
+        levels_seen.append(values[0])
         step = clock[log].duration
         number += not continues
         for row in quiet:
@@ -71,7 +75,8 @@ def noise(
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
     noises = list(static.noises())
     drifts = dict(chain.from_iterable(n.drifts() for n in noises))
-    levels = effective_levels(measured, drifts, rounding_levels(spectra))
+    counts = count_sizes(changes, np.array(levels_seen))
+    levels = effective_levels(measured, drifts, rounding_levels(spectra, counts))
     if of_means:
         own = pd.DataFrame(of_means, columns=levels.columns)
         levels = pd.concat([levels, own]) if rows else own
@@ -186,8 +191,32 @@ MIN_ROUNDED_MEAN = 1e-3  # steps
 MAX_ALIKE = 0.25  # steps between means whose errors have anything in common
 
 
-def rounding_levels(spectra: Mapping[tuple[str, str], Spectra]) -> dict[Level, float]:
+def count_sizes(changes: Array, readings: Array) -> Array:
+    """The size of a count of each channel, (6,): the smallest of its changes.
+
+    That of a channel which stands still in each piece is no larger than the smallest difference of
+    the magnitudes of readings of its sensor, or change of another axis.
+
+    Parameters
+    ----------
+    changes : (6,), the smallest change of each channel within unbroken pieces, infinite for none
+    readings : (pieces, 6), one of each piece
+    """
+    sizes = changes.copy()
+    for columns in COLUMNS.values():
+        seen = np.unique(np.abs(readings[:, columns]))
+        least = min(smallest_step(seen[np.isfinite(seen)]), changes[columns].min())
+        sizes[columns] = np.where(np.isfinite(changes[columns]), changes[columns], least)
+    return sizes
+
+
+def rounding_levels(
+    spectra: Mapping[tuple[str, str], Spectra], counts: Array
+) -> dict[Level, float]:
     """What the rounding of readings adds to the level of each manoeuvre, phase and channel.
+
+    counts : (6,), the size of a count of each channel
+
 
     The mean of a manoeuvre is off by the same however long it is; so is the sigma that this level
     gives it. Means that are alike are off by the same, so each of k of them has √k of it. The
@@ -195,9 +224,8 @@ def rounding_levels(spectra: Mapping[tuple[str, str], Spectra]) -> dict[Level, f
     that of the mean variance of all rests, but where a manoeuvre clearly shakes.
     """
     found: dict[Level, float] = {}
-    steps = np.min([one.steps for one in spectra.values()], axis=0, initial=np.inf)
-    for place in np.flatnonzero(np.isfinite(steps)):
-        channel, step = tables.CHANNELS[place], float(steps[place])
+    for place in np.flatnonzero(np.isfinite(counts)):
+        channel, step = tables.CHANNELS[place], float(counts[place])
         sensor = channel.partition("_")[0]
         own = {
             key: one
