@@ -1,7 +1,7 @@
 """The campaign of the benchmarks with rests of any length, in binary logs; written piece by piece.
 
-The laboratory simulates the short one. Each rest is then extended with the mean of its readings and
-white noise of the same size, rounded to counts as in the receiver. Later logs are delayed by as
+The laboratory simulates the short one. Each rest is then extended with what the sensors read in it
+and white noise of the same size, rounded to counts as in the receiver. Later logs are delayed by as
 much.
 """
 
@@ -15,6 +15,7 @@ from benchmarks.campaign import RATE, RESTS, document, log_of, performed
 from laboratory.folder import campaign_yaml
 from laboratory.rawimu import Samples, log_bytes
 from laboratory.recording import LogTruth, Recording
+from laboratory.sensor import Reading
 
 PIECE = 200_000  # samples that are drawn and written at a time
 
@@ -64,13 +65,14 @@ def _pieces(
 
 
 def _increments(short: Recording, truth: LogTruth) -> tuple[NDArray[np.float64], ...]:
-    """Mean and standard deviation of the increments in counts, (6,): accelerometers, gyros."""
+    """Mean without noise and standard deviation of the increments in counts, (6,).
+
+    Accelerometers, gyros. The mean of the readings would add their noise to hours as a bias.
+    """
     receiver = short.receiver
-    felt = np.hstack(
-        [
-            truth.noisy.accelerometer / receiver.accelerometer_count,
-            truth.noisy.gyro / receiver.gyro_count,
-        ]
-    )
-    increments = np.diff(felt, axis=0)
-    return increments.mean(axis=0), increments.std(axis=0)
+
+    def counted(felt: Reading) -> NDArray[np.float64]:
+        accelerometer = felt.accelerometer / receiver.accelerometer_count
+        return np.diff(np.hstack([accelerometer, felt.gyro / receiver.gyro_count]), axis=0)
+
+    return counted(truth.noiseless).mean(axis=0), counted(truth.noisy).std(axis=0)

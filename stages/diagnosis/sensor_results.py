@@ -13,12 +13,14 @@ import pandas as pd
 from inertial.campaign.explanations import ExplainedFindings
 from inertial.campaign.hypotheses import MODEL
 from inertial.campaign.records import Row, rows_of
+from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
 from inertial.text.parameters import BIAS, CROSS, FREE, JOINT, SCALE
 from stages.diagnosis.decision import Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
+MAX_CHANCE = 0.05  # p-value of an effect's size, with a larger one it moves nothing for certain
 TWELVE = frozenset(linear_names())
 BY_FREE_POSITIONS = _(
     "No attitude is known, so the result is that of static positions of unknown attitude."
@@ -104,7 +106,8 @@ class SensorResult:
     def moves(self, effects: Collection[str]) -> float | None:
         """The largest shift of one of the twelve parameters by one of these effects, in sigma.
 
-        In the sigma of the result; None where no candidate has such an effect.
+        In the sigma of the result; None where no candidate has such an effect, or only one whose
+        size is chance: gyros know a shift in the fixture to a degree that is one of arc seconds.
         """
         sigma = {row["parameter"]: row["sigma"] for row in self.chosen.rows}
         shifts = [
@@ -121,7 +124,7 @@ def shift(result: Result, effect: str) -> dict[str, float]:
     """By how much each of the twelve parameters would move without an effect, by name.
 
     With the effect's parameters β held at zero the others move by −C_θβ C_ββ⁻¹ β, the conditional
-    mean of a Gaussian.
+    mean of a Gaussian. Empty where β may be zero by chance.
     """
     rows = list(result.rows)
     own = [i for i, row in enumerate(rows) if row["effect"] == effect and row["sigma"]]
@@ -132,6 +135,8 @@ def shift(result: Result, effect: str) -> dict[str, float]:
     block = result.covariance[np.ix_(own, own)]
     size = np.sqrt(np.diag(block))
     weights = np.linalg.pinv(block / np.outer(size, size), hermitian=True) @ (beta / size) / size
+    if chi2_sf(beta @ weights, len(own)) > MAX_CHANCE:
+        return {}
     moved = -result.covariance[np.ix_(twelve, own)] @ weights
     return {rows[i]["parameter"]: float(by) for i, by in zip(twelve, moved, strict=True)}
 
