@@ -116,6 +116,7 @@ SPOILING = (
     "axis_swap",
     "sign_flip",
     "samples_lost",
+    "normalised_force",
 )
 OF_ANGLES = ("clock_scale", "samples_lost")  # of these what is in proportion, and one turn's angle
 OF_TRIADS = ("axis_swap", "sign_flip", "wrong_scale_factor", "manoeuvre_swapped")
@@ -188,7 +189,7 @@ EXPLANATIONS = (
     Explanation(("periodic_glitch",), _is("spike"), same_axis),
     # Columns that do not hold what they should.
     Explanation(
-        ("copied_channel", "gravity_removed", "bias_removed"),
+        ("copied_channel", "gravity_removed", "normalised_force", "bias_removed"),
         _is(*PERFORMANCE, *MISFITS, *OF_TRIADS),
         same_sensor,
     ),

@@ -29,6 +29,7 @@ from inertial.detectors.misread_axes_and_signs import (
     SignFlipAgainstPlan,
     SignFlipOfGyros,
 )
+from inertial.detectors.normalised_force import NormalisedForce
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.quantisation import Quantisation
@@ -81,6 +82,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     # what a column holds
     CopiedChannel(),
     GravityRemoved(),
+    NormalisedForce(),
     BiasRemoved(),
     # readings: a blow, a channel at its limit, one that repeats, or a glitch would resemble spikes
     Impact(),

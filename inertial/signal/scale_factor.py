@@ -45,23 +45,29 @@ def force_at_rest(log: Log) -> float:
     return float(np.median(force[recorded][quiet]))
 
 
+def quiet_force(log: Log) -> Array:
+    """The means of the specific force over the windows of a log that are quiet, (k, 3), m/s²."""
+    force, variance = log.windows.mean[:, :3], log.windows.variance[:, :3].sum(axis=1)
+    known = np.isfinite(force).all(axis=1) & np.isfinite(variance)
+    if not known.any():
+        return np.empty((0, 3))
+    force, variance = force[known], variance[known]
+    return force[variance <= QUIET_VARIANCE_RATIO * np.quantile(variance, 0.25)]
+
+
 def radius_at_rest(log: Log) -> float:
     """The radius of the sphere about the bias on which f lies at rest, m/s².
 
     A large bias moves the centre of that sphere, not its radius. NaN where the log has too few
     attitudes to determine both.
     """
-    force, variance = log.windows.mean[:, :3], log.windows.variance[:, :3].sum(axis=1)
-    known = np.isfinite(force).all(axis=1) & np.isfinite(variance)
-    if np.count_nonzero(known) < MIN_SPHERE_WINDOWS:
+    if len(force := quiet_force(log)) < MIN_SPHERE_WINDOWS:
         return np.nan
-    force, variance = force[known], variance[known]
-    force = force[variance <= QUIET_VARIANCE_RATIO * np.quantile(variance, 0.25)]
     # |f − b|² = r²  ⇔  2 f·b + (r² − b²) = f², linear in b and r² − b².
     design = np.column_stack([2 * force, np.ones(len(force))])
     size = np.sqrt(np.mean(np.sum(force**2, axis=1)))
     shares = np.linalg.svd((force - force.mean(axis=0)) / size, compute_uv=False)
-    if len(force) < MIN_SPHERE_WINDOWS or shares[-1] < MIN_SPHERE_SPREAD * np.sqrt(len(force)):
+    if shares[-1] < MIN_SPHERE_SPREAD * np.sqrt(len(force)):
         return np.nan
     solution = np.linalg.lstsq(design, np.sum(force**2, axis=1), rcond=None)[0]
     return float(np.sqrt(max(solution[3] + solution[:3] @ solution[:3], 0.0)))

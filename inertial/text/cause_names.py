@@ -26,6 +26,7 @@ NAMES = {
     "dead_axis": _("dead axis"),
     "gap": _("gap"),
     "gravity_removed": _("gravity subtracted from the readings"),
+    "normalised_force": _("accelerometers of constant magnitude"),
     "held_record": _("held record"),
     "incomplete_turn": _("incomplete turn"),
     "periodic_glitch": _("periodic glitch"),

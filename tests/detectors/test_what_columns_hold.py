@@ -100,6 +100,27 @@ def test_it_is_the_only_cause_and_the_other_sensor_stays_usable(columns, cause, 
     assert verdicts.pop(sensor) == "not_usable" and set(verdicts) == {"usable"}
 
 
+def normalised(counts: np.ndarray) -> np.ndarray:
+    """The accelerometers' columns are a direction times a constant, as a phone's gravity."""
+    length = np.linalg.norm(counts[:, :3], axis=1, keepdims=True)
+    return np.hstack([counts[:, :3] / length * 9.80665e6, counts[:, 3:]])
+
+
+def test_a_direction_in_place_of_the_specific_force_leaves_no_scale_factor():
+    """An asymmetry of the accelerometers was named, and scale factors off by 24 sigma were usable."""
+    document = chain.short(seed=5)
+    document["receiver"] |= {"message": "columns", "line_end": "lf", "carries": False}
+    document["receiver"] |= {"gyro_count_rad": 1e-9, "accelerometer_count_m_s": 1e-8}
+    document["campaign"]["instrument"] = {"name": "made up"}
+    recording = laboratory.perform(laboratory.specify(document))
+    tables = chain.in_memory(changed(recording, normalised), "diagnosis", chain.BESIDE)
+    causes = tables["diagnosis/causes"]
+    assert list(causes["cause"]) == ["normalised_force"] and set(causes["sensor"]) == {"accel"}
+    assert causes["size"][0] == pytest.approx(9.80665, abs=1e-5)
+    verdicts = tables["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts["accel"] == "not_usable" and verdicts["gyro"] == "usable"
+
+
 def test_a_counter_of_16_bits_that_begins_again_is_told_and_spoils_nothing():
     """A log of 65.536 s several times over ended criticism with an exception."""
     recording = laboratory.perform(laboratory.specify(chain.short(seed=5)))
