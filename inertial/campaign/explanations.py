@@ -220,6 +220,10 @@ EXPLANATIONS = (
     ),
     Explanation(("latitude_error",), _is("gravity_error"), anywhere),
     Explanation(("samples_lost",), _is(*MISFITS), same_sensor),
+    # A rate that is another after each turn looks like a bias that wanders, or that remembers.
+    Explanation(
+        ("motion_after_turns",), _is(*MISFITS, "gyro_random_walk", "gyro_hysteresis"), same_sensor
+    ),
     # What was recorded is no turn as planned, at whatever rate it is.
     Explanation(("incomplete_turn",), _is("wrong_rate"), same_manoeuvre),
     # A table that moves: the readings are right, the position is not the planned one.

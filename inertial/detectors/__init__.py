@@ -29,6 +29,7 @@ from inertial.detectors.misread_axes_and_signs import (
     SignFlipAgainstPlan,
     SignFlipOfGyros,
 )
+from inertial.detectors.motion_after_turns import MotionAfterTurns
 from inertial.detectors.normalised_force import NormalisedForce
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
@@ -117,6 +118,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     WrongDirection(),
     IncompleteTurn(),
     LostSamplesOfTurns(),
+    MotionAfterTurns(),
     WrongRate(),
     EncoderScale(),
     ShortRest(),

@@ -123,6 +123,7 @@ class Recorded:
     its log holds instead; turned: (m, 3), angles of its motion; NaN where not recorded.
     moved: (m,), angle about `about`; speed: (m,), mean rate of its steady part about `about`;
     unsteady: (m,), what quarters of that scatter by, relative, 0 where not known;
+    after_stop: (m,), rad, what it turns farther in the rest after it, NaN where not known;
     lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, of the rest
     or from start to stop.
     first, after: (m,), records of it, or of what its log holds instead, −1 where there are none;
@@ -162,6 +163,7 @@ class Recorded:
     moved: Array
     speed: Array
     unsteady: Array
+    after_stop: Array
     lacking: Array
     lacking_s: Array
     duration: Array

@@ -52,7 +52,7 @@ def quiet_force(log: Log) -> Array:
     if not known.any():
         return np.empty((0, 3))
     force, variance = force[known], variance[known]
-    return force[variance <= QUIET_VARIANCE_RATIO * np.quantile(variance, 0.25)]
+    return np.asarray(force[variance <= QUIET_VARIANCE_RATIO * np.quantile(variance, 0.25)])
 
 
 def radius_at_rest(log: Log) -> float:

@@ -30,6 +30,7 @@ NAMES = {
     "held_record": _("held record"),
     "incomplete_turn": _("incomplete turn"),
     "periodic_glitch": _("periodic glitch"),
+    "motion_after_turns": _("motion after the stop of turns"),
     "quantisation": _("quantisation"),
     "saturation": _("saturation"),
     "short_rest": _("short rest"),

@@ -31,6 +31,7 @@ from stages.segment.recording_explanations import ExplainedRecording, unlike
 from stages.segment.steps import BY_GRAVITY, Exchanged, axes_step, exchange_step
 
 UNKNOWN = np.full(3, np.nan)
+MAX_OF_ROUND = 0.01  # by which a whole number of rounds may be off
 QUARTERS = 4  # of the steady part of a turn
 
 
@@ -117,6 +118,7 @@ def recorded_of(
         moved=_numbers([d.angle for d in done]),
         speed=_numbers([d.rate for d in done]),
         unsteady=_unsteady(plan, recording.blocks),
+        after_stop=_after_stop(plan, recording.blocks),
         lacking=_numbers([d.missing_angle for d in done]),
         lacking_s=_numbers([d.missing_s for d in done]),
         duration=_numbers([d.seconds for d in done]),
@@ -162,6 +164,32 @@ def _unsteady(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
             means = [float(quarter.mean()) for quarter in quarters]
             scatter[i] = np.std(means) / abs(np.mean(means))
     return scatter
+
+
+def _after_stop(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
+    """By what each turn, a whole number of rounds, goes on in the rest after it, rad.
+
+    By the rate there beyond that in the rest before it, about its axis and in its sense; NaN where
+    one of the two rests is not recorded. The earth's rate about the axis is the same in both.
+    """
+    angle = np.full(len(plan), np.nan)
+    rests = {
+        key: (own[list(GYRO)].to_numpy(np.float64), own["seconds"].to_numpy(np.float64))
+        for key, own in blocks.groupby(["manoeuvre", "phase"])
+    }
+    for i, m in enumerate(plan):
+        rounds = 0.0 if m.angle is None else m.angle / (2 * np.pi)
+        before, after = (rests.get((m.name, f"rest-{side}")) for side in ("before", "after"))
+        if m.about is None or not round(rounds) or abs(rounds - round(rounds)) > MAX_OF_ROUND:
+            continue
+        if before and after:
+            rate, seconds = zip(before, after, strict=True)
+            earlier, later = (
+                float(np.average(one @ m.about, weights=time))
+                for one, time in zip(rate, seconds, strict=True)
+            )
+            angle[i] = np.sign(rounds) * (later - earlier) * seconds[1].sum()
+    return angle
 
 
 Place = tuple[int, int, float | None, float | None]

@@ -392,6 +392,36 @@ def test_lost_samples_that_no_stamp_shows_make_no_asymmetry(tmp_path):
     assert verdicts["gyro"] == "not_usable"
 
 
+def overshooting(recording: laboratory.Recording, angle: float, seconds: float):
+    """The recording by gyros that a table turns back by an angle, rad, after each of its stops."""
+    records = {}
+    for log, one in recording.records.items():
+        counts = one.counts.astype(float)
+        turned = counts[:, 3:].sum(axis=0) * recording.receiver.gyro_count
+        axis = int(np.argmax(np.abs(turned)))
+        if abs(turned[axis]) > 1.0:
+            moving = np.abs(counts[:, 3 + axis]) > np.abs(counts[:, 3 + axis]).max() / 100
+            stop = int(np.flatnonzero(moving)[-1]) + 1
+            left = np.exp(-np.arange(len(counts) - stop + 1) * 0.01 / seconds)
+            back = np.sign(turned[axis]) * angle / recording.receiver.gyro_count * left
+            counts[stop:, 3 + axis] += np.diff(np.rint(back))
+        records[log] = replace(one, counts=counts.astype(one.counts.dtype))
+    return replace(recording, records=records)
+
+
+def test_a_table_that_overshoots_is_no_random_walk_of_the_gyros():
+    """A random walk was named; scale factors 9 sigma off were "usable within limits"."""
+    recording = laboratory.perform(laboratory.specify(chain.short(seed=7)))
+    tables = chain.in_memory(
+        overshooting(recording, np.deg2rad(200 / 3600), 4.0), "diagnosis", chain.BESIDE
+    )
+    (cause,) = tables["diagnosis/causes"].to_dict("records")
+    assert (cause["cause"], cause["sensor"], cause["count"]) == ("motion_after_turns", "gyro", 6)
+    assert -200 < degrees(cause["size"]) * 3600 < -80  # of which a part is after the short rest
+    verdicts = tables["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts["gyro"] == "not_usable" and verdicts["accel"] == "usable"
+
+
 def test_turns_that_are_hardly_steady_do_not_tell_the_rate():
     """Ramps of 13 s of 31: they count for steady in part, so 3 % were asked about, "not usable"."""
     document = chain.short()

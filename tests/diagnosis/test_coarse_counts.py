@@ -35,7 +35,12 @@ def rounded(seed: int, noise: float, *, carries: bool) -> dict:
 
 
 @pytest.fixture(
-    scope="module", params=[*(pytest.param(one, marks=pytest.mark.slow) for one in (0.3, 0.15)), 0.02]
+    scope="module",
+    params=[
+        pytest.param(0.3, marks=pytest.mark.slow),
+        pytest.param(0.15, marks=pytest.mark.slow),
+        0.02,
+    ],
 )
 def results(request):
     """Of each seed what was hidden and what came of it."""
