@@ -107,7 +107,7 @@ def normalised(counts: np.ndarray) -> np.ndarray:
 
 
 def test_a_direction_in_place_of_the_specific_force_leaves_no_scale_factor():
-    """An asymmetry of the accelerometers was named, and scale factors off by 24 sigma were usable."""
+    """An asymmetry was named, and scale factors that were off by 24 sigma were usable."""
     document = chain.short(seed=5)
     document["receiver"] |= {"message": "columns", "line_end": "lf", "carries": False}
     document["receiver"] |= {"gyro_count_rad": 1e-9, "accelerometer_count_m_s": 1e-8}
