@@ -118,7 +118,7 @@ class Examination:
         for detector in self._detectors:
             of_campaign = detector.detect_in_campaign(self._given) if self._given else ()
             for event in chain(of_campaign, detector.detect_between_logs(self.logs)):
-                events.setdefault((detector, "", event.channel), []).append(event)
+                events.setdefault((detector, event.log, event.channel), []).append(event)
             for name, log in self.logs.items():
                 for event in detector.detect_in_log(log):
                     _append(events.setdefault((detector, name, event.channel), []), event)

@@ -193,6 +193,7 @@ EXPLANATIONS = (
         _is(*PERFORMANCE, *MISFITS, *OF_TRIADS),
         same_sensor,
     ),
+    Explanation(("copied_log",), _is(*PERFORMANCE, *OF_TRIADS, "gap", "time_backwards"), same_log),
     # Axes, signs, units: they change everything that their sensor reads.
     Explanation(
         ("axis_swap", "sign_flip", "wrong_scale_factor", "wrong_imu_type", "wrong_direction"),

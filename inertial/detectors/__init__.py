@@ -9,6 +9,7 @@ from inertial.detectors.bias_removed import BiasRemoved
 from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
 from inertial.detectors.copied_channel import CopiedChannel
+from inertial.detectors.copied_log import CopiedLog
 from inertial.detectors.dead_axis import DeadAxis
 from inertial.detectors.encoder_against_plan import EncoderScale
 from inertial.detectors.gap import Gap
@@ -81,6 +82,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     WrongDay(),
     WrongImuType(),
     # what a column holds
+    CopiedLog(),
     CopiedChannel(),
     GravityRemoved(),
     NormalisedForce(),

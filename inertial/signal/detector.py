@@ -184,7 +184,7 @@ class Event:
     detector's unit, or in that of the channel; p_value: chance of it if nothing is wrong, the
     search paid for; count: how many equal things it stands for; facts: what its description needs;
     severity: where it is not that of the detector; sensor: accel or gyro, where it concerns one of
-    them though no channel alone.
+    them though no channel alone; log: that it concerns, where it was seen between logs.
     """
 
     first: int
@@ -199,6 +199,7 @@ class Event:
     facts: Any = None
     severity: int | None = None
     sensor: str | None = None
+    log: str = ""
 
     @property
     def channels(self) -> Sequence[int]:

@@ -23,6 +23,7 @@ NAMES = {
     "samples_lost": _("lost samples that the stamps do not show"),
     "bias_removed": _("mean subtracted from the readings"),
     "copied_channel": _("axis that is a copy of another"),
+    "copied_log": _("log that is a copy of another"),
     "dead_axis": _("dead axis"),
     "gap": _("gap"),
     "gravity_removed": _("gravity subtracted from the readings"),

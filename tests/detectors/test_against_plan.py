@@ -392,6 +392,21 @@ def test_lost_samples_that_no_stamp_shows_make_no_asymmetry(tmp_path):
     assert verdicts["gyro"] == "not_usable"
 
 
+@pytest.mark.parametrize("name", ["y-down", "x-down"])
+def test_a_log_that_is_a_copy_of_another_is_told(tmp_path, name):
+    """It was a missing manoeuvre, and nothing where the plan has the same attitude in both."""
+    folder = chain.simulate(chain.short(seed=3), tmp_path / "campaign")
+    (folder / f"{name}.asc").write_bytes((folder / "x-up.asc").read_bytes())
+    if name == "x-down":
+        campaign = folder / "campaign.yaml"
+        campaign.write_text(re.sub(r"(id: x-down.*?up: )-x", r"\1+x", campaign.read_text()))
+    results = chain.run(folder, tmp_path / "derived", "diagnosis", chain.BESIDE)
+    (cause,) = results["diagnosis/causes"].query("cause == 'copied_log'").to_dict("records")
+    assert cause["log"] == f"{name}.asc" and "x-up.asc" in cause["sentence"]
+    assert "manoeuvre_missing" not in set(results["diagnosis/causes"]["cause"])
+    assert set(results["diagnosis/verdict"]["verdict"]) <= {"usable_within_limits", "not_usable"}
+
+
 def overshooting(recording: laboratory.Recording, angle: float, seconds: float):
     """The recording by gyros that a table turns back by an angle, rad, after each of its stops."""
     records = {}
