@@ -221,6 +221,11 @@ EXPLANATIONS = (
     ),
     Explanation(("latitude_error",), _is("gravity_error"), anywhere),
     Explanation(("samples_lost",), _is(*MISFITS), same_sensor),
+    Explanation(
+        ("position_not_kept",),
+        _is(*MISFITS, "accel_random_walk", "bias_jump"),
+        anywhere,
+    ),
     # A rate that is another after each turn looks like a bias that wanders, or that remembers.
     Explanation(
         ("motion_after_turns",), _is(*MISFITS, "gyro_random_walk", "gyro_hysteresis"), same_sensor
@@ -267,6 +272,8 @@ def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
         return False
     if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
         return other.cause == "oscillation" and _size(other) < _size(cause)
+    if cause.cause == "position_not_kept":
+        return other.cause in ("position_scatter", *POSITION_OFF)
     if cause.cause not in OF_ANGLES:
         return cause.cause in SPOILING
     of_one_turn = cause.cause == "samples_lost" and "turn_angle_error" in other.causes

@@ -34,6 +34,7 @@ from inertial.detectors.motion_after_turns import MotionAfterTurns
 from inertial.detectors.normalised_force import NormalisedForce
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
+from inertial.detectors.position_not_kept import PositionNotKept
 from inertial.detectors.quantisation import Quantisation
 from inertial.detectors.repeated_records import Duplicate, HeldRecord
 from inertial.detectors.saturation import Saturation
@@ -124,6 +125,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     WrongRate(),
     EncoderScale(),
     ShortRest(),
+    PositionNotKept(),
     RestsDivided(),
     TemperatureMisstated(),
 )

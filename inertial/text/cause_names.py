@@ -47,6 +47,7 @@ NAMES = {
     "wrong_spans": _("spans by another clock"),
     "wrong_rate": _("wrong rate"),
     "unexplained": _("unexplained"),
+    "position_not_kept": _("position that was not kept"),
     "position_scatter": _("positions that scatter by more than is stated of the table"),
     "wrong_scale_of_turns": _("wrong scale of turns"),
     "mounting_shift": _("shift of the IMU in its fixture"),

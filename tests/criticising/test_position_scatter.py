@@ -1,5 +1,6 @@
 """A table whose positions are worse than is stated: that is named, and no effect of a sensor."""
 
+from dataclasses import replace
 from typing import Any
 
 import chain
@@ -50,3 +51,19 @@ def test_with_their_sigma_stated_they_are_no_cause_and_the_sigmas_hold(tilted: s
         own = table.loc[list(linear_names())[:9]]
         errors = (own["value"].to_numpy(float) - true) / own["sigma"].to_numpy(float)
         assert np.abs(errors).max() < 4.0
+
+
+def test_rests_of_one_position_that_were_set_anew_are_no_random_walk() -> None:
+    """A random walk of the accelerometers was named; cross terms 5 sigma off were usable."""
+    document = PLANS["stops"](seed=74)
+    plan = document["campaign"]["plan"]
+    kept = [dict(one) for one in plan]
+    for i, one in enumerate(plan):  # the laboratory sets each manoeuvre anew, by 30 arcsec
+        one["position"] = f"{i}"
+    document["effects"] = {"table_position_error": {"sigma_arcsec": 30.0}}
+    recording = laboratory.perform(laboratory.specify(document))
+    stated = {**recording.campaign, "plan": kept}
+    results = chain.in_memory(replace(recording, campaign=stated), "diagnosis", chain.BESIDE)
+    causes = set(results["diagnosis/causes"]["cause"])
+    assert causes == {"position_not_kept", "table_moving"}  # the logs hold the changes, too
+    assert set(results["diagnosis/verdict"]["verdict"]) == {"not_usable"}
