@@ -90,6 +90,8 @@ def test_rests_and_turns_of_one_log_come_in_their_order(tmp_path):
     assert [[m.get(key) for key in keys] for m in campaign["plan"]] == [
         [m.get(key) for key in keys] for m in turn_and_stop()
     ]
+    places = [m["position"] for m in campaign["plan"]]  # else each has a tilt of its own
+    assert [places[i] == places[i - 1] for i in range(1, 16)] == [i % 4 > 0 for i in range(1, 16)]
     assert campaign["table"]["name"] != "by hand"
     layout = campaign["instrument"]["format"]
     assert layout["temperature"] == {"column": "temperature", "unit": "degC"}

@@ -268,3 +268,59 @@ def test_an_object_of_matlab_is_said_to_be_one(tmp_path):
     with pytest.raises(Refusal, match="an object of MATLAB") as refusal:
         draft([log], "drafted", tmp_path / "data")
     assert "matrices" in refusal.value.expected
+
+
+# ---- what stands between fields and in clocks
+
+
+def session(stamps: list[str], names: str, *, between: str) -> str:
+    """A log with texts as stamps: three faces by accelerometers in mg, z first, at 50 Hz."""
+    force = np.vstack([at_rest(FACES[i], 10, i) for i in (0, 2, 3)])[::2] * 1000 / 9.80665
+    rows = [
+        between.join([stamp, *(f"{value:.3f}" for value in row)])
+        for stamp, row in zip(stamps, force[:, ::-1], strict=True)
+    ]
+    return "\n".join([names, *rows]) + "\n"
+
+
+def clock(first_s: float, form: str) -> list[str]:
+    """The time of the day of 1500 rows, 20 ms apart."""
+    ms = np.round(1000 * first_s + 20 * np.arange(1500)).astype(int) % 86_400_000
+    return [form.format(k // 3_600_000, k // 60_000 % 60, k // 1000 % 60, k % 1000) for k in ms]
+
+
+def test_tabs_stand_between_names_that_hold_blanks(tmp_path):
+    """Split at blanks the names did not fit; columns were x, y, z in the order of the file."""
+    stamps = clock(9 * 3600, "2026-11-20T{:02}:{:02}:{:02}.{:03}")
+    text = session(stamps, "time\tacc_z [mg]\tacc_y [mg]\tacc_x [mg]", between="\t")
+    campaign = told(drafted({"log.tsv": text}, tmp_path))
+    format_ = campaign["instrument"]["format"]
+    assert format_["accelerometer"]["columns"] == ["acc_x [mg]", "acc_y [mg]", "acc_z [mg]"]
+    assert [m["up"] for m in campaign["plan"]] == ["+z", "+y", "+x"]
+
+
+@pytest.mark.parametrize(
+    ("form", "first_s"),
+    [
+        ("{:02}:{:02}:{:02}.{:03}", 86_390),
+        ("{:02}:{:02}:{:02},{:03}", 0),
+        ("{}:{:02}:{:02}.{:03}", 9),
+    ],
+)
+def test_the_time_of_the_day_is_a_clock_also_at_midnight(tmp_path, form, first_s):
+    text = session(clock(first_s, form), "Time;z;y;x", between=";")
+    folder = drafted({"log.csv": text}, tmp_path)
+    time = told(folder)["instrument"]["format"]["time"]
+    assert time == {"column": "Time", "unit": "iso8601", "wraps_at": 86_400 * 10**9}
+    results = chain.run(folder, tmp_path / "derived", "decode")
+    taken = results["decode/samples"]["time"].to_numpy()
+    assert len(taken) == 1500 and np.diff(taken).min() >= 0 and 29 <= np.ptp(taken) <= 30
+
+
+def test_a_column_that_is_filled_now_and_then_labels_nothing(tmp_path):
+    """A pressure in every tenth row ended the draft with an exception."""
+    rows = session(clock(5, "{:02}:{:02}:{:02}.{:03}"), "Time,z,y,x", between=",").splitlines()
+    filled = [f"{row},{1013 if k % 10 == 0 else ''}" for k, row in enumerate(rows[1:])]
+    text = "\n".join(["Time,z,y,x,Pressure", *filled]) + "\n"
+    campaign = told(drafted({"log.csv": text}, tmp_path))
+    assert "label" not in campaign["instrument"]["format"] and len(campaign["plan"]) == 3

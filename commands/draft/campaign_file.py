@@ -48,8 +48,13 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
         lines += [f"{key}: {in_flow(value)}" for key, value in _logs_of(plan[0], kinds).items()]
     lines.append("plan:")
     sigma = _angle_sigma(plan)
-    for m, own in zip(plan, _ids(plan), strict=True):
-        keys = {"id": own, **_keys(m, None if m.by_table else sigma), **_where(m, kinds)}
+    for m, own, position in zip(plan, _ids(plan), _positions(plan), strict=True):
+        keys = {
+            "id": own,
+            **position,
+            **_keys(m, None if m.by_table else sigma),
+            **_where(m, kinds),
+        }
         if len(kinds) > 1:
             keys["format"] = _format_name(m, kinds)
         if len(logs) > 1:
@@ -385,6 +390,15 @@ def _ids(plan: Sequence[Manoeuvre]) -> Iterator[str]:
     for name in names:
         used[name] += 1
         yield f"{name}-{used[name]}" if several[name] > 1 else name
+
+
+def _positions(plan: Sequence[Manoeuvre]) -> Iterator[dict[str, str]]:
+    """The position of each manoeuvre that shares one with others, named by the first of them."""
+    held = [m.held for m in plan]
+    name = ""
+    for own, before, behind in zip(_ids(plan), held, [*held[1:], False], strict=True):
+        name = name if before else own
+        yield {"position": name} if before or behind else {}
 
 
 def _name(m: Manoeuvre) -> str:

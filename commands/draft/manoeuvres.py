@@ -31,7 +31,8 @@ class Manoeuvre:
     """One line of the plan: rest, turn or positions, with what is known of it.
 
     up, about: signed axis, or None; degrees, rate: of a turn, °, °/s; seen: the angle that the
-    gyros have, °; seconds; rows: of the first file, (first, after), None for the whole of it.
+    gyros have, °; seconds; rows: of the first file, (first, after), None for the whole of it; held:
+    in the position of the manoeuvre before it: a table turned by whole rounds between, or not.
     """
 
     do: str
@@ -46,6 +47,12 @@ class Manoeuvre:
     seconds: float | None = None
     rows: tuple[int, int] | None = None
     count: int = 0  # static positions that were found
+    held: bool = False
+
+    @property
+    def whole(self) -> bool:
+        """Whether a table turned by whole rounds."""
+        return self.by_table and self.degrees is not None and self.degrees % 360 == 0
 
 
 @dataclass(frozen=True)
@@ -171,6 +178,7 @@ def _in_order(part: Part, own: Divided) -> Iterator[Manoeuvre]:
             if vertical and rests.index(behind) == rests.index(before) + 1:
                 turns[rests.index(before)] = turn
     most = round(MAX_BESIDE_S / own.series.bin_seconds())
+    held = False
     for k, rest in enumerate(rests):
         # A rest beside a turn belongs to it; a longer one is a static position besides.
         first, after = own.inside(rest)
@@ -179,13 +187,18 @@ def _in_order(part: Part, own: Divided) -> Iterator[Manoeuvre]:
         seconds = (after - first) * own.series.bin_seconds()
         if seconds > MIN_REST_S and (up := face(rest.accel)):
             rows = _rows(part, own, first, after)
-            yield Manoeuvre("rest", part, up=up, seconds=seconds, rows=rows)
+            yield Manoeuvre("rest", part, up=up, seconds=seconds, rows=rows, held=held)
+            held = True
         if k in turns:
             following = rests[k + 1]
             both = k + 1 in turns  # the rest between two turns is shared
             start = max(rest.first if k - 1 not in turns else _middle(rest), rest.after - most)
             stop = min(_middle(following) if both else following.after, following.first + most)
-            yield _turn(part, own, turns[k], rest, _rows(part, own, start, stop))
+            turn = _turn(part, own, turns[k], rest, _rows(part, own, start, stop))
+            yield replace(turn, held=held and turn.whole)
+            held = turn.whole
+        else:
+            held = False
 
 
 def _middle(rest: Still) -> int:

@@ -28,7 +28,9 @@ DELIMITERS, DECIMALS = (None, ",", ";", "\t"), (".", ",")
 COMMENTS = ("#", "//", "%")
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _DATE = re.compile(
-    r"\d{4}-?\d\d-?\d\d[T ]\d\d:?\d\d(:?\d\d([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?", re.ASCII
+    r"(\d{4}-?\d\d?-?\d\d?[T ]\d\d?:?\d\d?(:?\d\d?([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?)"
+    r"|(\d?\d:\d\d:\d\d([.,]\d+)?)",
+    re.ASCII,
 )
 
 
@@ -83,6 +85,11 @@ class _Separated:
     delimiter: str | None = None
     decimal: str = "."
 
+    @property
+    def rank(self) -> tuple[int, int, bool, int]:
+        """The larger, the likelier: blanks may stand within names and dates."""
+        return self.rows, self.numbers, self.delimiter is not None, self.length
+
 
 def _separated(lines: Sequence[str]) -> _Separated:
     """How most lines are separated that hold enough numbers."""
@@ -96,8 +103,7 @@ def _separated(lines: Sequence[str]) -> _Separated:
                 own = (text for row in data if len(row) == length for text in row)
                 numbers = sum(is_number(text, decimal) for text in own)
                 found = _Separated(count, numbers, length, delimiter, decimal)
-                if (count, numbers, length) > (best.rows, best.numbers, best.length):
-                    best = found
+                best = max(best, found, key=lambda one: one.rank)
     return best
 
 
@@ -137,7 +143,9 @@ def _layout(
 
     numbers = holding(lambda text: is_number(text, decimal))
     dates = holding(_DATE.fullmatch)
-    words = [n for n, own in enumerate(fields) if n not in numbers + dates and any(own)]
+    some = [[text for text in own if text] for own in fields]
+    sparse = [n for n, own in enumerate(some) if all(is_number(text, decimal) for text in own)]
+    words = [n for n in range(len(fields)) if n not in numbers + dates + sparse]
     header = lines[:first]
     comment = next((mark for mark in COMMENTS if any(h.startswith(mark) for h in header)), None)
     others = [line for line in header if not (comment and line.startswith(comment))]
@@ -241,7 +249,7 @@ def raw_log(path: Path) -> RawLog:
 
 def _text_log(path: Path, found: TextLayout) -> RawLog:
     def column(place: int) -> Name:
-        return found.names[place] if found.names else place + 1
+        return found.names[place] if place < len(found.names) else place + 1
 
     layout = {"kind": "columns", **found.stated}
     columns = _numbers(path, layout, [column(place) for place in found.numbers])

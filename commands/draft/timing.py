@@ -22,6 +22,7 @@ COMMON_RATES = np.array(
 )  # Hz
 MAX_RATE_ERROR = 0.05  # of a rate that is taken to be a common one
 MAX_STEP = 3.0  # usual steps, that a counter may be off by where it begins again
+DAY = 86400.0  # s
 MIN_PERIOD = 255  # of a counter: fewer ticks are no clock
 STATED = re.compile(
     r"(?:\bfs|\brate|\bfreq\w*|\bodr|\bhz)\b[^0-9\n]{0,20}([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE
@@ -84,7 +85,9 @@ def timing_of(
     if np.median(positive) < 0.5 * ticks:
         why += _("; stamps come in bursts: the rate is their number in the whole time")
     wraps_at = None if column in logs[0].dates else _period(counters)
-    if wraps_at is not None:
+    if column in logs[0].dates and max(float(own.max()) for own in counters) < DAY:
+        why, wraps_at = _("it holds the time of the day"), round(DAY * 1e9)
+    elif wraps_at is not None:
         why += _("; it begins again after {period} ticks", period=wraps_at)
     return Timing(column, unit, rate, named is None and unit != "iso8601", why, wraps_at)
 

@@ -18,6 +18,8 @@ from inertial.formats.arrow_arrays import array_of_texts, numbers_of
 _DECIMAL = pa.decimal128(38, 9)  # holds every number of nanoseconds since 1970 to its last digit
 _TO_WHOLE = pc.CastOptions(target_type=pa.int64(), allow_decimal_truncate=True)
 _NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+_TIME_ALONE = r"^(\d?\d:\d\d?:\d\d?)"
+_ONE_FIGURE = r"([-T :])(\d)([-T :.]|$)"
 _WITH_ZONE = r"[T ].*(Z|[+-]\d\d(:?\d\d)?)$"
 # Of a buffer, for to make a scalar of a number the library imports pandas.
 _NAN = pa.Array.from_buffers(pa.float64(), 1, [None, pa.py_buffer(np.array([np.nan]))])[0]
@@ -172,8 +174,14 @@ def _digits(value: float) -> str:
 
 
 def _times(texts: pa.ChunkedArray) -> tuple[Integers, Booleans]:
-    """Dates and times in ISO 8601, one without a zone in UTC, as ns since 1970; which are known."""
+    """Dates and times in ISO 8601, one without a zone in UTC, as ns since 1970; which are known.
+
+    Also where a figure lacks its leading zero; the time of the day alone is that since midnight.
+    """
     texts = pc.replace_substring(texts, ",", ".")
+    texts = pc.replace_substring_regex(texts, _TIME_ALONE, r"1970-01-01 \1")
+    for _again in range(2):  # neighbours share what stands between them
+        texts = pc.replace_substring_regex(texts, _ONE_FIGURE, r"\10\2\3")
     zoned = pc.match_substring_regex(texts, _WITH_ZONE)
     with suppress(pa.ArrowInvalid):
         whole = pc.if_else(zoned, texts, pc.replace_substring_regex(texts, "$", "Z"))
