@@ -8,6 +8,7 @@ import pytest
 from drafting import comments, drafted, told, written
 from logs_by_hand import by_hand_log
 from moved_by_hand import RATE
+from scipy.spatial.transform import Rotation
 
 from commands.draft.__main__ import draft
 from inertial.tables.errors import Refusal
@@ -324,3 +325,62 @@ def test_a_column_that_is_filled_now_and_then_labels_nothing(tmp_path):
     text = "\n".join(["Time,z,y,x,Pressure", *filled]) + "\n"
     campaign = told(drafted({"log.csv": text}, tmp_path))
     assert "label" not in campaign["instrument"]["format"] and len(campaign["plan"]) == 3
+
+
+# ---- a journey before or after a calibration
+
+ONE_ROUND = 8.0  # s
+Rates = list[tuple[float, tuple[float, float, float]]]  # s, and rad/s about x, y, z
+
+
+def faces_and_turns() -> Rates:
+    """Six faces from z up on, on z and y with a round there and back."""
+    told: Rates = []
+    for axis, to_next in (
+        (2, (1, 0, 0)),
+        (1, (0, 0, 1)),
+        *[(None, (0, 0, 1))] * 2,
+        (None, (0, 1, 0)),
+    ):
+        told.append((10, (0, 0, 0)))
+        for way in () if axis is None else (1, -1):
+            turn = way * np.eye(3)[axis] * 2 * np.pi / ONE_ROUND
+            told += [(ONE_ROUND, tuple(turn)), (5, (0, 0, 0))]
+        told.append((2, tuple(np.array(to_next) * np.pi / 4)))
+    return [*told, (10, (0, 0, 0))]
+
+
+def journey(seed: int) -> Rates:
+    """Some minutes of motions about any axis, and stops between them."""
+    random = np.random.default_rng(seed)
+    told: Rates = []
+    for number in range(61):
+        seconds, rate = (random.uniform(2, 8), 0.0) if number % 2 else (random.uniform(8, 14), 0.5)
+        told.append((float(seconds), tuple(rate * random.standard_normal(3))))
+    return told
+
+
+def moved(rates: Rates) -> np.ndarray:
+    """Time, accelerometers in m/s² and gyros in °/s at 100 Hz, (n, 7)."""
+    rate = np.concatenate([np.tile(one, (round(100 * seconds), 1)) for seconds, one in rates])
+    up, down = np.empty_like(rate), np.array([0.0, 0.0, 1.0])
+    for k, turned in enumerate(rate / 100):
+        up[k] = down
+        down = Rotation.from_rotvec(-turned).apply(down)
+    noise = np.random.default_rng(0).standard_normal((2, *rate.shape))
+    time = np.arange(len(rate)) / 100
+    return np.column_stack([time, 9.8 * up + 0.01 * noise[0], np.degrees(rate) + 0.05 * noise[1]])
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_a_journey_beside_a_calibration_is_left_out_and_told(tmp_path, first):
+    """It made "positions" of the whole log, without a face or a turn."""
+    both = [moved(faces_and_turns()), moved(journey(2))]
+    log = np.vstack(both if first else both[::-1])
+    log[:, 0] = np.arange(len(log)) / 100
+    folder = drafted({"trip.csv": "t,ax,ay,az,gx,gy,gz\n" + written([log])}, tmp_path)
+    plan = told(folder)["plan"]
+    assert {m["do"] for m in plan} == {"rest", "turn"}
+    assert {m["up"] for m in plan} == {sign + axis for axis in "xyz" for sign in "+-"}
+    assert sum(m["do"] == "turn" and abs(m["degrees"]) == 360 for m in plan) >= 4
+    assert "% of it, are in no manoeuvre of the plan" in comments(folder)

@@ -23,6 +23,7 @@ TABLE_RATE = 1000  # ppm, of a table of which nothing is known
 LARGEST_COUNT = 32767
 VERSION, GUESS = "campaign: 1", "# guessed:"
 BOTH = ("accelerometer", "gyro")  # sensors in one file
+MAX_LEFT_OUT = 0.25  # of a log, that is in no manoeuvre without a word
 
 
 def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -> str:
@@ -134,6 +135,8 @@ def _head(
     for kind in kinds:
         for text in _evidence(kind):
             yield from comment(text, "#   - ")
+    for text in _left_out(kinds, plan):
+        yield from comment(text, "#   - ")
     yield "#"
     lacking = list(missing(kinds, plan))
     yield from comment(
@@ -183,6 +186,25 @@ def _evidence(kind: Kind) -> Iterator[str]:
         )
     if columns.unused:
         yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
+
+
+def _left_out(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
+    """Long stretches of a log that are in no manoeuvre, such as a journey after a calibration."""
+    for part in (part for kind in kinds for part in kind.parts):
+        taken = sorted(m.rows or part.rows for m in plan if m.part is part)
+        edges = [part.rows[0], *(edge for rows in taken for edge in rows), part.rows[1]]
+        stretches = zip(edges[::2], edges[1::2], strict=True)
+        first, after = max(stretches, key=lambda rows: rows[1] - rows[0])
+        share = (after - first) / (part.rows[1] - part.rows[0])
+        if taken and share > MAX_LEFT_OUT:
+            yield _(
+                "{log}: its rows from {first} to {after}, {share:.0f} % of it, are in no manoeuvre "
+                "of the plan",
+                log=part.logs[0].path.name,
+                first=whole(first),
+                after=whole(after),
+                share=100 * share,
+            )
 
 
 # ---- instrument and formats

@@ -3,7 +3,7 @@
 And what a plan of them lacks for a calibration of accelerometers and gyros.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +21,8 @@ MIN_STRAIGHT = 0.85  # share of all rotation that is about one axis
 MAX_OFF_ROUND = 0.12  # of an angle by hand to the quarter turns that are meant
 MAX_RIPPLE = 0.02  # of the rate of a table at its steady rate, and of its angle to the round one
 MIN_POSITIONS = 3  # static positions, to be a session of them
+MIN_FACES, MIN_SESSION_TURNS = 5, 2  # of a session beside a journey
+MAX_LEANING = np.radians(25)  # of what is mounted, on slopes
 MIN_ON_FACES = 0.85  # share of all time at rest on faces, to be a session of faces
 SHARE_OF_SHORTEST = 0.7  # of the shortest static position, from which on one counts
 MAX_BESIDE_S = 5.0  # s, of a rest beside a turn that belong to it
@@ -113,14 +115,15 @@ def _all(kind: Kind) -> list[Manoeuvre]:
 def _manoeuvres(part: Part, own: Divided) -> Iterator[Manoeuvre]:
     """What one recording holds: positions, faces and turns in order, or a single manoeuvre."""
     rests = own.rests
-    on_faces = sum(rest.seconds for rest in rests if face(rest.accel))
     if len(rests) >= MIN_POSITIONS and len(own.series.accel):
-        if on_faces < MIN_ON_FACES * sum(rest.seconds for rest in rests):
+        about_vertical = _about_vertical(own)
+        session = _session(rests, about_vertical)
+        if not session:
             shortest = min(rest.seconds for rest in rests)
             seconds = max(np.floor(SHARE_OF_SHORTEST * shortest), MIN_REST_S)
             yield Manoeuvre("positions", part, seconds=float(seconds), count=len(rests))
         else:
-            yield from _in_order(part, own)
+            yield from _in_order(part, own, about_vertical, session)
     elif turns := list(_turns(own)):
         yield _turn(part, own, max(turns, key=lambda turn: turn.angle))
     elif rests:
@@ -165,8 +168,47 @@ def _rotation(own: Divided, first: int, after: int) -> Turn:
     return Turn(first, after, net, float(np.linalg.norm(net)) / (path or 1.0), rate, ripple)
 
 
-def _in_order(part: Part, own: Divided) -> Iterator[Manoeuvre]:
-    """Static positions and the turns about the vertical between them; other motions are changes."""
+def _session(rests: Sequence[Still], turns: Mapping[int, Turn]) -> range:
+    """Which rests are a session of faces: all, or those before or after a journey; else none.
+
+    On a journey an IMU rests again and again: in one attitude, in which it is mounted, or in any;
+    then only a session with turns about the vertical is told from a session of positions.
+    """
+    seconds = np.array([rest.seconds for rest in rests])
+    faces = [face(rest.accel) for rest in rests]
+    there = np.array([up is not None for up in faces])
+    up = np.array([rest.accel / np.linalg.norm(rest.accel) for rest in rests])
+    every = range(len(rests))
+    for k in range(len(rests), 0, -1):
+        for own, others in ((every[:k], every[k:]), (every[-k:], every[:-k])):
+            on_faces = there[own] @ seconds[own] >= MIN_ON_FACES * seconds[own].sum()
+            if not others:
+                found = on_faces
+            else:
+                mounted = (up[others] @ up[others[0]]).min() > np.cos(MAX_LEANING)
+                turned = sum(i in own and i + 1 in own for i in turns) >= MIN_SESSION_TURNS
+                several = len({faces[i] for i in own} - {None}) >= MIN_FACES
+                found = on_faces and several and (mounted or turned)
+            if found:
+                return own if not others else _trimmed(own, faces, turns, at_end=own.start == 0)
+    return every[:0]
+
+
+def _trimmed(
+    own: range, faces: Sequence[str | None], turns: Collection[int], *, at_end: bool
+) -> range:
+    """A session without what follows its last new face, or comes before, and the turns there."""
+    step = 1 if at_end else -1
+    new = {faces[i]: i for i in own[::-step]}
+    new.pop(None, None)
+    edge = max(new.values()) if at_end else min(new.values())
+    while edge + step in own and min(edge, edge + step) in turns:
+        edge += step
+    return range(own.start, edge + 1) if at_end else range(edge, own.stop)
+
+
+def _about_vertical(own: Divided) -> dict[int, Turn]:
+    """The turns about the vertical, by the number of the rest before each."""
     rests = own.rests
     turns = {}
     for turn in _turns(own):
@@ -177,9 +219,18 @@ def _in_order(part: Part, own: Divided) -> Iterator[Manoeuvre]:
             vertical = up and up == face(behind.accel) and up[1] == _axis(turn.net)[1]
             if vertical and rests.index(behind) == rests.index(before) + 1:
                 turns[rests.index(before)] = turn
+    return turns
+
+
+def _in_order(
+    part: Part, own: Divided, turns: Mapping[int, Turn], session: range
+) -> Iterator[Manoeuvre]:
+    """Static positions and the turns about the vertical between them; other motions are changes."""
+    rests = own.rests
+    turns = {k: turn for k, turn in turns.items() if k in session and k + 1 in session}
     most = round(MAX_BESIDE_S / own.series.bin_seconds())
     held = False
-    for k, rest in enumerate(rests):
+    for k, rest in [(k, rests[k]) for k in session]:
         # A rest beside a turn belongs to it; a longer one is a static position besides.
         first, after = own.inside(rest)
         first += min(most, after - first) if k - 1 in turns else 0
