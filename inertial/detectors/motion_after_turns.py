@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.special import stdtr
 
-from inertial.estimation.probability import t_sf
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.messages import _
@@ -37,7 +37,7 @@ class MotionAfterTurns(PlanDetector):
         if len(angle) < MIN_TURNS or (np.sign(angle) == np.sign(angle[0])).mean() < 1:
             return
         mean, sigma = float(np.mean(angle)), float(np.std(angle, ddof=1) / np.sqrt(len(angle)))
-        if 2 * float(t_sf(abs(mean) / sigma, len(angle) - 1)) < MAX_CHANCE:
+        if 2 * float(stdtr(len(angle) - 1, -abs(mean) / sigma)) < MAX_CHANCE:
             yield Deviation(None, "", mean, self.sensor, count=len(angle), facts=sigma)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
+from scipy.special import fdtrc
 
 from inertial.arrays import Array
-from inertial.estimation.probability import f_sf
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.messages import _
@@ -44,7 +44,7 @@ class PositionNotKept(PlanDetector):
         along, across = np.array([_change(recorded, *pair) for pair in pairs]).T
         turned = across > MIN_RATIO * np.abs(along).max()
         ratio = float(np.sum(across**2) / (2 * np.sum(along**2)))
-        chance = float(f_sf(ratio, 2 * len(pairs), len(pairs)))
+        chance = float(fdtrc(2 * len(pairs), len(pairs), ratio))
         if turned.mean() >= MIN_SHARE and chance < MAX_CHANCE:
             angle = float(np.sqrt(np.mean(across[turned] ** 2) / 2)) / recorded.given.gravity
             yield Deviation(None, "", angle, count=int(turned.sum()), facts=len(pairs))

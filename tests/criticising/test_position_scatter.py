@@ -63,7 +63,8 @@ def test_rests_of_one_position_that_were_set_anew_are_no_random_walk() -> None:
     document["effects"] = {"table_position_error": {"sigma_arcsec": 30.0}}
     recording = laboratory.perform(laboratory.specify(document))
     stated = {**recording.campaign, "plan": kept}
-    results = chain.in_memory(replace(recording, campaign=stated), "diagnosis", chain.BESIDE)
-    causes = set(results["diagnosis/causes"]["cause"])
-    assert causes == {"position_not_kept", "table_moving"}  # the logs hold the changes, too
-    assert set(results["diagnosis/verdict"]["verdict"]) == {"not_usable"}
+    results = chain.in_memory(replace(recording, campaign=stated), "segment", chain.BESIDE)
+    (found,) = results["segment/findings"].query("cause == 'position_not_kept'").to_dict("records")
+    assert found["count"] == 6 and found["size"] / ARC_SECOND == pytest.approx(42, rel=0.3)
+    kept_so = chain.in_memory(recording, "segment", chain.BESIDE)["segment/findings"]
+    assert "position_not_kept" not in set(kept_so["cause"])

@@ -427,14 +427,11 @@ def overshooting(recording: laboratory.Recording, angle: float, seconds: float):
 def test_a_table_that_overshoots_is_no_random_walk_of_the_gyros():
     """A random walk was named; scale factors 9 sigma off were "usable within limits"."""
     recording = laboratory.perform(laboratory.specify(chain.short(seed=7)))
-    tables = chain.in_memory(
-        overshooting(recording, np.deg2rad(200 / 3600), 4.0), "diagnosis", chain.BESIDE
-    )
-    (cause,) = tables["diagnosis/causes"].to_dict("records")
-    assert (cause["cause"], cause["sensor"], cause["count"]) == ("motion_after_turns", "gyro", 6)
-    assert -200 < degrees(cause["size"]) * 3600 < -80  # of which a part is after the short rest
-    verdicts = tables["diagnosis/verdict"].set_index("sensor")["verdict"]
-    assert verdicts["gyro"] == "not_usable" and verdicts["accel"] == "usable"
+    results = chain.in_memory(overshooting(recording, np.deg2rad(200 / 3600), 4.0), "segment")
+    (found,) = found_in(results).to_dict("records")
+    assert (found["cause"], found["sensor"], found["count"]) == ("motion_after_turns", "gyro", 6)
+    assert -200 < degrees(found["size"]) * 3600 < -80  # of which a part is after the short rest
+    assert found_in(chain.in_memory(recording, "segment")).empty
 
 
 def test_turns_that_are_hardly_steady_do_not_tell_the_rate():

@@ -128,6 +128,23 @@ def test_a_random_walk_that_chance_may_make_is_noise_and_no_cause(p_value, named
     assert causes(walk, rest) == {"gyro_random_walk": {"unexplained"}}
 
 
+@pytest.mark.parametrize(
+    ("cause", "sensor", "explained"),
+    [
+        ("motion_after_turns", "gyro", ("gyro_random_walk", "gyro")),
+        ("position_not_kept", None, ("accel_random_walk", "accel")),
+        ("position_not_kept", None, ("position_scatter", None)),
+        ("normalised_force", "accel", ("accel_scale_asymmetry", "accel")),
+    ],
+)
+def test_what_a_session_did_explains_what_the_model_sees_of_it(cause, sensor, explained):
+    fault = finding("segment", cause, sensor, 3)
+    verdict = "unknown_structure" if "walk" in explained[0] else "found"
+    other = effect(*explained, verdict, *explained[:1])
+    other.row["p_value"] = 1e-9
+    assert causes(fault, other) == {cause: {explained[0]}}
+
+
 def test_a_named_effect_explains_no_remaining_misfit():
     rest = finding("criticism", "unexplained", "gyro")
     assert causes(effect("gyro_g_sensitivity", "gyro"), rest) == {
