@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import gammaln, ive, logsumexp
+from scipy.special import gammaln, ive
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.model_selection.scan import Candidates
@@ -40,7 +40,7 @@ def log_evidence(drop: Array, degrees: Integers) -> Array:
     order = (safe - 1)[:, None]
     bessel = gammaln(order + 1) - order * np.log(z / 2) + np.log(ive(order, z)) + z
     step = np.log(ratio[1] - ratio[0])
-    exact = logsumexp(bessel - ratio**2 / 2 - np.log(ratio), axis=1) + step
+    exact = np.logaddexp.reduce(bessel - ratio**2 / 2 - np.log(ratio), axis=1) + step
     return np.where(degrees > 0, np.where(root > 0.7 * MAX_PRIOR_SNR, sharp, exact), -np.inf)
 
 
@@ -88,7 +88,7 @@ def effect_class(
     free = np.array([effect.free for effect in candidates.effects])
     if not free[candidates.effect[place]]:  # a free function contains joint effect and rivals none
         log_odds[free] = -np.inf
-    weights = np.exp(log_odds - logsumexp(log_odds))
+    weights = np.exp(log_odds - np.logaddexp.reduce(log_odds))
     # An effect below its own threshold does not replace a named one.
     own = candidates.effect[place]
     significant = np.flatnonzero(possible & (drops >= np.asarray(thresholds)[candidates.effect]))
@@ -144,7 +144,7 @@ def with_rivals(
 
 
 def _mean(odds: Array) -> float:
-    return float(logsumexp(odds) - np.log(len(odds))) if len(odds) else -np.inf
+    return float(np.logaddexp.reduce(odds) - np.log(len(odds))) if len(odds) else -np.inf
 
 
 def _captured(

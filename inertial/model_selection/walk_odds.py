@@ -15,7 +15,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import logsumexp
 
 from inertial.arrays import Array
 from inertial.model_selection.effect_classes import MAX_PRIOR_SNR, MIN_PRIOR_SNR, log_evidence
@@ -139,7 +138,7 @@ def _less(way: WeighedExplanation, count: int) -> WeighedExplanation:
 
 
 def _sum_of(ways: Sequence[WeighedExplanation]) -> float:
-    return float(logsumexp([way.log_evidence for way in ways]))
+    return float(np.logaddexp.reduce([way.log_evidence for way in ways]))
 
 
 def _each(
@@ -177,7 +176,7 @@ def _walk(equations: Equations, columns: Sequence[int], shape: Array) -> Weighed
     gains = variances * along**2 / (1 + variances * values) - np.log1p(variances * values)
     logs = np.sum(gains, axis=1) / 2
     step = float(np.log(sizes[1] / sizes[0]))
-    total = float(logsumexp(logs)) + np.log(step) - np.log(LOG_RANGE)
+    total = float(np.logaddexp.reduce(logs)) + np.log(step) - np.log(LOG_RANGE)
     best = float(variances[int(np.argmax(logs)), 0])
     return WeighedExplanation(float(total), equations.given(own, best * shape))
 
@@ -189,6 +188,6 @@ def _after(
     candidates = Candidates([searched_effect("", *values)])
     drops, degrees = candidates.drops(before.rest.information, before.rest.right)
     odds = np.where(degrees > 0, log_evidence(drops, degrees) - np.log(LOG_RANGE), 0.0)
-    total = float(logsumexp(odds, b=weights / np.sum(weights)))
+    total = float(np.logaddexp.reduce(odds + np.log(weights / np.sum(weights))))
     rest = before.rest.given(values[int(np.argmax(odds))])
     return WeighedExplanation(before.log_evidence + total, rest)
