@@ -327,6 +327,17 @@ def test_a_column_that_is_filled_now_and_then_labels_nothing(tmp_path):
     assert "label" not in campaign["instrument"]["format"] and len(campaign["plan"]) == 3
 
 
+def test_a_temperature_that_rises_is_no_clock_where_milliseconds_are(tmp_path):
+    """As `T` it was taken for the time, and all of the log "moves"."""
+    force = np.vstack([at_rest(FACES[i], 10, i) for i in range(3)])
+    warm = np.round(np.linspace(25, 27, len(force)), 2)
+    rows = np.column_stack([1034 + 10 * np.arange(len(force)), force, warm])
+    text = "".join("ms:{:.0f} ax:{:.3f} ay:{:.3f} az:{:.3f} T:{:.2f}\n".format(*r) for r in rows)
+    campaign = told(drafted({"log.txt": text}, tmp_path))
+    assert campaign["instrument"]["format"]["time"] == {"column": "ms", "unit": "ms"}
+    assert len(campaign["plan"]) == 3
+
+
 # ---- a journey before or after a calibration
 
 ONE_ROUND = 8.0  # s

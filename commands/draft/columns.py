@@ -31,6 +31,7 @@ BIN_ROWS = 10  # of a short mean
 MIN_BINS = 60  # of them for the motion to say anything: three times its unknowns
 MIN_EXPLAINED = 0.3  # share of the change of each axis of a direction that the gyros must explain
 MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
+MIN_ADVANCING = 0.5  # of the rows, in which a clock of several columns advances
 CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
 MAX_UNSTEADY = 0.1  # typical change of |f| as a sensor is turned over, relative: its biases
@@ -46,7 +47,9 @@ NAMED = {
         r"mag|compass|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"
     ),
 }
-TIME = re.compile(r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]", re.IGNORECASE)
+TIME = re.compile(
+    r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]|^ms$|^us$|millis|micros", re.IGNORECASE
+)
 PACKETS = re.compile(r"packet|number|count|index|sequence|\bseq\b|frame|message", re.IGNORECASE)
 COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECASE)
 TEMPERATURE = re.compile(r"temp", re.IGNORECASE)
@@ -121,6 +124,8 @@ def time_of(log: RawLog) -> Name | None:
         if _grows(values) and not _numbers_packets(name, values)
     ]
     named = [name for name in growing if TIME.search(str(name))]
+    if len(named) > 1:  # a temperature T that rises stands still from row to row
+        named.sort(key=lambda name: np.mean(np.diff(finite(log.columns[name])) > 0) < MIN_ADVANCING)
     return next(iter(named + growing), None)
 
 
