@@ -338,6 +338,12 @@ def test_a_temperature_that_rises_is_no_clock_where_milliseconds_are(tmp_path):
     assert len(campaign["plan"]) == 3
 
 
+def test_a_clock_that_starts_anew_is_told(tmp_path):
+    stamps = [f"{20 * (k if k < 900 else k - 900)}" for k in range(1500)]
+    folder = drafted({"log.csv": session(stamps, "ms,z,y,x", between=",")}, tmp_path)
+    assert "goes back by 18.0 s before row 901" in comments(folder)
+
+
 # ---- a journey before or after a calibration
 
 ONE_ROUND = 8.0  # s

@@ -10,7 +10,7 @@ from commands.draft.columns import CLOCK_PARTS
 from commands.draft.raw_log import Name, RawLog
 from inertial.arrays import Array
 from inertial.text.messages import _
-from inertial.text.numbers import significant
+from inertial.text.numbers import significant, whole
 
 UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, "iso8601": 1.0}  # ticks in a second
 USUAL_RATE = 100.0  # Hz: of the units that a time may have, that with the rate nearest to it
@@ -89,7 +89,23 @@ def timing_of(
         why, wraps_at = _("it holds the time of the day"), round(DAY * 1e9)
     elif wraps_at is not None:
         why += _("; it begins again after {period} ticks", period=wraps_at)
+    elif (back := _first_back(counters, UNITS[unit])) is not None:
+        why += _(
+            "; it goes back by {seconds} s before row {row}: what follows was recorded after a new "
+            "start, and is better a log of its own",
+            seconds=significant(back[1] / UNITS[unit], 3),
+            row=whole(back[0] + 1),
+        )
     return Timing(column, unit, rate, named is None and unit != "iso8601", why, wraps_at)
+
+
+def _first_back(counters: Sequence[Array], second: float) -> tuple[int, float] | None:
+    """The first row, from 0, before which a clock goes back by over a second, and by how much."""
+    for counter in counters:
+        steps = np.diff(counter)
+        if (back := np.flatnonzero(steps < -second)).size:
+            return int(back[0]) + 1, float(-steps[back[0]])
+    return None
 
 
 def _without_time(column: Name | None, unit: str | None, stated: float | None, why: str) -> Timing:
