@@ -37,7 +37,7 @@ class MotionAfterTurns(PlanDetector):
         if len(angle) < MIN_TURNS or (np.sign(angle) == np.sign(angle[0])).mean() < 1:
             return
         mean, sigma = float(np.mean(angle)), float(np.std(angle, ddof=1) / np.sqrt(len(angle)))
-        if 2 * float(stdtr(len(angle) - 1, -abs(mean) / sigma)) < MAX_CHANCE:
+        if sigma > 0 and 2 * float(stdtr(len(angle) - 1, -abs(mean) / sigma)) < MAX_CHANCE:
             yield Deviation(None, "", mean, self.sensor, count=len(angle), facts=sigma)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:

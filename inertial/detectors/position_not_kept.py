@@ -43,7 +43,8 @@ class PositionNotKept(PlanDetector):
             return
         along, across = np.array([_change(recorded, *pair) for pair in pairs]).T
         turned = across > MIN_RATIO * np.abs(along).max()
-        ratio = float(np.sum(across**2) / (2 * np.sum(along**2)))
+        noise = 2 * float(np.sum(along**2))
+        ratio = float(np.sum(across**2)) / noise if noise > 0 else 0.0
         chance = float(fdtrc(2 * len(pairs), len(pairs), ratio))
         if turned.mean() >= MIN_SHARE and chance < MAX_CHANCE:
             angle = float(np.sqrt(np.mean(across[turned] ** 2) / 2)) / recorded.given.gravity
