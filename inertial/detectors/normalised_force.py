@@ -6,13 +6,13 @@ import numpy as np
 
 from inertial.signal.detector import Description, Detector, Event, Log
 from inertial.signal.scale_factor import quiet_force
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 MIN_WINDOWS = 20  # at rest
 MIN_TURNED = np.deg2rad(45.0)  # between two attitudes: in one alone an axis may stand still
 MAX_SCATTER = 0.03  # of the magnitude, in that of the components
-NORMAL_MEDIAN = 1.4826  # sigma of a normal distribution over its median absolute deviation
 
 
 class NormalisedForce(Detector):
@@ -39,9 +39,9 @@ class NormalisedForce(Detector):
         force = np.concatenate(own)
         magnitude = np.linalg.norm(force, axis=1)
         usual = float(np.median(magnitude))
-        scatter = NORMAL_MEDIAN * float(np.median(np.abs(magnitude - usual)))
+        scatter = MAD_TO_SIGMA * float(np.median(np.abs(magnitude - usual)))
         changes = np.concatenate([np.diff(each, axis=0) for each in own]) / np.sqrt(2)
-        of_means = NORMAL_MEDIAN * float(np.median(np.median(np.abs(changes), axis=0)))
+        of_means = MAD_TO_SIGMA * float(np.median(np.median(np.abs(changes), axis=0)))
         samples = np.median([log.records / len(log.windows.mean) for log in read])
         of_noise = np.median([log.noise[:3] for log in read]) / np.sqrt(samples)
         along = force @ force[0] / (magnitude * magnitude[0])

@@ -9,6 +9,7 @@ from inertial.detectors.stamps_misstated import TIME_UNITS
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.signal.scale_factor import MAX_RATIO_SPREAD, turn_ratios
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
 
@@ -196,7 +197,6 @@ def _slightly_off(ratio: float, rate_sigma: float, stated: float) -> Description
 
 MIN_SHORT_TURNS = 2  # of one alone the table may have stopped elsewhere: the model has it
 ASSUMED_RATE_SIGMA = 1e-3  # of a table, relative, where none is stated
-NORMAL_MEDIAN = 1.4826  # sigma of a normal distribution over its median absolute deviation
 
 
 def short_turns(recorded: Recorded) -> Booleans:
@@ -209,7 +209,7 @@ def short_turns(recorded: Recorded) -> Booleans:
     longer = angle[known] / rate[known]
     lacking = 1 - longer / np.median(longer)
     of_table = np.nan_to_num(recorded.rate_sigma, nan=ASSUMED_RATE_SIGMA)
-    scatter = np.hypot(of_table, NORMAL_MEDIAN * np.median(np.abs(lacking)))
+    scatter = np.hypot(of_table, MAD_TO_SIGMA * np.median(np.abs(lacking)))
     short[known] = lacking > MIN_RATE_SIGMAS * np.hypot(scatter, recorded.unsteady[known])
     few = MIN_SHORT_TURNS <= np.count_nonzero(short) < np.count_nonzero(known) / 2
     return short if few else np.zeros(len(known), bool)
