@@ -401,3 +401,51 @@ def test_a_journey_beside_a_calibration_is_left_out_and_told(tmp_path, first):
     assert {m["up"] for m in plan} == {sign + axis for axis in "xyz" for sign in "+-"}
     assert sum(m["do"] == "turn" and abs(m["degrees"]) == 360 for m in plan) >= 4
     assert "% of it, are in no manoeuvre of the plan" in comments(folder)
+
+
+# ---- faces by hand
+
+
+def test_the_sigma_of_faces_that_lean_is_by_how_much_they_lean(tmp_path):
+    """Each leans by 3° about both level axes, one way or the other; sensors have biases of 2°."""
+    lean, bias = np.tan(np.radians(3)), np.array([0.3, -0.2, 0.3])
+    signs = iter([1, -1, -1, 1, 1, 1, -1, -1, 1, -1, -1, 1])
+    rests = []
+    for face in np.vstack([np.eye(3), -np.eye(3)]):
+        away = np.array([0.0 if along else next(signs) * lean for along in face])
+        rests.append(at_rest(tuple(face + away), 5, len(rests)) + bias)
+    force = np.vstack(rests)
+    time = np.arange(len(force)) / 100
+    table = told(drafted({"f.csv": "t,ax,ay,az\n" + written([time, force])}, tmp_path))["table"]
+    assert 3 * 3600 <= table["position_sigma_arcsec"] <= 3.5 * 3600
+
+
+# ---- clocks that are coarse, and what a phone makes of its readings
+
+
+def test_stamps_of_whole_seconds_are_many_samples_each(tmp_path):
+    time = np.floor(0.37 + np.arange(2075) / 100)
+    force = np.vstack([at_rest(FACES[i % 4], 5.2, i) for i in range(4)])[: len(time)]
+    folder = drafted({"f.csv": "t_s,ax,ay,az\n" + written([time, force])}, tmp_path)
+    assert "at 100.0 Hz" in comments(folder)
+
+
+def test_what_a_phone_has_processed_comes_after_what_its_sensors_read(tmp_path):
+    log = moved(faces_and_turns())
+    noise = 0.01 * np.random.default_rng(2).standard_normal((2, len(log), 3))
+    names = [
+        f"{sensor}{axis}"
+        for sensor in (
+            "motionUserAcceleration",
+            "motionRotationRate",
+            "accelerometerAcceleration",
+            "gyroRotation",
+        )
+        for axis in "XYZ"
+    ]
+    columns = [log[:, 0], *noise, log[:, 1:]]
+    head = ",".join(["time_s", *names]) + "\n"
+    folder = drafted({"phone.csv": head + written(columns)}, tmp_path)
+    layout = told(folder)["instrument"]["format"]
+    assert layout["accelerometer"]["columns"] == names[6:9]
+    assert layout["gyro"]["columns"] == names[9:]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from commands.draft.columns import Triad
-from commands.draft.manoeuvres import Manoeuvre, missing
+from commands.draft.manoeuvres import Manoeuvre, leaning, missing
 from commands.draft.questions import GRAVITY, GRAVITY_SIGMA, names_of_logs, questions, without_clock
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
@@ -336,8 +336,11 @@ def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
     if by_hand and all(m.do == "positions" for m in plan):
         return
     if by_hand:
-        yield f"table: {flow(name='by hand', position_sigma_arcsec=HAND_POSITION)}" + _guess(
-            _("a case on its faces stands to within 1°")
+        seen = leaning(plan)
+        degrees = 1.0 if seen is None else max(1.0, float(np.ceil(2 * np.degrees(seen)) / 2))
+        keys = {"name": "by hand", "position_sigma_arcsec": round(degrees * HAND_POSITION)}
+        yield f"table: {flow(**keys)}" + _guess(
+            _("a case on its faces stands to within {degrees:g}°", degrees=degrees)
         )
     else:
         keys = {

@@ -47,6 +47,7 @@ NAMED = {
         r"mag|compass|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"
     ),
 }
+PROCESSED = re.compile(r"user|linear|gravity|motion", re.IGNORECASE)  # by a phone, of its sensors
 TIME = re.compile(
     r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]|^ms$|^us$|millis|micros", re.IGNORECASE
 )
@@ -329,7 +330,7 @@ def _sensors(
 
 def _by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dict[str, Triad]:
     found: dict[str, Triad] = {}
-    for triad in candidates:
+    for triad in sorted(candidates, key=lambda one: bool(PROCESSED.search(str(one.columns[0])))):
         kind = sensor_named(triad.rows[1]) if triad.rows else None
         if kind is None and isinstance(triad.columns[0], str):
             kind = sensor_named(triad.columns[0])

@@ -50,6 +50,7 @@ class Manoeuvre:
     rows: tuple[int, int] | None = None
     count: int = 0  # static positions that were found
     held: bool = False
+    force: tuple[float, ...] = ()  # what the accelerometers read at rest, (3,)
 
     @property
     def whole(self) -> bool:
@@ -129,7 +130,8 @@ def _manoeuvres(part: Part, own: Divided) -> Iterator[Manoeuvre]:
     elif rests:
         rest = max(rests, key=lambda rest: rest.seconds)
         rows = None if len(rests) == 1 else _rows(part, own, *own.inside(rest))
-        yield Manoeuvre("rest", part, up=face(rest.accel), seconds=rest.seconds, rows=rows)
+        up, force = face(rest.accel), tuple(rest.accel)
+        yield Manoeuvre("rest", part, up=up, seconds=rest.seconds, rows=rows, force=force)
 
 
 def _turns(own: Divided) -> Iterator[Turn]:
@@ -238,7 +240,8 @@ def _in_order(
         seconds = (after - first) * own.series.bin_seconds()
         if seconds > MIN_REST_S and (up := face(rest.accel)):
             rows = _rows(part, own, first, after)
-            yield Manoeuvre("rest", part, up=up, seconds=seconds, rows=rows, held=held)
+            rests_there = {"seconds": seconds, "held": held, "force": tuple(rest.accel)}
+            yield Manoeuvre("rest", part, up=up, rows=rows, **rests_there)
             held = True
         if k in turns:
             following = rests[k + 1]
@@ -317,6 +320,26 @@ def _rows(part: Part, own: Divided, first: int, after: int) -> tuple[int, int]:
     begin, end = part.rows
     scale = (end - begin) / own.series.bins
     return begin + round(first * scale), begin + round(after * scale)
+
+
+def leaning(plan: Sequence[Manoeuvre]) -> float | None:
+    """The rms of the angle about each level axis by which cases on their faces lean, rad.
+
+    With cross-axis terms; without biases, which both faces of an axis show.
+    """
+    there = [m for m in plan if m.do == "rest" and m.up is not None and len(m.force)]
+    if not there:
+        return None
+    forces = np.array([m.force for m in there])
+    axes = np.array(["xyz".index(str(m.up)[1]) for m in there])
+    signs = np.array([1 if str(m.up)[0] == "+" else -1 for m in there])
+    for i in range(3):
+        along = [forces[(axes == i) & (signs == sign), i] for sign in (1, -1)]
+        if all(map(len, along)):
+            forces[:, i] -= (along[0].mean() + along[1].mean()) / 2
+    level = np.arange(3) != axes[:, np.newaxis]
+    lengths = np.linalg.norm(forces, axis=1, keepdims=True)
+    return float(np.sqrt(np.mean(np.square(forces / lengths)[level])))
 
 
 # ---- What is missing.

@@ -23,6 +23,7 @@ COMMON_RATES = np.array(
 MAX_RATE_ERROR = 0.05  # of a rate that is taken to be a common one
 MAX_STEP = 3.0  # usual steps, that a counter may be off by where it begins again
 DAY = 86400.0  # s
+MIN_SINGLE_TICKS = 0.9  # of the new stamps, to be those of a clock that is coarser than the rows
 MIN_PERIOD = 255  # of a counter: fewer ticks are no clock
 STATED = re.compile(
     r"(?:\bfs|\brate|\bfreq\w*|\bodr|\bhz)\b[^0-9\n]{0,20}([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE
@@ -151,10 +152,19 @@ def _finite(values: Array) -> Array:
 
 
 def _step(values: Array) -> float:
-    """Ticks from row to row: of most parts of the log, so that gaps do not count."""
+    """Ticks from row to row: of most parts of the log, so that gaps do not count.
+
+    Where several rows have one stamp, as of whole seconds, of all stamps that follow by one tick.
+    """
+    steps = np.diff(values)
+    new = np.flatnonzero(steps > 0)
+    tick = float(steps[new].min(initial=np.inf))
+    if np.median(steps) == 0 and np.mean(steps[new] == tick) > MIN_SINGLE_TICKS:
+        single = steps[new[1:]] == tick
+        return tick / float(np.diff(new)[single].mean())
     places = np.linspace(0, len(values) - 1, CLOCK_PARTS + 1).astype(int)
     step = float(np.median(np.diff(values[places]) / np.diff(places)))
-    whole = float(np.median(np.diff(values)))
+    whole = float(np.median(steps))
     return whole if abs(whole - step) < 1e-3 * step else step
 
 

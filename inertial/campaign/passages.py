@@ -3,6 +3,8 @@
 A motion is the blocks of phase `between`, one for each record, from the end of a rest to the
 beginning of the next one in the same log. A few samples that are lost or masked here and there are
 interpolated between those beside them; where more are missing, no attitude can be carried through.
+Nor through a walk with the IMU between two rests: its errors, of vibration and of rates that change
+between samples, are none that the other motions show.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,6 +25,7 @@ from inertial.text.messages import _
 BETWEEN = "between"  # phase of the blocks from one rest to the next
 MAX_LOST_RUN = 3  # samples in a row that are interpolated: a hand changes its rate in 50 ms
 MAX_LOST_SHARE = 0.1  # of a motion
+LONG_PATH, TIMES_USUAL = 6 * np.pi, 5  # rad, and times the usual path, of what is no move by hand
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,30 @@ def passages_of(
         passage = Passage(i, rates, seconds, density, before.log, timed)
         own = Part(name, BETWEEN)
         passages.append(RecordedPassage(own, before.log, passage, time, temperature))
-    return passages, left_out
+    return without_walks(passages, left_out)
+
+
+def without_walks(
+    passages: Sequence[RecordedPassage], left_out: Sequence[Part]
+) -> tuple[list[RecordedPassage], list[Part]]:
+    """Without the motions on a path far longer than that of the others."""
+    paths = [each.passage.path for each in passages]
+    most = max(LONG_PATH, TIMES_USUAL * float(np.median(paths))) if paths else LONG_PATH
+    walks = [
+        Part(
+            each.part.manoeuvre,
+            BETWEEN,
+            _(
+                "it turns to and fro by {turned:.0f}° altogether, several times as far as from one "
+                "position to the next, so no attitude is carried through",
+                turned=np.degrees(path),
+            ),
+        )
+        for each, path in zip(passages, paths, strict=True)
+        if path > most
+    ]
+    kept = [each for each, path in zip(passages, paths, strict=True) if path <= most]
+    return kept, [*left_out, *walks]
 
 
 def refusal_of(

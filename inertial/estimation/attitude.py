@@ -85,6 +85,12 @@ class Passage:
     clock_sigma: float = 0.0
 
     @property
+    def path(self) -> float:
+        """The angle by which it turns to and fro, rad, against the rate that it begins with."""
+        away = np.linalg.norm(self.rates - self.rates[0], axis=1)
+        return float(away @ self.seconds)
+
+    @property
     def starts(self) -> NDArray[np.int_]:
         """Where stretches of about `STRETCH_S` begin among the readings."""
         place = np.floor(np.cumsum(self.seconds) / STRETCH_S - 1e-6)
