@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Integers
 from inertial.model_selection.cause import NamedCauses
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.scan import Candidates, joint_drop
@@ -86,6 +86,7 @@ class Search:
         self.information = information
         self.right = right
         self.thresholds = np.asarray(thresholds)[candidates.effect]
+        self._drops: dict[frozenset[int], tuple[Array, Integers]] = {}  # given some places
 
     def best(self) -> tuple[Set, list[Set]]:
         """The best set of all, and the best ones of its size."""
@@ -120,9 +121,7 @@ class Search:
     def _extended(self, places: tuple[int, ...], number: int) -> list[Set]:
         """The best sets with an additional effect."""
         gain = self.gain(places)
-        more, degrees = self.candidates.drops(
-            self.information, self.right, self.candidates.around(places)
-        )
+        more, degrees = self._drops_given(places)
         more = np.where(degrees > 0, more - self.thresholds, -np.inf)
         more[np.isin(self.candidates.effect, self.candidates.effect[list(places)])] = -np.inf
         sets = []
@@ -135,6 +134,14 @@ class Search:
                 sets.append(Set(gain + float(more[place]), larger))
             more[self.candidates.effect == self.candidates.effect[place]] = -np.inf
         return sets
+
+    def _drops_given(self, places: tuple[int, ...]) -> tuple[Array, Integers]:
+        """The drops of all candidates given some; exchanges come to the same ones repeatedly."""
+        given = frozenset(places)
+        if given not in self._drops:
+            around = self.candidates.around(places)
+            self._drops[given] = self.candidates.drops(self.information, self.right, around)
+        return self._drops[given]
 
     def _exchanged(self, original: Set) -> list[Set]:
         """Each effect in turn replaced by the best other, or by another value of its scan."""
