@@ -449,3 +449,14 @@ def test_what_a_phone_has_processed_comes_after_what_its_sensors_read(tmp_path):
     layout = told(folder)["instrument"]["format"]
     assert layout["accelerometer"]["columns"] == names[6:9]
     assert layout["gyro"]["columns"] == names[9:]
+
+
+@pytest.mark.parametrize("name", ["die_degC", "T_C", "Tmp [°C]", "celsius"])
+def test_a_temperature_is_known_by_its_unit_too(tmp_path, name):
+    force = np.vstack([at_rest(FACES[i % 4], 5, i) for i in range(4)])
+    time = np.arange(len(force)) / 100
+    warm = 25 + 2 * np.sin(time / 7)
+    head = f"time_s,ax,ay,az,{name}\n"
+    folder = drafted({"f.csv": head + written([time, force, warm])}, tmp_path)
+    layout = told(folder)["instrument"]["format"]
+    assert layout["temperature"] == {"column": name, "unit": "degC"}

@@ -53,7 +53,7 @@ TIME = re.compile(
 )
 PACKETS = re.compile(r"packet|number|count|index|sequence|\bseq\b|frame|message", re.IGNORECASE)
 COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECASE)
-TEMPERATURE = re.compile(r"temp", re.IGNORECASE)
+TEMPERATURE = re.compile(r"temp|tmp|celsius|kelvin|°c|deg_?c(?![a-z])|^t_?c$", re.IGNORECASE)
 PLAUSIBLE = {"degC": (-80.0, 150.0), "K": (190.0, 425.0)}  # of an IMU
 AXIS = re.compile(r"^(.*?)([xyz0-9])([^xyz0-9]*)$")
 UNIT = re.compile(r"[_ ](m?g|m[/p_]?s_?2|m?dps|m?(rad|deg)[/p_]?s)$")  # behind a name

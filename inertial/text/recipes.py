@@ -16,6 +16,7 @@ from typing import Any
 
 WORDS = re.compile(r"[A-Za-z]{2}")  # what has none is a number, a unit or a sign
 MOST_KNOWN = 100_000  # sentences; what a damaged log has more stays English
+WORD = re.compile(r"[A-Za-z0-9_]+")
 BESIDE = r"A-Za-z0-9_/\-"  # what a part of a longer word or identifier stands beside
 
 ENGLISH = re.compile(r"\b[a-z]{2,}\b")
@@ -39,7 +40,7 @@ class Recipe:
 
 
 _known: dict[str, Recipe] = {}
-_by_length: list[str] = []
+_by_word: dict[str, list[str]] = {}  # the known sentences by the first word of each
 
 
 def values_in(message: str, values: Mapping[str, Any]) -> dict[str, str]:
@@ -76,7 +77,8 @@ def remember(text: str, recipe: Recipe) -> None:
 def _keep(text: str, recipe: Recipe) -> None:
     if text not in _known and len(_known) < MOST_KNOWN:
         _known[text] = recipe
-        _by_length.clear()
+        if WORDS.search(text):
+            _by_word.setdefault(WORD.findall(text)[0], []).append(text)
 
 
 def learn(stored: Mapping[str, Any]) -> None:
@@ -120,9 +122,9 @@ def parts_of(text: str) -> Iterator[str]:
     if text in _known:
         yield text
         return
-    if not _by_length:
-        _by_length.extend(sorted((k for k in _known if WORDS.search(k)), key=len, reverse=True))
-    parts = [*_parts(text, [known for known in _by_length if known in text])]
+    words = dict.fromkeys(WORD.findall(text))
+    within = [known for word in words for known in _by_word.get(word, ()) if known in text]
+    parts = [*_parts(text, sorted(within, key=len, reverse=True))]
     if any(part not in _known and ENGLISH.search(part) for part in parts):
         # Of a text from outside no word is a sentence: “a text of the laboratory”.
         parts = _joined(parts)
