@@ -21,6 +21,7 @@ from inertial.model_selection.effect_classes import MAX_PRIOR_SNR, MIN_PRIOR_SNR
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.scan import Candidates
 
+MIN_INFORMATION = 1e-6  # of a column, that is left of it once others are explained: less is rounding
 LARGEST_SNR = 1e3  # of a walk that is tried; beyond MAX_PRIOR_SNR the prior goes on as before
 AXES = 3
 STEPS = 60  # of the sizes of a walk
@@ -36,7 +37,10 @@ class Equations:
     right: Array
 
     def given(self, columns: Sequence[int], variance: Array | None = None) -> "Equations":
-        """The same with some columns explained, with prior variances where they have one."""
+        """The same with some columns explained, with prior variances where they have one.
+
+        What these contain is zero: of its rounding any signal to noise ratio would follow.
+        """
         if not len(columns):
             return self
         own = list(columns)
@@ -47,10 +51,10 @@ class Equations:
             block = block + np.diag(1 / np.maximum(variance * scale**2, np.finfo(float).tiny))
         inverse = np.linalg.pinv(block, rcond=1e-9, hermitian=True) / np.outer(scale, scale)
         across = self.information[:, own] @ inverse
-        return Equations(
-            self.information - across @ self.information[own],
-            self.right - across @ self.right[own],
-        )
+        information = self.information - across @ self.information[own]
+        left = np.diag(information) > MIN_INFORMATION * np.diag(self.information)
+        right = self.right - across @ self.right[own]
+        return Equations(information * np.outer(left, left), right * left)
 
 
 @dataclass(frozen=True)

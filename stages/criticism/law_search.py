@@ -77,9 +77,9 @@ class Columns:
     waves: tuple[Sequence[int], ...]
 
     def given(self, effects: Sequence[Effect]) -> Equations:
-        """The equations given some effects, without what these contain."""
+        """The equations given some effects."""
         own = [self.place[name] for effect in effects for name in effect.columns]
-        return without(self.equations, own)
+        return self.equations.given(own)
 
 
 def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None:
@@ -167,7 +167,7 @@ def columns_with(
             of_each.append(shapes[law])
     known = [place[name] for effect in others for name in effect.columns]
     return Columns(
-        without(equations, known),
+        equations.given(known),
         place,
         tuple(made),
         tuple(of_each),
@@ -195,13 +195,6 @@ def _equations(
     kept = np.diag(reduced.information) > MIN_INFORMATION * raw
     equations = Equations(reduced.information * np.outer(kept, kept), reduced.right * kept)
     return equations, {name: i for i, name in enumerate(reduced.names)}
-
-
-def without(equations: Equations, columns: Sequence[int]) -> Equations:
-    """The equations given some columns, zero of what these contain."""
-    rest = equations.given(columns)
-    kept = np.diag(rest.information) > MIN_INFORMATION * np.diag(equations.information)
-    return Equations(rest.information * np.outer(kept, kept), rest.right * kept)
 
 
 # ---- The search, given some effects.
@@ -323,7 +316,7 @@ def _best(
             first += one.shape[1]
         found.append(_functions(tried[0].sensor, axis, values, part))
     equations, place = _equations(campaign, tried[0].sensor, [*beside, *found])
-    equations = without(equations, [place[n] for e in beside for n in e.columns])
+    equations = equations.given([place[n] for e in beside for n in e.columns])
     candidates = law_odds(
         equations, [searched_effect("", own) for own in columns], np.zeros(len(tried))
     )

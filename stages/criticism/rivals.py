@@ -22,7 +22,6 @@ from stages.criticism.selection import Selection, walk_name
 MAX_LOG_ODDS = 3.0  # of two explanations that are as likely
 MIN_SURE_LOG_ODDS = 5.3  # of an effect against a walk that is then in no class with it: 1/0.005
 MAX_FURTHER_JUMPS = 6  # of a bias: two of them look like any effect of one manoeuvre
-MIN_INFORMATION = 1e-6  # share of what a jump has by itself: less is rounding
 MAX_WALK_SHARE = 0.2  # of the information of an effect that remains with a random walk
 MIN_TEMPERATURE_SNR = 8.0  # beside a random walk, of functions of temperature that are certain
 
@@ -128,7 +127,7 @@ def _log_evidence_of_jumps(selection: Selection, jump: str, rest: walk_odds.Equa
     whole = np.diag(selection.evidence.observable().total.information)
     evidence = best = 0.0
     for _ in range(MAX_FURTHER_JUMPS):
-        remains = np.diag(rest.information) > MIN_INFORMATION * whole  # not of one that is there
+        remains = np.diag(rest.information) > walk_odds.MIN_INFORMATION * whole  # not of one that is there
         new = [i for i, one in enumerate(searched.candidates) if remains[list(one)].all()]
         if not new:
             break

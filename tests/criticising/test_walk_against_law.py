@@ -97,3 +97,16 @@ def test_a_matrix_acts_as_a_whole_in_rows_or_in_one_element(place, cheaper):
     told = law(equations, [list(range(9))], np.ones(1)).log_evidence
     assert told > whole + cheaper
     assert told < 144 / 2
+
+
+def test_what_biases_of_runs_contain_is_nothing_beside_them():
+    """Of the rounding that was left of a jump its log odds were 84 millions."""
+    run = np.repeat(np.arange(5), STRETCHES // 5)
+    runs = (run[:, None] == np.arange(1, 5)).astype(float)
+    jumps = (run[:, None] >= np.arange(1, 5)) * np.pi
+    design = np.column_stack([runs, jumps, TIME / SPAN])
+    design -= design.mean(axis=0)
+    equations = Equations(design.T @ design, design.T @ of_ratio(TIME**2, 3000.0))
+    rest = equations.given([0, 1, 2, 3])
+    assert not rest.right[:8].any() and not rest.information[:8].any()
+    assert rest.information[8, 8] > 0.01 * equations.information[8, 8] and rest.right[8]
