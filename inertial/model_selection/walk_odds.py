@@ -52,9 +52,10 @@ class Equations:
         inverse = np.linalg.pinv(block, rcond=1e-9, hermitian=True) / np.outer(scale, scale)
         across = self.information[:, own] @ inverse
         information = self.information - across @ self.information[own]
-        left = np.diag(information) > MIN_INFORMATION * np.diag(self.information)
+        gone = np.diag(information) <= MIN_INFORMATION * np.diag(self.information)
+        information[gone] = information[:, gone] = 0.0
         right = self.right - across @ self.right[own]
-        return Equations(information * np.outer(left, left), right * left)
+        return Equations(information, np.where(gone, 0.0, right))
 
 
 @dataclass(frozen=True)
