@@ -75,11 +75,13 @@ def are_regular(time: Array) -> bool:
     Those that do not advance at all are no clock, regular or not.
     """
     step = np.diff(time)
-    if len(step) < MIN_WINDOW or (slope := _slope(time, len(step) // 4)) <= 0:
+    if len(step) < MIN_WINDOW or _slope(time, len(step) // 4) <= 0:
         return True
     usual = float(np.median(step))
     if usual <= 0:
         return False
+    short = np.cumsum(np.minimum(step, max(MAX_DELAY_S, usual)))  # a pause is no delay
+    slope = _slope(short, len(short) // 4)
     off = step / usual - np.maximum(np.rint(step / usual), 1)
     square = np.sort(np.clip(off, -1, 1) ** 2)[: round(len(off) * (1 - MAX_FAULTY_SHARE))]
     return bool(np.sqrt(square.mean() / 2) < MAX_SCATTER and slope < MAX_STEP_RATIO * usual)

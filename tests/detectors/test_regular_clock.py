@@ -74,6 +74,13 @@ def test_stamps_that_are_not(time):
     assert not are_regular(time)
 
 
+def test_pauses_of_a_recording_are_no_delays():
+    """Five pieces of six minutes with 40 minutes between them, at 50 Hz."""
+    piece = np.arange(18_000) / 50
+    time = np.concatenate([piece + k * (360 + 2400) for k in range(5)])
+    assert are_regular(time)
+
+
 # ---- the clock
 
 
