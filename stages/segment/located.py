@@ -137,7 +137,8 @@ def divide(
     ways = []
     above_noise = moving(binned.rates, binned.forces, level, noise)
     for lowest in (threshold, noise):
-        moves = moving(binned.rates, binned.forces, level, lowest)
+        # Where gravity is another one after a pause of the recording, the IMU was moved in it.
+        moves = moving(binned.rates, binned.forces, level, lowest) | binned.beside_pauses
         divided = stretches(moves, binned.bin_seconds, binned.forces)
         divided = with_slow_ends(divided, above_noise, binned.bin_seconds, swings=swings)
         ways.append((divided, observe(binned, divided, level)))

@@ -11,6 +11,7 @@ from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.sums import MeansOver
 
 BIN_S = 0.1  # s, of the short means in which motion is sought
+MIN_PAUSE_S = 1.0  # s without a record, in which an IMU may be set anew
 MAX_BINS = 2_000_000  # of them in a campaign; one of more than two days has longer ones
 
 
@@ -64,6 +65,14 @@ class Binned:
         """The length of a bin that is not masked, s."""
         there = self.seconds[self.seconds > 0]
         return float(np.median(there)) if len(there) else BIN_S
+
+    @property
+    def beside_pauses(self) -> Booleans:
+        """The last bin before a pause of the recording, and the first one after it, (k,)."""
+        beside = np.zeros(self.bins, bool)
+        pauses = np.flatnonzero(self.first_s[1:] - self.last_s[:-1] > MIN_PAUSE_S)
+        beside[pauses] = beside[pauses + 1] = True
+        return beside
 
     def bins_in(self, seconds: float) -> int:
         """How many bins some time is; where it is any, at least one, however long a bin is."""
