@@ -240,8 +240,8 @@ def _in_order(
         seconds = (after - first) * own.series.bin_seconds()
         if seconds > MIN_REST_S and (up := face(rest.accel)):
             rows = _rows(part, own, first, after)
-            rests_there = {"seconds": seconds, "held": held, "force": tuple(rest.accel)}
-            yield Manoeuvre("rest", part, up=up, rows=rows, **rests_there)
+            own_rest = Manoeuvre("rest", part, up=up, seconds=seconds, rows=rows)
+            yield replace(own_rest, held=held, force=tuple(rest.accel))
             held = True
         if k in turns:
             following = rests[k + 1]

@@ -127,7 +127,8 @@ def _log_evidence_of_jumps(selection: Selection, jump: str, rest: walk_odds.Equa
     whole = np.diag(selection.evidence.observable().total.information)
     evidence = best = 0.0
     for _ in range(MAX_FURTHER_JUMPS):
-        remains = np.diag(rest.information) > walk_odds.MIN_INFORMATION * whole  # not of one that is there
+        # Not of one that is there.
+        remains = np.diag(rest.information) > walk_odds.MIN_INFORMATION * whole
         new = [i for i, one in enumerate(searched.candidates) if remains[list(one)].all()]
         if not new:
             break
