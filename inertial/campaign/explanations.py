@@ -220,6 +220,11 @@ EXPLANATIONS = (
         ("gravity_error",), _is("wrong_scale_factor", "gravity_error", *MISFITS), same_sensor
     ),
     Explanation(("latitude_error",), _is("gravity_error"), anywhere),
+    Explanation(
+        ("fixture_creep",),
+        _is(*MISFITS, "accel_random_walk", "bias_jump", "table_moving", "position_not_kept"),
+        anywhere,
+    ),
     Explanation(("samples_lost",), _is(*MISFITS), same_sensor),
     Explanation(
         ("position_not_kept",),
@@ -272,8 +277,8 @@ def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
         return False
     if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
         return other.cause == "oscillation" and _size(other) < _size(cause)
-    if cause.cause == "position_not_kept":
-        return other.cause in ("position_scatter", *POSITION_OFF)
+    if cause.cause in ("position_not_kept", "fixture_creep"):
+        return other.cause in ("position_scatter", "mounting_shift", *POSITION_OFF)
     if cause.cause not in OF_ANGLES:
         return cause.cause in SPOILING
     of_one_turn = cause.cause == "samples_lost" and "turn_angle_error" in other.causes

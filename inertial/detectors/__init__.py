@@ -12,6 +12,7 @@ from inertial.detectors.copied_channel import CopiedChannel
 from inertial.detectors.copied_log import CopiedLog
 from inertial.detectors.dead_axis import DeadAxis
 from inertial.detectors.encoder_against_plan import EncoderScale
+from inertial.detectors.fixture_creep import FixtureCreep
 from inertial.detectors.gap import Gap
 from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.impact import Impact
@@ -126,6 +127,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     EncoderScale(),
     ShortRest(),
     PositionNotKept(),
+    FixtureCreep(),
     RestsDivided(),
     TemperatureMisstated(),
 )

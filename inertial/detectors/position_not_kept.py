@@ -79,9 +79,13 @@ def _pairs(recorded: Recorded) -> Iterator[tuple[int, int]]:
     for i, after in pairwise(range(len(recorded.name))):
         rounds = 0.0 if np.isnan(recorded.angle[i]) else recorded.angle[i] / (2 * np.pi)
         same = recorded.position[i] == recorded.position[after]
-        closed = abs(rounds - round(rounds)) < MAX_OF_ROUND
-        if same and closed and read[[i, after]].all() and upright[i]:
+        if same and is_closed(rounds) and read[[i, after]].all() and upright[i]:
             yield i, after
+
+
+def is_closed(rounds: float) -> bool:
+    """Whether a turn by so many rounds ends where it began."""
+    return abs(rounds - round(rounds)) < MAX_OF_ROUND
 
 
 def _change(recorded: Recorded, i: int, after: int) -> Array:

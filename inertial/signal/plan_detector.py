@@ -109,6 +109,21 @@ class SpansOff:
 
 
 @dataclass(frozen=True)
+class StaticMeans:
+    """The n rests of the manoeuvres of a plan, one after the other, those of turns too.
+
+    manoeuvre: (n,), place in the plan; after_turn: (n,), whether it is that after a turn; force:
+    (n, 3), m/s², mean; time, seconds: (n,), s, its middle and duration.
+    """
+
+    manoeuvre: Integers
+    after_turn: Booleans
+    force: Array
+    time: Array
+    seconds: Array
+
+
+@dataclass(frozen=True)
 class Recorded:
     """The m manoeuvres of a plan, and what was recorded of each, SI and radians, body axes.
 
@@ -123,6 +138,7 @@ class Recorded:
     its log holds instead; turned: (m, 3), angles of its motion; NaN where not recorded.
     moved: (m,), angle about `about`; speed: (m,), mean rate of its steady part about `about`;
     unsteady: (m,), what quarters of that scatter by, relative, 0 where not known;
+    static_means: of all rests;
     after_stop: (m,), rad, what it turns farther in the rest after it, NaN where not known;
     lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, of the rest
     or from start to stop.
@@ -165,6 +181,7 @@ class Recorded:
     speed: Array
     unsteady: Array
     after_stop: Array
+    static_means: StaticMeans
     lacking: Array
     lacking_s: Array
     duration: Array

@@ -48,6 +48,7 @@ NAMES = {
     "wrong_rate": _("wrong rate"),
     "unexplained": _("unexplained"),
     "position_not_kept": _("position that was not kept"),
+    "fixture_creep": _("creep of the IMU in its fixture"),
     "position_scatter": _("positions that scatter by more than is stated of the table"),
     "wrong_scale_of_turns": _("wrong scale of turns"),
     "mounting_shift": _("shift of the IMU in its fixture"),

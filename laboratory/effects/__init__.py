@@ -61,6 +61,7 @@ from laboratory.effects.gyro_warm_up import GyroWarmUp
 from laboratory.effects.heading_error import HeadingError
 from laboratory.effects.latitude_error import LatitudeError
 from laboratory.effects.lever_arm import LeverArm
+from laboratory.effects.mounting_creep import MountingCreep
 from laboratory.effects.mounting_shift import MountingShift
 from laboratory.effects.oscillation import Oscillation
 from laboratory.effects.size_effect import SizeEffect
@@ -139,6 +140,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     # both
     "turn_on_bias": TurnOnBias.specified,
     "mounting_shift": MountingShift.specified,
+    "mounting_creep": MountingCreep.specified,
     "cyclic_drift": CyclicDrift.specified,
     "temperature_curves": TemperatureCurves.specified,
     "temperature_hysteresis": TemperatureHysteresis.specified,

@@ -22,9 +22,10 @@ from inertial.signal.plan_detector import (
     Rescaled,
     Reversed,
     SpansOff,
+    StaticMeans,
     Swapped,
 )
-from inertial.tables import GYRO, STATIC_PHASES
+from inertial.tables import ACCEL, GYRO, STATIC_PHASES
 from stages.segment.located import AS_PLANNED, Located
 from stages.segment.matching import Part, motion
 from stages.segment.recording_explanations import ExplainedRecording, unlike
@@ -120,6 +121,7 @@ def recorded_of(
         speed=_numbers([d.rate for d in done]),
         unsteady=_unsteady(plan, recording.blocks),
         after_stop=_after_stop(plan, recording.blocks),
+        static_means=_static_means(plan, recording.blocks),
         lacking=_numbers([d.missing_angle for d in done]),
         lacking_s=_numbers([d.missing_s for d in done]),
         duration=_numbers([d.seconds for d in done]),
@@ -191,6 +193,33 @@ def _after_stop(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
             )
             angle[i] = np.sign(rounds) * (later - earlier) * seconds[1].sum()
     return angle
+
+
+def _static_means(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> StaticMeans:
+    """The means of all rests with readings of all three accelerometers, in the order of time."""
+    places = {m.name: i for i, m in enumerate(plan)}
+    own = blocks[blocks["phase"].isin(STATIC_PHASES) & blocks["manoeuvre"].isin(places)]
+    known = np.isfinite(own[[*ACCEL, "time"]].to_numpy(np.float64)).all(axis=1)
+    own = own[known & (own["seconds"].to_numpy(np.float64) > 0)]
+    rests = [
+        (
+            places[str(name)],
+            str(phase) == "rest-after",
+            np.average(rest[list(ACCEL)], axis=0, weights=rest["seconds"]),
+            float(np.average(rest["time"], weights=rest["seconds"])),
+            float(rest["seconds"].sum()),
+        )
+        for (name, phase), rest in own.groupby(["manoeuvre", "phase"], sort=False)
+    ]
+    rests.sort(key=lambda rest: (rest[0], rest[1]))
+    number, after, force, time, seconds = zip(*rests, strict=True) if rests else ((),) * 5
+    return StaticMeans(
+        np.array(number, np.int64),
+        np.array(after, bool),
+        np.array(force, np.float64).reshape(-1, 3),
+        np.array(time, np.float64),
+        np.array(seconds, np.float64),
+    )
 
 
 Place = tuple[int, int, float | None, float | None]

@@ -134,6 +134,8 @@ def test_a_random_walk_that_chance_may_make_is_noise_and_no_cause(p_value, named
         ("motion_after_turns", "gyro", ("gyro_random_walk", "gyro")),
         ("position_not_kept", None, ("accel_random_walk", "accel")),
         ("position_not_kept", None, ("position_scatter", None)),
+        ("fixture_creep", None, ("accel_random_walk", "accel")),
+        ("fixture_creep", None, ("mounting_shift", "accel")),
         ("normalised_force", "accel", ("accel_scale_asymmetry", "accel")),
     ],
 )

@@ -137,6 +137,10 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"rotation_arcsec": ZERO, "at_s": 9},
         {"rotation_arcsec": [100] * 3, "at_s": 9},
     ),
+    "mounting_creep": (
+        {"rotation_arcsec": ZERO, "time_constant_s": 50},
+        {"rotation_arcsec": [100] * 3, "time_constant_s": 50},
+    ),
     "accel_vibration_rectification": (
         {"k_micro_g_g2": ONE, "vibration_g": 0, "from_s": 3, "to_s": 9},
         {"k_micro_g_g2": [1e4] * 3, "vibration_g": 0.1, "from_s": 3, "to_s": 9},
