@@ -492,18 +492,31 @@ def test_a_rest_for_which_a_still_stretch_has_no_time_is_missing():
 
 
 @pytest.mark.parametrize(("behind", "rests"), [((9.8, 0, 0), 2), ((0, 0, 9.8), 1)])
-def test_what_is_set_anew_in_a_pause_of_the_recording_is_another_rest(behind, rests):
+@pytest.mark.parametrize("inside", [False, True], ids=["between two bins", "within one"])
+def test_what_is_set_anew_in_a_pause_of_the_recording_is_another_rest(behind, rests, inside):
     """30 s with z up, and after 40 min another 30 s; it was one rest of both."""
-    time = np.concatenate([0.1 * np.arange(300), 2430 + 0.1 * np.arange(300)])
+    first = np.concatenate([0.1 * np.arange(300), 2430 + 0.1 * np.arange(300)])
+    last = first + 0.08
+    if inside:
+        last[299] = 2429.98
     forces = np.repeat([(0, 0, 9.8), behind], 300, axis=0)
     rates = 1e-4 * np.random.default_rng(8).standard_normal((600, 3))
     window = windows.Window("log", 0, 600, [])
     edges, seconds = np.arange(601), np.full(600, 0.1)
-    binned = windows.Binned(window, edges, rates, forces, seconds, time, time)
+    binned = windows.Binned(window, edges, rates, forces, seconds, first, last)
     found = locate(divide(binned, np.zeros(3), 0.01, 0.001, swings=False), manoeuvres=[])
     still = [stretch for stretch in found.stretches if not stretch.moves]
     assert len(still) == rests and still[-1].after == 600
-    assert rests == 1 or (still[0].after, still[1].first) == (299, 301)
+    assert rests == 1 or (still[0].after == 299 and still[1].first in (300, 301))
+
+
+@pytest.mark.parametrize("step", [0.02, 2.0])
+def test_a_log_without_a_pause_has_none_however_slow_it_is(step):
+    time = step * np.arange(100)
+    nothing, edges = np.zeros((100, 3)), np.arange(101)
+    window = windows.Window("log", 0, 100, [])
+    binned = windows.Binned(window, edges, nothing, nothing, np.full(100, step), time, time)
+    assert not binned.beside_pauses.any()
 
 
 def test_a_table_set_a_degree_further_between_two_turns_moves():

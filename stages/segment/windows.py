@@ -68,10 +68,14 @@ class Binned:
 
     @property
     def beside_pauses(self) -> Booleans:
-        """The last bin before a pause of the recording, and the first one after it, (k,)."""
+        """The bins in which the recording pauses, or beside a pause between two, (k,)."""
         beside = np.zeros(self.bins, bool)
-        pauses = np.flatnonzero(self.first_s[1:] - self.last_s[:-1] > MIN_PAUSE_S)
-        beside[pauses] = beside[pauses + 1] = True
+        between, within = self.first_s[1:] - self.last_s[:-1], self.last_s - self.first_s
+        for shift, lasting in ((1, between), (0, within)):
+            known = lasting[np.isfinite(lasting)]
+            usual = float(np.median(known)) if len(known) else 0.0
+            pauses = np.flatnonzero(lasting > MIN_PAUSE_S + 2 * usual)
+            beside[pauses] = beside[pauses + shift] = True
         return beside
 
     def bins_in(self, seconds: float) -> int:
