@@ -12,7 +12,7 @@ from inertial.physics.motion import cross
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.messages import _
-from inertial.text.numbers import counted, significant
+from inertial.text.numbers import counted, plus_minus
 from inertial.text.units import ARC_SECOND
 
 MIN_CHANGES = 6  # from rest to rest of one position: three equations each
@@ -40,7 +40,7 @@ class FixtureCreep(PlanDetector):
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         rests, held = recorded.static_means, _held(recorded)
-        several = np.bincount(held, minlength=1)[held] > 1 if len(held) else held > 0
+        several = np.bincount(held, minlength=1)[held] > 1
         if np.count_nonzero(several) - len(np.unique(held[several])) < MIN_CHANGES:
             return
         force, time, seconds = (own[several] for own in (rests.force, rests.time, rests.seconds))
@@ -49,11 +49,15 @@ class FixtureCreep(PlanDetector):
         angle = float(np.linalg.norm(creep.turned))
         clear = creep.chance < MAX_CHANCE and creep.chance_of_drift < MAX_CHANCE_OF_DRIFT
         if clear and angle > MIN_ANGLE:
-            yield Deviation(None, "", angle, count=int(held[-1]) + 1, facts=creep.turned)
+            yield Deviation(None, "", angle, count=int(held[-1]) + 1, facts=creep)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         assert deviation.size is not None
-        turned = ", ".join(significant(a / ARC_SECOND, 2) for a in deviation.facts.tolist())
+        creep = deviation.facts
+        turned = ", ".join(
+            plus_minus(angle / ARC_SECOND, sigma / ARC_SECOND)
+            for angle, sigma in zip(creep.turned.tolist(), creep.sigma.tolist(), strict=True)
+        )
         return Description(
             _(
                 "While {positions} are held gravity turns in the case, the other way in opposite "
@@ -75,12 +79,13 @@ class FixtureCreep(PlanDetector):
 
 @dataclass(frozen=True)
 class _Creep:
-    """By what the case turns from the first rest to the last, (3,), rad.
+    """By what the case turns from the first rest to the last, and its sigma, (3,), rad.
 
     `chance`: that white noise, `chance_of_drift`: that biases that wander look as much like it.
     """
 
     turned: Array
+    sigma: Array
     chance: float
     chance_of_drift: float
 
@@ -130,20 +135,20 @@ def _creep(force: Array, since: Array, course: Array, seconds: Array, held: Inte
     design = np.concatenate([*columns, course[:, None, None] * turning], axis=2)
     design, rows = about_means(design), about_means(force)
     root = np.sqrt(seconds)[:, None]  # the noise of a mean falls with its length
-    turned, chance = _tested(root[..., None] * design, root * rows, 3 * count)
+    turned, sigma, chance = _tested(root[..., None] * design, root * rows, 3 * count)
     # As biases wander the rests of one position go one way: its slope is then one reading.
     slopes = weights * about_means(since)
     slopes /= np.maximum(slopes @ since, np.finfo(float).tiny)[:, None]
-    _turned, chance_of_drift = _tested(
+    _turned, _sigma, chance_of_drift = _tested(
         np.tensordot(slopes, design, 1), np.tensordot(slopes, rows, 1), 0
     )
-    return _Creep(turned, chance, chance_of_drift)
+    return _Creep(turned, sigma, chance, chance_of_drift)
 
 
-def _tested(design: Array, rows: Array, fitted: int) -> tuple[Array, float]:
-    """The last three of the unknowns, and the probability of so large ones by chance.
+def _tested(design: Array, rows: Array, fitted: int) -> tuple[Array, Array, float]:
+    """The last three of the unknowns, their sigma, and the probability of so large ones by chance.
 
-    `design`: (n, 3, p), `rows`: (n, 3); `fitted`: unknowns that are eliminated.
+    `design`: (n, 3, p), `rows`: (n, 3); `fitted`: unknowns that are eliminated. By what is left.
     """
     matrix, read = design.reshape(-1, design.shape[2]), rows.ravel()
     squares, ranks, values = [], [], np.empty(0)
@@ -154,6 +159,8 @@ def _tested(design: Array, rows: Array, fitted: int) -> tuple[Array, float]:
         values = np.asarray(found[-3:])
     more, left = ranks[1] - ranks[0], len(read) - fitted - ranks[1]
     if not more or left <= 0 or not 0 < squares[1] < (1 - MIN_SHARE) * squares[0]:
-        return values, 1.0
+        return values, np.full(3, np.nan), 1.0
+    inverse = np.linalg.pinv(matrix.T @ matrix, rcond=1e-12, hermitian=True)
+    sigma = np.sqrt(squares[1] / left * np.diag(inverse)[-3:])
     ratio = (squares[0] - squares[1]) / more / (squares[1] / left)
-    return values, float(fdtrc(more, left, max(ratio, 0.0)))
+    return values, sigma, float(fdtrc(more, left, ratio))

@@ -1,5 +1,6 @@
 """An IMU that creeps in its fixture is named, and nothing that looks like it at times is."""
 
+import re
 from typing import Any
 
 import chain
@@ -8,7 +9,9 @@ import pytest
 
 from inertial.text.units import ARC_SECOND
 
-FIRST_TO_LAST_S = 760.0  # of the rests of the plan, about
+# A position is a rest of 30 s and four turns, each of 13 s between 8 s of rest; 10 s are between
+# positions. From the middle of the first rest to that of the last:
+FIRST_TO_LAST_S = 6 * (30 + 4 * (8 + 13 + 8)) + 5 * 10 - 15 - 4
 
 
 def held_positions(effects: dict[str, Any]) -> dict[str, Any]:
@@ -49,7 +52,10 @@ def test_a_creep_is_named_with_the_angle_by_which_the_case_turns(tau: float) -> 
     hidden = {"rotation_arcsec": rotation.tolist(), "time_constant_s": tau}
     (found,) = creeps({"mounting_creep": hidden})
     assert found["count"] == 6
-    assert found["size"] / ARC_SECOND == pytest.approx(np.hypot(60, 300), rel=0.15)
+    assert found["size"] / ARC_SECOND == pytest.approx(np.hypot(60, 300), rel=0.1)
+    sentence = found["sentence"].replace("−", "-")
+    told = [float(each) for each in re.findall(r"(-?[\d.]+) ±", sentence)]
+    np.testing.assert_allclose(told, [0, 60, 300], atol=30)
 
 
 @pytest.mark.parametrize(
