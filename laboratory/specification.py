@@ -149,8 +149,10 @@ class Specification:
         """Noise and hidden effects by name, new objects at every call: some have a state."""
         hidden = self._document.get("effects", {})
         cycles = self.power_cycles
-        if "turn_on_bias" in hidden and any(cycles):
-            hidden = {**hidden, "turn_on_bias": {**hidden["turn_on_bias"], "cycles": cycles}}
+        if any(cycles):
+            begin_anew = ("turn_on_bias", "gyro_warm_up", "accel_warm_up")
+            of_runs = {name: {"cycles": cycles} for name in begin_anew if name in hidden}
+            hidden = {**hidden, **{name: hidden[name] | of for name, of in of_runs.items()}}
         return {
             **{
                 name: specified(hidden[name])

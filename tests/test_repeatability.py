@@ -422,6 +422,23 @@ def test_beside_power_cycles_an_effect_is_found_and_they_are_estimated_beside_it
     assert 0.5 < size / (np.radians(4) / 3600) < 1.5
 
 
+def test_a_warm_up_begins_anew_after_each_stated_switch_on():
+    """The demo's plan, switched off and on twice: 25 and −15 °/h that settle with 150 s."""
+    hidden = {"gyro_warm_up": {"start_deg_h": [25, -15, 0], "time_constant_s": 150}}
+    document = deepcopy(chain.demo(effects=hidden, seed=77))
+    for each in document["campaign"]["plan"]:
+        each["power_cycle"] = each["id"] in ("z-up", "y-forward")
+    made = chain.in_memory_of(document, "diagnosis", chain.BESIDE)
+    assert made["diagnosis/causes"]["cause"].tolist() == ["gyro_warm_up"]
+    result = made["diagnosis/result"].set_index("parameter")
+    for axis, true in zip("xyz", np.radians([25, -15, 0]) / 3600, strict=True):
+        found = result.loc[f"gyro_warm_up.b_{axis}"]
+        assert found["value"] == pytest.approx(true, abs=4 * found["sigma"])
+        assert found["sigma"] < np.radians(0.2) / 3600
+    assert result.loc["gyro_warm_up.tau", "value"] == pytest.approx(150, rel=0.05)
+    assert result.loc["gyro_warm_up.on_1", "value"] == pytest.approx(4 * 360, abs=0.1)
+
+
 @pytest.mark.slow
 def test_what_rests_on_one_bias_allows_for_that_of_each_switch_on(tmp_path):
     """Checks and navigation have it in their sigmas; figures of the sensors are without it."""

@@ -24,6 +24,7 @@ from inertial.campaign.records import (
     manoeuvres_of,
     performed_of,
     share_a_clock,
+    switch_ons_of,
     with_mount,
 )
 from inertial.campaign.solution import Estimated, Solution, solution_of
@@ -43,6 +44,7 @@ class CampaignData:
     noise : the effective noise levels, on which every sigma rests
     mount : its name; empty where the campaign has a single one
     shared_clock : whether times of different logs are comparable
+    switched_on : s, when the IMU was switched on again, by `switch_on` of manoeuvres
     solution : None until there is one
     by_hand : the positions of unknown attitude, where these give the solution
     """
@@ -57,6 +59,7 @@ class CampaignData:
     shared_clock: bool = False
     solution: Solution | None = None
     by_hand: Handled | None = None
+    switched_on: Mapping[int, float] = field(default_factory=dict)
 
     def named(self, name: str) -> str:
         """A method or an effect as identifiers call it, with the mount where there are several."""
@@ -186,11 +189,20 @@ def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
     done, noise = performed_of(tables.performed), NoiseLevels(tables.levels)
     clocks = {} if tables.clocks is None else clocks_of(tables.clocks)
     shared = tables.clocks is not None and share_a_clock(tables.clocks)
-    result = []
-    for mount, plan in by_mount(manoeuvres_of(tables.manoeuvres)):
-        solution = tables.solution(mount)
+    result, whole = [], manoeuvres_of(tables.manoeuvres)
+    switched_on = switch_ons_of(whole, clocks, tables.blocks)
+    for mount, plan in by_mount(whole):
         data = CampaignData(
-            plan, done, tables.blocks, noise, tables.given, mount, clocks, shared, solution
+            plan,
+            done,
+            tables.blocks,
+            noise,
+            tables.given,
+            mount,
+            clocks,
+            shared,
+            solution := tables.solution(mount),
+            switched_on=switched_on,
         )
         if solution is not None and solution.knows_azimuth:  # whatever heading is stated
             data = data.without_heading

@@ -160,6 +160,7 @@ def motion_of(
         up=mean(ups),
         north=unknown,
         seconds=seconds,
+        switched_on=np.full(n, before.switched_on[0]),
         visit=np.full(n, place + 0.5),
         position=np.full(n, float(place)),
         run=np.full(n, before.run[0]),

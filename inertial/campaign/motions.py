@@ -226,6 +226,7 @@ class CampaignMotions:
         self._places = {m.name: float(names.index(m.position)) for m in data.plan}
         runs = runs_of(dict.fromkeys(m.log for m in data.plan), data.clocks, data.shared_clock)
         self._runs = {m.name: float(runs[m.log]) for m in data.plan}
+        self._switched_on = {m.name: data.switched_on.get(m.switch_on, 0.0) for m in data.plan}
         self._at_rest: dict[tuple[str, float], Motion] = {}
 
     def at_rest(self, position: StaticPosition) -> Motion:
@@ -241,6 +242,7 @@ class CampaignMotions:
             self._at_rest[place],
             time=np.array([time]),
             seconds=np.array([position.seconds.sum()]),
+            switched_on=np.array([self._switched_on[name]]),
             visit=np.array([self._visits[name] + later]),
             position=np.array([self._places[name]]),
             run=np.array([self._runs[name]]),
@@ -276,6 +278,7 @@ class CampaignMotions:
         peaks, senses = self._on_the_way(name, len(time))
         return replace(
             motion,
+            switched_on=np.full(len(time), self._switched_on[name]),
             visit=np.full(len(time), self._visits[name] + MOVING),
             position=np.full(len(time), self._places[name]),
             run=np.full(len(time), self._runs[name]),
@@ -320,7 +323,7 @@ def mean_motions(motion: Motion, merged: Merged) -> list[Motion]:
     names = [field.name for field in fields(Motion) if field.name != "about"]
     means: dict[str, Any] = {name: merged.mean(getattr(motion, name)) for name in names}
     means["seconds"] = merged.seconds
-    for name in ("surveyed", "position", "run", "peaks", "senses", "tumbled"):
+    for name in ("surveyed", "switched_on", "position", "run", "peaks", "senses", "tumbled"):
         means[name] = getattr(motion, name)[merged.starts]
     return [
         Motion(about=motion.about, **{name: values[i : i + 1] for name, values in means.items()})

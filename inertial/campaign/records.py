@@ -293,6 +293,27 @@ def runs_of(logs: Iterable[str], clocks: Mapping[str, Clock], shared: bool) -> d
     return runs
 
 
+def switch_ons_of(
+    plan: Sequence[Manoeuvre], clocks: Mapping[str, Clock], blocks: pd.DataFrame
+) -> dict[int, float]:
+    """When the IMU was switched on again, s since the first sample of all logs, by `switch_on`.
+
+    A log that begins with it tells by its first sample; else the first block after it does.
+    """
+    if not any(m.switch_on for m in plan):
+        return {}
+    start = min((clock.begin for clock in clocks.values()), default=np.nan)
+    times = blocks.groupby("manoeuvre")["time"].min()
+    first = {m.log: m for m in reversed(sorted(plan, key=lambda m: m.switch_on))}
+    found: dict[int, float] = {}
+    for m in plan:
+        at = float(times.get(m.name, np.nan))
+        if m is first[m.log] and m.log in clocks and np.isfinite(clocks[m.log].begin):
+            at = clocks[m.log].begin - start
+        found[m.switch_on] = float(np.fmin(found.get(m.switch_on, np.nan), at))
+    return {number: at for number, at in found.items() if number and np.isfinite(at)}
+
+
 def share_a_clock(table: pd.DataFrame) -> bool:
     """Whether times of all logs count from one start: GPS time, or a single log of its own."""
     clocks = [row["clock"] for row in rows_of(table)]

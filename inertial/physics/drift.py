@@ -2,12 +2,15 @@
 
 A stretch may last for minutes, so its mean of a function of time is not the function at its
 middle. The start is the first sample of all logs: for an instrument that was switched on before,
-a warm-up began earlier, and its amplitude differs by a factor.
+a warm-up began earlier, and its amplitude differs by a factor. Where the campaign states that it
+was switched off and on between, a warm-up begins anew.
 """
 
 from abc import abstractmethod
-from collections.abc import Sequence
-from typing import ClassVar
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -26,6 +29,7 @@ from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
 SETTLING_TIMES = (30.0, 3000.0)  # s, of τ: a shorter one is over before the first rest is
+ON = "on_"  # and a number: the constants of a warm-up that begins anew
 SETTLING_CANDIDATES = 9  # of τ; between two of them the trace changes by a tenth
 THERMOMETER_ERROR = 1.0  # K beyond the coldest and the warmest mean; resolution of many
 
@@ -56,11 +60,17 @@ class Drift(Effect):
 
 
 class WarmUp(Drift):
-    """Reading += b exp(−t/τ), with t since the first sample of all logs; τ is scanned.
+    """Reading += b exp(−t/τ), with t since the first sample or the last switch-on; τ is scanned.
 
     Told from an even drift by slowing down. Only logs with a common clock show it. Switched on
-    earlier by T, the amplitude at the first sample is exp(−T/τ) of the whole.
+    earlier by T, the amplitude at the first sample is exp(−T/τ) of the whole. After each stated
+    switch-on it is the same again, as of an instrument that has cooled down between.
+
+    `switched_on`: when it was switched on again, s since the first sample, where the motion does
+    not have it.
     """
+
+    switched_on: tuple[float, ...] = ()
 
     cause = _("the sensor and its electronics warm up after they are switched on")
     source = "IEEE Std 528-2019, 'warm-up time'"
@@ -70,7 +80,29 @@ class WarmUp(Drift):
         return np.geomspace(*SETTLING_TIMES, SETTLING_CANDIDATES)
 
     def course(self, motion: Motion) -> Array:
-        return decayed(motion, self.value(motion))
+        on, at = motion.switched_on, np.array([0.0, *self.switched_on])
+        if self.switched_on:
+            on = at[np.clip(np.searchsorted(at, motion.time, side="right") - 1, 0, None)]
+        return decayed(motion.time - on, motion.seconds, self.value(motion))
+
+    def constants(self, motion: Motion) -> Sequence[Constant]:
+        again = self.switched_on or np.unique(motion.switched_on[motion.switched_on > 0])
+        meaning = _("when the instrument was switched on again, after the first sample")
+        return [
+            *super().constants(motion),
+            *(Constant(f"{ON}{i}", "s", meaning, float(at)) for i, at in enumerate(again, 1)),
+        ]
+
+    def with_constants(self, values: Mapping[str, float]) -> Self:
+        effect = super().with_constants(values)
+        effect.switched_on = tuple(sorted(at for key, at in values.items() if key.startswith(ON)))
+        names = [f"{ON}{i}" for i in range(1, len(effect.switched_on) + 1)]
+        if names:
+            steps = [f"(t > {names[0]}) * {names[0]}"]
+            steps += [f"(t > {at}) * ({at} - {before})" for before, at in pairwise(names)]
+            factor = f"exp(-(t - {' - '.join(steps)}) / tau)"
+            effect.terms = tuple(replace(term, factor=factor) for term in self.terms)  # type: ignore[misc]
+        return effect
 
 
 def without_clock(motion: Motion) -> str:
@@ -98,10 +130,10 @@ def after(motion: Motion, time: float) -> Array:
     return np.clip((motion.time - time) / motion.seconds + 0.5, 0.0, 1.0)
 
 
-def decayed(motion: Motion, constant: float) -> Array:
-    """The mean of exp(−t/τ) over each stretch, (n,), for the time constant τ, s."""
-    half = motion.seconds / (2 * constant)
-    return np.asarray(np.exp(-motion.time / constant) * np.sinh(half) / half)
+def decayed(time: Array, seconds: Array, constant: float) -> Array:
+    """The mean of exp(−t/τ) over stretches about their middles, (n,), for the constant τ, s."""
+    half = seconds / (2 * constant)
+    return np.asarray(np.exp(-time / constant) * np.sinh(half) / half)
 
 
 def mean_temperature(motion: Motion, reference: float | None) -> Constant:

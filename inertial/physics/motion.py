@@ -107,16 +107,17 @@ class Motion:
     rad/s², turned about it since the start, at the middle of each stretch; `up`: (n, 3), the
     table's vertical; `north`: (n, 3), NaN where the azimuth is not known.
 
-    Further properties of a stretch: `seconds`: (n,), its duration; `visit`: (n,), the place of its
-    manoeuvre in the plan, `position`: (n,), that of its position among those of the plan, and
-    `run`: (n,), which run of the instrument it is of, from switch-on to switch-off;
-    `surveyed`: (n,), whether north is known from the table's heading and not from the gyros;
-    `temperature`: (n,), K, and `vibration`: (n, 3), m/s², the standard deviation of the samples of
-    specific force; `peaks`: (n, 3), m/s², the last extreme of specific force along each axis on the
-    way to the manoeuvre; `senses`: (n, 3), ±1, in which it last turned about each axis on that way.
-    These four are NaN where they are not known. `tumbled`: (n, 3), rad, the angle through which a
-    tumble has turned the table to the position since its start, along its axis; else 0. `square`:
-    (n,), rad²/s², the mean of the squared rate.
+    Further properties of a stretch: `seconds`: (n,), its duration; `switched_on`: (n,), s, when the
+    instrument was last switched on, 0 up to the first stated switch-on; `visit`: (n,), the place of
+    its manoeuvre in the plan, `position`: (n,), that of its position among those of the plan, and
+    `run`: (n,), which run of the instrument it is of, from switch-on to switch-off; `surveyed`:
+    (n,), whether north is known from the table's heading and not from the gyros; `temperature`:
+    (n,), K, and `vibration`: (n, 3), m/s², the standard deviation of the samples of specific force;
+    `peaks`: (n, 3), m/s², the last extreme of specific force along each axis on the way to the
+    manoeuvre; `senses`: (n, 3), ±1, in which it last turned about each axis on that way. These four
+    are NaN where they are not known. `tumbled`: (n, 3), rad, the angle through which a tumble has
+    turned the table to the position since its start, along its axis; else 0. `square`: (n,),
+    rad²/s², the mean of the squared rate.
     """
 
     time: Array
@@ -127,6 +128,7 @@ class Motion:
     up: Array
     north: Array
     seconds: Array
+    switched_on: Array
     visit: Array
     position: Array
     run: Array
@@ -216,9 +218,7 @@ def turning(
         turned_all(up, about, angle),
         turned_all(north, about, angle),
         seconds,
-        np.zeros(n),
-        np.zeros(n),
-        np.zeros(n),
+        *(np.zeros(n),) * 4,
         np.zeros(n, bool),
         np.full(n, np.nan),
         *(np.full((n, 3), np.nan),) * 3,
@@ -237,7 +237,7 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         *(zero, zero, zero),
         *(unknown, unknown),
         seconds,
-        *(zero, zero, zero),
+        *(zero, zero, zero, zero),
         np.zeros(n, bool),
         temperature,
         *(unknown, unknown, unknown),

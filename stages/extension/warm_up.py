@@ -1,7 +1,9 @@
 """How long each bias takes from the first sample until it stays within a band about its last value.
 
 By the effects of the model: an exponential in time, functions of a temperature that rises. In a
-chamber that also cools it is not defined, and without such an effect nothing warms up.
+chamber that also cools it is not defined, and without such an effect nothing warms up. Where the
+instrument was switched on again, time counts from the last switch-on, and a temperature, whose
+course may be another each time, tells nothing.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,7 +26,7 @@ Row = Mapping[str, Any]
 
 MAX_COOLING = 1.0  # K below the warmest so far, in a campaign that warms up
 MAX_SHARE = 0.9  # of the campaign: a bias that leaves the band later has not settled in it
-OF_WARMING = ("warm_up", "temperature")  # ends of the names of effects
+OF_TIME, OF_TEMPERATURE = "warm_up", "temperature"  # ends of the names of effects
 SETTLED = _("The bias of the {axis} {sensor} stays within {band} of its last value from {time} on.")
 UNSETTLED = _("The bias of the {axis} {sensor} does not settle to {band} in this campaign.")
 
@@ -33,9 +35,12 @@ def warm_up_rows(
     solution: Solved, effects: Sequence[Effect], motion: Motion, band: float
 ) -> Iterator[Row]:
     """The rows of the three axes of a sensor; `band`: in SI, to either side."""
-    if not any(effect.name.endswith(OF_WARMING) for effect in effects) or not _warms(motion):
+    of_temperature = any(effect.name.endswith(OF_TEMPERATURE) for effect in effects)
+    if (motion.switched_on.any() and of_temperature) or not _warms(motion):
         return
-    time, order = np.unique(motion.time, return_index=True)
+    if not of_temperature and not any(effect.name.endswith(OF_TIME) for effect in effects):
+        return
+    time, order = np.unique(motion.time - motion.switched_on, return_index=True)
     columns, values, covariance = _biases(solution, effects, motion)
     if not len(values):
         return

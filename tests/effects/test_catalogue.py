@@ -199,6 +199,29 @@ def test_the_terms_say_in_text_what_is_read(name, motion):
     assert {term.parameter for term in effect.terms} == {p.name for p in effect.parameters}
 
 
+@pytest.mark.parametrize("name", ["gyro_warm_up", "accel_warm_up"])
+def test_the_terms_of_a_warm_up_after_each_switch_on_say_in_text_what_is_read(name, motion):
+    """A motion that knows the switch-ons, and one that the constants tell them, read alike."""
+    first, second = np.quantile(motion.time, [0.3, 0.7])
+    on = np.select([motion.time > second, motion.time > first], [second, first], 0.0)
+    short = replace(motion, seconds=np.full_like(motion.seconds, 1e-6))
+    again = replace(short, switched_on=on)
+    constants = {one.name: one.value for one in CATALOGUE[name].constants(again)}
+    assert [constants["on_1"], constants["on_2"]] == [first, second]
+    effect, truth = CATALOGUE[name].with_constants(constants), truth_of(short, plans.SITE)
+    plain, values = sensed(truth, *TRIADS[1:]), np.array([1e-5, -2e-5, 3e-5])
+    reads = [
+        CATALOGUE[name].fixed(constants["tau"]).reads(plain, truth, again, values),
+        effect.reads(plain, truth, short, values),
+    ]
+    known, told = (np.hstack([r.accel - plain.accel, r.gyro - plain.gyro]) for r in reads)
+    np.testing.assert_allclose(told, known, rtol=1e-9, atol=1e-18)
+    np.testing.assert_allclose(told, written_out(effect, short, values), rtol=1e-6, atol=1e-13)
+    restarts = np.exp(-(motion.time - on) / constants["tau"])
+    column = 0 if name.startswith("accel") else 3
+    np.testing.assert_allclose(told[:, column], values[0] * restarts, rtol=1e-6, atol=1e-13)
+
+
 def test_what_has_no_terms_says_why_it_stays():
     for effect in CATALOGUE.values():
         assert bool(effect.terms) or effect.stays

@@ -42,6 +42,18 @@ def test_an_exponential_settles_after_its_time():
     assert y["seconds"] == z["seconds"] == 0.0
 
 
+def test_after_each_switch_on_it_settles_after_the_same_time():
+    effect, once = CATALOGUE["accel_warm_up"].fixed(CONSTANT), motion()
+    twice = replace(once, switched_on=np.where(once.time > 7200, 7200.0, 0.0))
+    x, *_others = warm_up_rows(solved(), [effect], twice, BAND)
+    last = np.exp(-7200 / CONSTANT)  # of the amplitude, at the end of each run
+    settled = -CONSTANT * np.log(BAND / AMPLITUDE + last)
+    assert x["seconds"] == pytest.approx(settled, abs=2.0)
+    with_temperature = [effect, CATALOGUE["accel_bias_temperature"]]
+    warm = replace(twice, temperature=np.full(len(once.time), 300.0))
+    assert not list(warm_up_rows(solved(), with_temperature, warm, BAND))
+
+
 def test_what_never_settles_has_no_time():
     effect = CATALOGUE["accel_warm_up"].fixed(20 * CONSTANT)
     x, *_others = warm_up_rows(solved(), [effect], motion(), BAND)
