@@ -18,6 +18,7 @@ from inertial.campaign.noise_levels import NoiseLevels
 RATE, STRETCH, COUNT = 10.0, 6000, 10  # Hz, samples of a stretch, stretches
 WHITE = {"accel": 1e-4, "gyro": 3.5e-6}  # m/s/√s, rad/√s
 WALK, INSTABILITY = 2e-7, 1.5e-6  # rad/s/√s of gyro y, rad/s of gyro z
+STATED = 2e-6  # rad/s, m/s²: B by the data sheet
 IMU = YAML(typ="safe").load(chain.ROOT / "data/instruments.yaml")["span-cpt"]
 SETTINGS = {"from_hz": 0.5, "to_hz": 5.0}
 
@@ -50,6 +51,13 @@ def flicker(rng: np.random.Generator, samples: int) -> np.ndarray:
     return np.asarray(drawn[:samples])
 
 
+def data_sheet(instability: float | None) -> pd.DataFrame:
+    """That of an IMU that states nothing but its bias instability, B."""
+    nothing = {"white_noise": None, "random_walk": None}
+    places = [{"sensor": sensor, "axis": axis} for sensor in WHITE for axis in tables.AXES]
+    return pd.DataFrame([place | nothing | {"bias_instability": instability} for place in places])
+
+
 def of_stretches(values: np.ndarray, **changes: Any) -> dict[str, Any]:
     """What the stage reads: equally long rests one after the other in one log."""
     count = len(values)
@@ -60,12 +68,6 @@ def of_stretches(values: np.ndarray, **changes: Any) -> dict[str, Any]:
     segments |= {"from_record": starts, "to_record": np.minimum(starts + STRETCH, count)}
     clock = {"log": "a", "interval": 1 / RATE, "integration_step": 1 / RATE, "clock": "GPS"}
     clock |= {"begin": 0.0, "end": count / RATE}
-    sensors = [
-        {"sensor": sensor, "axis": axis, "white_noise": None, "bias_instability": 2e-6}
-        | {"random_walk": None}
-        for sensor in WHITE
-        for axis in tables.AXES
-    ]
     return {
         "samples": Batches(pa.table(samples)),
         "mean_sigmas": tables.MEAN_SIGMAS.empty(),
@@ -75,7 +77,7 @@ def of_stretches(values: np.ndarray, **changes: Any) -> dict[str, Any]:
         "gaps": pd.DataFrame({"log": [], "record": []}),
         "masks": tables.MASKS.empty(),
         "channel_repairs": tables.CHANNEL_REPAIRS.empty(),
-        "sensors": pd.DataFrame(sensors),
+        "sensors": data_sheet(None),
         "ranges": tables.RANGES.empty(),
         **SETTINGS,
         **changes,
@@ -100,7 +102,7 @@ def drifting(seed: int) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def hidden() -> dict[str, pd.DataFrame]:
-    return noise_of(of_stretches(drifting(3)))
+    return noise_of(of_stretches(drifting(3), sensors=data_sheet(STATED)))
 
 
 def test_hidden_terms_come_back_with_their_sigma(hidden):
@@ -117,15 +119,26 @@ def test_hidden_terms_come_back_with_their_sigma(hidden):
     others = terms[~terms["detected"]]
     assert len(others) >= 20
     assert others["upper"].notna().all() and others["value"].isna().all()
-    assert (terms.xs("bias_instability", level="term")["data_sheet"] == 2e-6).all()
+    assert (terms.xs("bias_instability", level="term")["data_sheet"] == STATED).all()
 
 
-def test_only_the_axes_that_drift_have_a_drift_in_the_covariance(hidden):
-    levels = NoiseLevels(hidden["levels"])
+def test_only_the_axes_that_drift_have_a_drift_in_the_covariance():
+    levels = NoiseLevels(noise_of(of_stretches(drifting(3)))["levels"])
     gyro = levels.drift("gyro")
     assert gyro.walk[1] == pytest.approx(WALK, rel=0.4) and not gyro.walk[[0, 2]].any()
     assert gyro.instability[2] == pytest.approx(INSTABILITY, rel=0.4)
     assert not gyro.instability[:2].any() and not levels.drift("accel")
+
+
+def test_where_none_is_seen_the_instability_of_the_data_sheet_enters_as_far_as_it_may_be(hidden):
+    """2e-6 m/s² are far below what the rests show; 1e-4 rad/s are excluded by them."""
+    levels, terms = NoiseLevels(hidden["levels"]), hidden["terms"].set_index(["channel", "term"])
+    gyro, upper = levels.drift("gyro"), terms.loc[("gyro_x", "bias_instability"), "upper"]
+    assert gyro.instability[0] == min(upper, STATED) and not gyro.instability[1]
+    assert gyro.instability[2] == pytest.approx(INSTABILITY, rel=0.4)
+    assert levels.drift("accel").instability.tolist() == [STATED] * 3
+    too_much = noise_of(of_stretches(drifting(3), sensors=data_sheet(1e-4)))
+    assert NoiseLevels(too_much["levels"]).drift("gyro").instability[0] == pytest.approx(upper)
 
 
 def test_deviation_and_spectrum_stand_beside_the_model(hidden):

@@ -264,12 +264,17 @@ class Campaign:
         return self._system(sensor, effects, _prior_sigmas(effects, prior_sigma), only)
 
     def equations(
-        self, sensor: str, effects: Sequence[Effect], prior_sigma: float, *, walking: bool = False
+        self,
+        sensor: str,
+        effects: Sequence[Effect],
+        prior_sigma: float,
+        only: set[str] | None = None,
+        *,
+        walking: bool = False,
     ) -> DriftingEquations | None:
         """The same before errors are eliminated; `walking`: a random walk may be added."""
-        return self._drifting(
-            sensor, effects, _prior_sigmas(effects, prior_sigma), None, walking=walking
-        )
+        sigmas = _prior_sigmas(effects, prior_sigma)
+        return self._drifting(sensor, effects, sigmas, only, walking=walking)
 
     def by_scatter(
         self, effects: Sequence[Effect], prior_sigma: float

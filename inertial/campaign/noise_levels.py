@@ -8,7 +8,8 @@ Where counts are coarse beside the noise, and do not carry over what they leave,
 manoeuvre is off by their rounding however long it is; a level beside its own holds that.
 
 Beside the common level of a channel stand the bias instability and the random walk that the static
-stretches show. From here they enter the covariance of every estimate, and from nowhere else.
+stretches show, or the bias instability of the data sheet as far as these leave it open. From here
+they enter the covariance of every estimate, and from nowhere else.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,14 +37,20 @@ OWN, COMMON = "own", "common"
 STATED, RESIDUALS = "stated", "residuals"  # of means without time
 
 
-def drift_of(terms: NoiseTerms) -> dict[str, float]:
+def drift_of(terms: NoiseTerms | None, stated: float | None = None) -> dict[str, float]:
     """What of the terms of a channel enters the covariance, by name.
 
-    Of drifts that the data do not distinguish that is the likeliest.
+    Of drifts that the data do not distinguish that is the likeliest. Where they show none, the bias
+    instability that the data sheet states, `stated`, as far as their upper limit leaves it open.
     """
+    if terms is None:
+        return {DRIFTS[0]: stated} if stated else {}
     sizes = {name: float(getattr(terms.model, name)) for name in DRIFTS}
     certain = {name for name in DRIFTS if terms.terms[name].p_value < MAX_P_VALUE}
-    return {name: size for name, size in sizes.items() if size > 0 and name in certain}
+    shown = {name: size for name, size in sizes.items() if size > 0 and name in certain}
+    if shown or not stated:
+        return shown
+    return {DRIFTS[0]: float(np.fmin(stated, terms.terms[DRIFTS[0]].upper))}
 
 
 def effective_levels(

@@ -108,7 +108,8 @@ LEVELS = Table(
             "bias_instability",
             DOUBLE,
             "rad/s, m/s²",
-            "B of the common level's channel by terms, or the likeliest; none: does not enter",
+            "B of the common level's channel by terms, or the likeliest, or the data sheet's; none:"
+            " does not enter",
             nullable=True,
         ),
         Column(

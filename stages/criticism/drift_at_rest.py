@@ -4,16 +4,17 @@ A bias instability goes on between the stretches, and there it would be named as
 structure. A jump or a warm-up within a stretch looks like such a drift at rest, and would be hidden
 by it. So the effects that are named beside the drift are weighed against those without it and with
 a random walk that is estimated between the stretches, by evidence, one sensor after the other. What
-few manoeuvres carry is no drift: that is in all of them.
+few manoeuvres carry is no drift, unless the others have it too: that is in all of them.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from inertial.campaign.equations import Campaign
+from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.effects.law import Law
+from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.rivals import MAX_LOG_ODDS, members_of
@@ -39,11 +40,27 @@ def select_beside_drift(
         without = kept.without_drift_at_rest([sensor])
         other, other_tested = select(without)
         odds = _log_evidence(other, level) - _log_evidence(selection, level)
-        if odds > MAX_LOG_ODDS or carrying(other_tested, sensor):
+        carried = carrying(other_tested, sensor)
+        if odds > MAX_LOG_ODDS or (
+            carried and not _drifts_without(carried, kept, sensor, other.fitted)
+        ):
             selection, tested, kept = other, other_tested, without
         elif odds > -MAX_LOG_ODDS:
             selection = _with_alternatives(selection, other)
     return selection, tested, kept
+
+
+def _drifts_without(
+    carried: Sequence[str], kept: Campaign, sensor: str, effects: Sequence[Effect]
+) -> bool:
+    """Whether the other manoeuvres are likelier with the drift, given effects."""
+    others = set(kept.manoeuvres).difference(carried)
+    deviances = [
+        equations.likelihood.constant
+        for campaign in (kept, kept.without_drift_at_rest([sensor]))
+        if (equations := campaign.equations(sensor, effects, PRIOR_SIZE, others)) is not None
+    ]
+    return len(deviances) == 2 and deviances[1] - deviances[0] > 2 * MAX_LOG_ODDS
 
 
 def _log_evidence(selection: Selection, level: float) -> float:

@@ -74,7 +74,7 @@ def noise(
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
     noises = list(static.noises())
-    drifts = dict(chain.from_iterable(n.drifts() for n in noises))
+    drifts = dict(chain.from_iterable(n.drifts(sheet) for n in noises))
     counts = count_sizes(changes, np.reshape(levels_seen, (-1, len(changes))))
     levels = effective_levels(measured, drifts, rounding_levels(spectra, counts))
     if of_means:

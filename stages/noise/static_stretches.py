@@ -172,11 +172,12 @@ class SensorNoise:
     interval: float
     seconds: float
 
-    def drifts(self) -> Iterator[tuple[str, dict[str, float]]]:
-        """What enters the covariance, by channel."""
+    def drifts(
+        self, sheet: Mapping[str, Mapping[str, float | None]]
+    ) -> Iterator[tuple[str, dict[str, float]]]:
+        """What enters the covariance, by channel; `sheet`: see `term_rows`."""
         for channel, terms in zip(self.channels, self.terms, strict=True):
-            if terms is not None:
-                yield channel, drift_of(terms)
+            yield channel, drift_of(terms, sheet[channel].get("bias_instability"))
 
     def allan_rows(self) -> Iterator[Row]:
         """Rows of the table."""
