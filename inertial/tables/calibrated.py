@@ -145,9 +145,9 @@ UNCERTAINTY_BUDGET = Table(
             TEXT,
             "",
             "noise: white noise; drift: bias instability and random walk by the noise, or by the"
-            " data sheet; switch_on: bias from switch-on to switch-on; scatter, random_walk: between"
-            " manoeuvres, by the fit; position, angle: of the table; interpolation: of gaps; clock:"
-            " its rate by stamps of arrival; azimuth: unknown"
+            " data sheet; switch_on: bias from switch-on to switch-on; scatter, random_walk:"
+            " between manoeuvres, by the fit; position, angle: of the table; interpolation: of gaps;"
+            " clock: its rate by stamps of arrival; azimuth: unknown"
             " direction of north; gravity; latitude",
         ),
         Column("sigma", DOUBLE, "as unit", "its part of the standard deviation, root of variance"),
