@@ -24,8 +24,8 @@
 #                                 their names: effects too small for one, what belongs to sensor, table
 #                                 or type, the population of each type; reports/fleet-<name>.html
 #   make test                     the tests; the same as CI with `make style`
-#   make test-slow                those that draw many campaigns, or repeat others with other numbers; half
-#                                 an hour on two cores
+#   make test-slow                those that draw many campaigns, repeat others with other numbers, or run
+#                                 a whole campaign each; an hour and a half on two cores
 #   make bench                    errors, time and memory compared with other programs, in one run;
 #                                 also with ONLY="cost noise"
 #   make style                    linters, types, and which package may import which

@@ -42,6 +42,7 @@ def spreads(tau_ms):
         )
 
 
+@pytest.mark.slow
 def test_a_hidden_low_pass_comes_back_within_its_sigma():
     pulls = []
     for tau in (8.0, 20.0):
@@ -98,6 +99,7 @@ def welch(values):
     return found.frequency, found.density[:, 0], found.degrees
 
 
+@pytest.mark.slow
 def test_noise_behind_a_low_pass_tells_its_bandwidth():
     """Whether it is filtered before or behind sampling is not known: that is in the sigma."""
     document = deepcopy(laboratory.read(SOURCE).document)
@@ -117,6 +119,7 @@ def test_noise_behind_a_low_pass_tells_its_bandwidth():
     assert all(limit.value is None and limit.lower > 40 for limit in limits)
 
 
+@pytest.mark.slow
 def test_every_axis_has_its_bandwidth_and_says_what_it_is_of():
     document = deepcopy(laboratory.read(SOURCE).document)
     document["effects"] |= {"gyro_low_pass": {"time_constant_ms": [8, 20, 0]}}

@@ -75,6 +75,7 @@ def test_the_sigmas_of_a_clean_session_are_honest(clean):
         assert np.abs(every).max() < 4.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "effect",
     [
@@ -105,6 +106,7 @@ def test_the_g_sensitivity_has_the_size_that_was_hidden(hiding):
     assert len(checks) == 24 and checks["in_sigmas_after"].abs().max() < 4
 
 
+@pytest.mark.slow
 def test_gyros_of_another_count_size_are_a_finding_and_stay_usable(tmp_path):
     document = sessions.session(3)
     matrix = 0.765 * np.array(document["truth"]["gyro"]["matrix"])

@@ -104,6 +104,7 @@ def rewritten(simple: Path, folder: Path, change: Callable[[np.ndarray], np.ndar
     return told(simple)
 
 
+@pytest.mark.slow
 def test_counts_with_a_zero_of_their_own_are_the_same_campaign(simple, simple_results, tmp_path):
     zeros, sizes = np.array([70000, 65536, 70001]), np.array([1, 2, 4])
 
@@ -144,6 +145,7 @@ def test_unsigned_counts_that_are_not_said_to_be_are_refused_with_their_zero(sim
 # ---- axes, signs, conventions
 
 
+@pytest.mark.slow
 def test_axes_and_signs_of_each_sensor_undo_those_of_the_log(simple, simple_results, tmp_path):
     """Columns z, −x, y of the gyros; accelerometers that read −g on the axis that points up."""
 
@@ -162,6 +164,7 @@ def test_axes_and_signs_of_each_sensor_undo_those_of_the_log(simple, simple_resu
     np.testing.assert_allclose(values(results), values(simple_results), atol=1e-12, rtol=1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("message", [pytest.param("columns", marks=pytest.mark.slow), "RAWIMUSA"])
 def test_one_reversed_gyro_that_is_stated_needs_no_repair(message, tmp_path):
     document = in_columns()
@@ -185,6 +188,7 @@ def test_one_reversed_gyro_that_is_stated_needs_no_repair(message, tmp_path):
     np.testing.assert_allclose(values(results), values(repaired), atol=1e-12, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_table_that_counts_clockwise(simple, simple_results, tmp_path):
     campaign = rewritten(simple, tmp_path / "raw", lambda rows: rows)
     for manoeuvre in campaign["plan"]:
@@ -226,6 +230,7 @@ def test_a_turn_of_which_only_the_axis_is_known_gives_its_scale(
         assert scale == pytest.approx(np.hypot(earth, 100e-6) / np.sqrt(2), rel=0.2)
 
 
+@pytest.mark.slow
 def test_rows_without_a_time_are_counted_at_the_rate_of_the_instrument(
     simple, simple_results, tmp_path
 ):
@@ -391,6 +396,7 @@ def weighted(own: np.ndarray, means: np.ndarray, sigma: np.ndarray) -> tuple[np.
     return tuple(np.append(each[:, :3].ravel(), each[:, 3]) for each in (found, spread))
 
 
+@pytest.mark.slow
 def test_means_with_a_sigma_each_are_weighted_by_it(tmp_path):
     pulls = []
     for seed in range(4):
@@ -472,6 +478,7 @@ def apart(
     return campaign
 
 
+@pytest.mark.slow
 def test_two_logs_with_the_same_stamps_are_the_same_campaign(simple, simple_results, tmp_path):
     apart(simple, tmp_path / "raw", gyros=lambda rows: rows)
     results = chain.run(tmp_path / "raw", tmp_path / "derived")
@@ -481,6 +488,7 @@ def test_two_logs_with_the_same_stamps_are_the_same_campaign(simple, simple_resu
     assert results["decode/accounts"].groupby("log")["bytes"].sum().to_dict() == sizes
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("gyro_hz", "late_s"),
     [
@@ -552,6 +560,7 @@ def test_two_logs_that_arrive_in_packets_of_their_own_are_joined(simple, simple_
     assert np.abs(away).max() < 2e-4  # the clock of 13 s by stamps that are 4 ms late
 
 
+@pytest.mark.slow
 def test_what_one_log_lacks_is_a_gap_of_both(simple, tmp_path):
     """1 s of the gyros are lost: nothing is made up in between."""
 
@@ -582,6 +591,7 @@ def test_logs_without_common_time_are_refused(simple, tmp_path):
 # ---- stamps of arrival
 
 
+@pytest.mark.slow
 def test_the_rate_of_a_clock_by_stamps_of_arrival_is_in_the_scale_factors(tmp_path):
     """The IMU samples at 100.03 Hz; a host fetches and stamps what waits every 20 to 60 ms.
 

@@ -89,6 +89,7 @@ def test_a_mistake_is_refused_with_its_line(tmp_path, line, place):
 # ---- JCGM 106:2012
 
 
+@pytest.mark.slow
 def test_a_guard_band_of_u_leaves_one_false_acceptance_in_44_at_worst():
     """A truth at its limit is the worst: P(y ≤ T − 2 σ) = Φ(−2) = 2.275 %."""
     random = np.random.default_rng(7)
@@ -101,6 +102,7 @@ def test_a_guard_band_of_u_leaves_one_false_acceptance_in_44_at_worst():
     assert stats.binomtest(wrong, draws, 0.02275).pvalue > 1e-3  # −1.0, at the limit
 
 
+@pytest.mark.slow
 def test_the_stated_risk_is_how_often_statements_are_wrong():
     """Of a truth of which nothing is known, so of a uniform one over more than its limits."""
     random = np.random.default_rng(8)

@@ -19,6 +19,8 @@ from inertial.estimation.input_output import (
 )
 from stages.compensation.characteristics import OF_FORCE, OF_INPUT, least_changes
 
+pytestmark = pytest.mark.slow
+
 DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
 PPM = 1e-6
 

@@ -163,6 +163,7 @@ def without(plan: list[str], tmp_path: Path) -> Path:
     return copied(results, tmp_path / "data")
 
 
+@pytest.mark.slow
 def test_a_sensor_that_lacks_a_manoeuvre_has_no_result(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -311,6 +312,7 @@ def test_where_there_is_nothing_to_read(tmp_path: Path, capsys: pytest.CaptureFi
     assert "cure: " in said
 
 
+@pytest.mark.slow
 @pytest.mark.workflow
 def test_a_campaign_that_names_no_log_is_refused_as_by_make_report(tmp_path: Path) -> None:
     raw = tmp_path / "data/raw" / NAME

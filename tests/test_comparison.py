@@ -265,6 +265,7 @@ def test_a_mistake_in_published_values_is_refused_with_place_and_cure(mistake, t
         assert part in str(refused.value)
 
 
+@pytest.mark.slow
 def test_published_values_beside_the_campaign_pass_through_the_chain(tmp_path):
     campaign = chain.simulate(chain.short(seed=5), tmp_path / "told")
     (campaign / "published.yaml").write_text(RIGHT, encoding="utf-8")

@@ -193,6 +193,7 @@ def test_records_keep_their_order_and_count_and_the_checks_are_about_them(clean)
     assert size == pytest.approx(checks_of(results, "gravity").loc["x-down", "after"], abs=1e-8)
 
 
+@pytest.mark.slow
 def test_the_same_in_small_batches(clean, monkeypatch):
     whole = chain.again(clean[0], "compensation")
     monkeypatch.setattr(parquet, "BATCH_ROWS", 777)
@@ -218,6 +219,7 @@ def test_traces_stand_between_the_edges_of_segment_and_hold_the_samples(clean):
 # ---- what is not determined, and what was compensated before
 
 
+@pytest.mark.slow
 def test_a_sensor_that_is_not_wholly_determined_stays_empty_and_says_why(clean):
     result = clean[0]["diagnosis/result"]
     lost = (result["sensor"] == "gyro") & (result["parameter"] == "scale_y")
@@ -232,6 +234,7 @@ def test_a_sensor_that_is_not_wholly_determined_stays_empty_and_says_why(clean):
     assert not {"rate_up", "angle"} & set(checks.index)
 
 
+@pytest.mark.slow
 def test_of_a_sensor_that_is_not_usable_nothing_is_compensated(clean):
     result = clean[0]["diagnosis/result"]
     unusable = result["sensor"] == "accel"
@@ -247,6 +250,7 @@ def test_of_a_sensor_that_is_not_usable_nothing_is_compensated(clean):
     assert not {"gravity", "force_up"} & set(checks.index)
 
 
+@pytest.mark.slow
 def test_an_effect_of_the_table_stays_in_the_readings(clean):
     """The table wobbles, the IMU feels it: M and bias were estimated beside it."""
     result = clean[0]["diagnosis/result"]
@@ -322,6 +326,7 @@ def test_compensated_must_be_true_or_false(tmp_path):
         YamlFile(file).check("campaign")
 
 
+@pytest.mark.slow
 def test_without_a_latitude_the_gyros_tell_the_earths_rate(tmp_path):
     """Both components: once it was taken to be level, by 0.8 of it, and residuals were as large."""
     folder = chain.simulate(chain.short(seed=6), tmp_path / "raw")

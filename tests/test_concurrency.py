@@ -64,6 +64,7 @@ def index_of(folder: Path, *other: str, umask: int = 0o022) -> subprocess.Popen[
     )
 
 
+@pytest.mark.slow
 def test_a_second_run_on_a_folder_waits_for_the_first(tmp_path: Path) -> None:
     (tmp_path / LOCK).parent.mkdir()
     page = tmp_path / "reports/index.html"
@@ -143,6 +144,7 @@ def _children(pid: int) -> list[int]:
     return [int(child) for child in Path(f"/proc/{pid}/task/{pid}/children").read_text().split()]
 
 
+@pytest.mark.slow
 def test_two_campaigns_of_one_imu_that_end_at_once_are_both_in_its_history(
     whole: Path, tmp_path: Path
 ) -> None:

@@ -35,6 +35,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_where_the_catalogue_looks_is_the_same_workflow(folder: Path) -> None:
     rules = set(ORDER) - {"export", "pdf"}
     assert planned(chain.ROOT / "workflow/Snakefile", folder, GOAL) == rules
@@ -42,6 +43,7 @@ def test_where_the_catalogue_looks_is_the_same_workflow(folder: Path) -> None:
     assert config[0].samefile(config[1])
 
 
+@pytest.mark.slow
 def test_another_workflow_uses_it_as_a_module(folder: Path) -> None:
     other = folder / "Snakefile"
     other.write_text(

@@ -40,7 +40,7 @@ HIDDEN = {
     "table_wobble": ({"east_arcsec": 0, "north_arcsec": 5}, {}),
 }
 # One of each kind in the quick tests; `make test-slow` hides them all.
-QUICK = ("gyro_bias_jump", "lever_arm", "table_wobble")
+QUICK = ("lever_arm", "table_wobble")
 NOT_NEEDED = ("studies", "comparison", "compensation")  # by criticism and extension
 # What this plan cannot tell from it.
 CLASS = {
@@ -120,6 +120,7 @@ def test_what_is_hidden_is_named_alone_with_its_number(criticised, effect):
             assert 3 < abs(hidden) / found["detection_limit"] < 30
 
 
+@pytest.mark.slow
 def test_a_time_at_which_nothing_shows_an_effect_is_uncertain():
     """A rotation about y while y is vertical: accelerometers show it in the next position."""
     shift = {"rotation_arcsec": [0, 30, 0], "at_s": 1250}
@@ -132,6 +133,7 @@ def test_a_time_at_which_nothing_shows_an_effect_is_uncertain():
     assert 50 < found.loc["t0", "sigma"] < 250  # of 360 s, evenly: 104 s
 
 
+@pytest.mark.slow
 def test_the_manoeuvre_that_splits_a_class_is_named(criticised):
     """With positions up, down and level only, the square and the size of the force are one."""
     (cause,) = criticised("accel_quadratic", 51)["criticism/findings"].to_dict("records")

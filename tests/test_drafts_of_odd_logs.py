@@ -389,6 +389,7 @@ def moved(rates: Rates) -> np.ndarray:
     return np.column_stack([time, 9.8 * up + 0.01 * noise[0], np.degrees(rate) + 0.05 * noise[1]])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", [True, False])
 def test_a_journey_beside_a_calibration_is_left_out_and_told(tmp_path, first):
     """It made "positions" of the whole log, without a face or a turn."""

@@ -130,6 +130,7 @@ def test_delay_bandwidth_eccentricity_and_ripple_are_found(made):
     assert found["value"].to_numpy() == pytest.approx(3 * ARC_SECOND, rel=0.01)
 
 
+@pytest.mark.slow
 def test_the_sigmas_are_those_of_the_scatter():
     """400 turns drawn without the laboratory: 30 °/s, ramps of 0.5 s, delay 4 ms, 300 ppm.
 

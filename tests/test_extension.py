@@ -278,6 +278,7 @@ def test_what_was_only_just_named_is_taken_less_of(quadratic):
 # ---- nothing to add
 
 
+@pytest.mark.slow
 def test_without_a_named_effect_the_joint_result_is_the_only_candidate(tmp_path):
     results = run(tmp_path, seed=21)
     for table in ("parameters", "covariance", "fit", "gain", "moved", "worth"):

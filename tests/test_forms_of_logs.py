@@ -175,6 +175,7 @@ FORMS: dict[Callable[[ByHand], Files], bool] = {  # whether the quick tests have
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "form",
     [

@@ -47,6 +47,7 @@ def test_a_rate_table_turns_each_axis_at_rates_of_both_signs(tmp_path):
     assert turns["position"].nunique() == 3
 
 
+@pytest.mark.slow
 def test_a_session_by_the_plan_of_a_rate_table_determines_all_parameters():
     """With a mount for each axis no mount determined them, and nothing was simulated."""
     document = chain.demo(seed=5, effects={}, faults=[])

@@ -198,6 +198,7 @@ ALIKE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("edits", "repair", "cause"),
     [
@@ -249,6 +250,7 @@ def spans_late(late: float) -> Edit:
     return misstated(plan=spans)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late", [25.0, -8.0, 3000.0])
 def test_spans_by_another_clock_are_moved_and_asked_for(late):
     results = recorded(in_one_log, spans_late(late))
@@ -274,6 +276,7 @@ def test_two_causes_are_two_repairs():
     assert sorted(findings(results)["cause"]) == ["sign_flip", "wrong_scale_factor"]
 
 
+@pytest.mark.slow
 def test_gravity_of_the_place_has_the_sigma_of_the_field():
     results = recorded(misstated(site={"gravity_m_s2": 9.8066}), until="accelerometer")
     gravity = results["plan/known"].set_index("quantity").loc["gravity"]
@@ -290,6 +293,7 @@ def test_gravity_of_the_place_has_the_sigma_of_the_field():
 # ---- where others explain as much
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "edits",
     [
@@ -337,6 +341,7 @@ def test_one_reversed_axis_may_be_two_exchanged_logs():
     assert (told["state"] == "rival").all()
 
 
+@pytest.mark.slow
 def test_both_triads_turned_alike_may_be_the_mounting():
     both = [flip(sensor, axis) for sensor in ("accelerometer", "gyro") for axis in "xy"]
     told = repairs(recorded(faults(*both), until="segment"))
@@ -369,6 +374,7 @@ def test_large_scale_errors_of_all_gyros_are_no_count_size():
     assert list(findings(results)["cause"]) == ["wrong_scale_factor"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "bias",
     [
@@ -442,6 +448,7 @@ def test_a_repair_that_is_none_of_the_campaign_is_refused():
     assert "remove it from accept" in words
 
 
+@pytest.mark.slow
 def test_two_positions_that_changed_places_are_exchanged_with_all_their_manoeuvres():
     """Of one log. It was the axes of a triad that no mounting has, with other causes beside it."""
     document = hidden_plans.stops(seed=5)

@@ -204,6 +204,7 @@ def calibrated(place, settings, **facts):
     }
 
 
+@pytest.mark.slow
 def test_a_history_with_a_jump_in_the_archive(tmp_path):
     made = calibrated(tmp_path, {"level": 0.01, "tolerance": {"gyro_bias": 1e-6}}, mounting="A")
     (jumped,) = rows_of(made["jumps"])
@@ -330,6 +331,7 @@ def test_between_switch_ons_it_is_the_analysis_of_variance():
     assert nothing[0] == 0 and np.isnan(nothing[1]) and nothing[2] > 0
 
 
+@pytest.mark.slow
 def test_power_cycles_of_the_laboratory_come_back():
     """Eight switch-ons, biases of 4 °/h and 100 µg: 21 degrees of freedom for each sensor."""
     document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
@@ -370,6 +372,7 @@ def test_power_cycles_are_simulated_and_are_no_finding():
     assert len(own) == 8 and own.abs().to_numpy().max() > 10 * np.radians(0.012) / 60 / np.sqrt(60)
 
 
+@pytest.mark.slow
 def test_runs_are_not_usable_until_it_is_stated_that_the_biases_are_others(tmp_path):
     """Three logs of one clock each. Then 30 mg are no tilt, of which 1 − cos would be 400 ppm."""
     document = deepcopy(
@@ -406,6 +409,7 @@ def test_runs_are_not_usable_until_it_is_stated_that_the_biases_are_others(tmp_p
     assert set(tables["diagnosis/verdict"]["verdict"]) == {"not_usable"}
 
 
+@pytest.mark.slow
 def test_beside_power_cycles_an_effect_is_found_and_they_are_estimated_beside_it():
     document = deepcopy(
         chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
@@ -422,6 +426,7 @@ def test_beside_power_cycles_an_effect_is_found_and_they_are_estimated_beside_it
     assert 0.5 < size / (np.radians(4) / 3600) < 1.5
 
 
+@pytest.mark.slow
 def test_a_warm_up_begins_anew_after_each_stated_switch_on():
     """The demo's plan, switched off and on twice: 25 and −15 °/h that settle with 150 s."""
     hidden = {"gyro_warm_up": {"start_deg_h": [25, -15, 0], "time_constant_s": 150}}

@@ -49,6 +49,7 @@ def assert_true(results: chain.Results) -> None:
         assert np.abs(own).max() < 4.5
 
 
+@pytest.mark.slow
 def test_gyros_that_clip_at_a_planned_rate_are_one_finding_and_nothing_else():
     """At 60 °/s the noise alone reaches the limit: what is left of the readings is biased."""
     faults = [
@@ -101,6 +102,7 @@ def test_a_position_whose_noise_is_cut_off_gives_no_mean_of_that_channel(above):
     assert_true(results)
 
 
+@pytest.mark.slow
 def test_120_spikes_in_12_logs_are_one_finding_and_every_turn_is_whole():
     place = {"lines": list(range(103, 1103, 103))[:10], "channel": "gyro_y", "size_rad_s": 0.6}
     results = run(chain.short(faults=[{"spikes": {"log": "all"} | place}]))
@@ -112,6 +114,7 @@ def test_120_spikes_in_12_logs_are_one_finding_and_every_turn_is_whole():
     assert_true(results)
 
 
+@pytest.mark.slow
 def test_spikes_of_all_accelerometers_take_no_time_from_the_gyros():
     """Of each turn they lose ten samples: counted for half, they were 270 sigma of a scale."""
     at = {"log": "all", "lines": list(range(303, 1203, 83))[:10], "size_m_s2": 3.0}
@@ -138,6 +141,7 @@ def test_a_gap_in_a_turn_is_one_finding_with_the_angle_that_it_hides():
     assert np.degrees(turn["missing_angle"]) == pytest.approx(64.0, abs=0.1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("log", "line"), [("y-up.asc", 900), ("y-forward.asc", 600)])
 def test_an_impact_is_called_one_and_masks_its_records_alone(log, line):
     results = run(chain.short(faults=[{"knock": {"log": log, "line": line} | KNOCK}]))

@@ -105,6 +105,7 @@ def test_the_bins_of_a_long_campaign_are_longer_and_find_the_same(clean, monkeyp
     assert coarse["findings"].empty
 
 
+@pytest.mark.slow
 def test_a_turn_the_wrong_way_is_found_and_refused(tmp_path):
     document = chain.demo()
     document["campaign"]["plan"] = [
@@ -174,6 +175,7 @@ def test_changes_of_position_alone_are_no_turns_in_another_unit():
     assert found == {"0": 1, "1": None, "2": 5}
 
 
+@pytest.mark.slow
 def test_one_turn_of_a_long_log_the_wrong_way_is_the_only_finding(tmp_path):
     document = session()
     plan = document["campaign"]["plan"]
@@ -407,6 +409,7 @@ def of_accelerometers(text: str) -> str:
     return text[:start] + text[text.index("accelerometer: {columns") :]
 
 
+@pytest.mark.slow
 def test_turns_that_accelerometers_do_not_see_leave_the_rests_of_the_plan():
     recording = laboratory.perform(laboratory.specify(by_azimuths()))
     results = chain.in_memory(recording, "diagnosis", edit=of_accelerometers)
@@ -424,6 +427,7 @@ def test_turns_that_accelerometers_do_not_see_leave_the_rests_of_the_plan():
     assert second["sentence"] == "Gyros: none is recorded."
 
 
+@pytest.mark.slow
 def test_three_rests_of_accelerometers_that_walk_have_no_result_and_no_exception():
     document = by_azimuths()
     rests = [{"id": f"{axis}-up", "do": "rest", "up": f"+{axis}", "seconds": 300} for axis in "xyz"]

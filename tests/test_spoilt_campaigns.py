@@ -11,6 +11,8 @@ import pytest
 import laboratory
 from inertial.estimation.triad import linear_names
 
+pytestmark = pytest.mark.slow
+
 RATE = 200  # Hz
 REST, STILL = 120, 6.5  # s
 PER_SAMPLE = (0.02, 1e-3 * 9.80665)  # °/s and m/s²

@@ -56,6 +56,7 @@ def test_a_recorded_temperature_counts_and_a_contradiction_is_reported() -> None
     assert "x-down" in finding["sentence"] and "29.0 °C" in finding["sentence"]
 
 
+@pytest.mark.slow
 def test_its_own_sigma_decides() -> None:
     assert segmented(by_thermometer(stated(29.0, temperature_sigma_k=2), 25.0))[
         "segment/findings"

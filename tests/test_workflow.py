@@ -191,6 +191,7 @@ def test_the_language_is_a_setting_of_the_report_alone(workflow: Workflow) -> No
     assert workflow.planned("--config", "report={language: zh}") == {"report"}
 
 
+@pytest.mark.slow
 def test_the_report_in_chinese_has_no_english(workflow: Workflow, tmp_path: Path) -> None:
     said = [sys.executable, "-m", "stages.report", str(workflow.data / "data/derived/demo")]
     said += ["--settings", '{"language": "zh"}', "--documents", str(tmp_path / "demo")]
@@ -354,6 +355,7 @@ def test_make_report_in_a_clean_checkout(workflow: Workflow) -> None:
     assert ".venv" not in second.stdout  # it was not made again
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", ["report", "check"])
 def test_a_log_of_another_kind_is_refused_by_make(workflow: Workflow, target: str) -> None:
     name = f"page-{target}"

@@ -43,6 +43,7 @@ def drawn() -> dict[tuple[str, str], tuple[np.ndarray, np.ndarray]]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("pair", PAIRS)
 def test_the_stated_sigmas_are_the_bound(drawn, pair):
     _, sigmas = drawn[pair]

@@ -57,6 +57,7 @@ def test_an_assumed_angle_is_wrong_by_far_more_than_its_sigma(gapped):
     assert abs(by_bridge) < 1.5 * sigma
 
 
+@pytest.mark.slow
 def test_criticism_and_extension_take_the_turn_as_the_joint_estimate_does(tmp_path):
     document = chain.demo(faults=lose((2193, 1197)))
     for entry in document["campaign"]["plan"]:

@@ -61,6 +61,7 @@ def pulls_of_gyros(tables: chain.Results, truth: list[list[float]]) -> np.ndarra
     return np.array(pulls)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.01, 0.04])
 def test_the_scale_factors_stay_and_no_line_is_found(share):
     """The turns were left out, for in their ramps, too, a sample is missing."""
@@ -74,6 +75,7 @@ def test_the_scale_factors_stay_and_no_line_is_found(share):
     assert np.sqrt(np.mean(np.square(pulls))) < 1.6 and np.abs(pulls).max() < 3.5
 
 
+@pytest.mark.slow
 def test_records_out_of_order_are_missing_nowhere():
     """Where time leaps before a record that came early: a scale factor was 190 sigma off."""
     document = chain.short(seed=5)

@@ -29,6 +29,7 @@ def louder(recording: laboratory.Recording, start: float, end: float, times: flo
     return replace(recording, records=logs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("plan", "start", "end", "times"),
     [

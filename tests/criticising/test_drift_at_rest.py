@@ -58,6 +58,7 @@ def test_bias_instability_that_shows_most_in_two_manoeuvres_stays_in_the_equatio
     assert results["criticism/findings"].empty
 
 
+@pytest.mark.slow
 def test_a_jump_within_a_rest_is_seen_there_as_a_drift_and_stays_a_jump() -> None:
     jump = {"size_deg_h": [12, -9, 10], "at_s": 1000}
     _, results = criticised({"gyro_bias_jump": jump})

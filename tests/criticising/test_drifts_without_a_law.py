@@ -79,6 +79,7 @@ def test_a_scale_factor_that_drifts_beside_a_rising_temperature_may_be_either(se
     assert abs(found["value"] - size) < 3.5 * found["sigma"]
 
 
+@pytest.mark.slow
 def test_an_asymmetry_is_no_ramp_of_an_unthinkable_size():
     """Turns both ways a minute apart: 2 × 400 ppm would be a drift by 40,000 ppm/h."""
     effects = {"gyro_scale_asymmetry": {"asymmetry_ppm": [150, -400, 250]}}

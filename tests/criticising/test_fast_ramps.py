@@ -7,6 +7,7 @@ import pytest
 ARM = {"r_x": 0.12, "r_y": -0.05, "r_z": 0.2}  # m
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("acceleration", [80, pytest.param(10, marks=pytest.mark.slow)])
 def test_a_long_lever_arm_is_the_only_cause_with_its_size(acceleration: float) -> None:
     document = chain.short(effects={"lever_arm": {"arm_m": list(ARM.values())}}, seed=3)

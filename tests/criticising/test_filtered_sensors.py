@@ -25,6 +25,7 @@ def behind_filter(recording: laboratory.Recording, corner: float, order: int):
     return replace(recording, records=logs)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("corner", "order"),
     [

@@ -5,6 +5,7 @@ from typing import Any
 
 import chain
 import pandas as pd
+import pytest
 
 JUMP = {"size_deg_h": [40.0, -30.0, 50.0], "at_s": 210.0}
 
@@ -31,6 +32,7 @@ def judged(log_of: Mapping[str, str], backward: str) -> tuple[pd.DataFrame, list
     return verdicts, list(results["diagnosis/causes"]["cause"])
 
 
+@pytest.mark.slow
 def test_accelerometers_whose_axes_are_all_up_before_it_hold_on_condition() -> None:
     """They were "usable, no fault", and a jump that this plan hides moved them by 131 sigma."""
     up = [f"{axis}-{what}" for axis in "xyz" for what in ("up", "forward")]
@@ -43,6 +45,7 @@ def test_accelerometers_whose_axes_are_all_up_before_it_hold_on_condition() -> N
     assert "Set right" not in verdicts["sentence"]["accel"]
 
 
+@pytest.mark.slow
 def test_where_both_logs_hold_an_axis_up_and_down_it_is_known_that_they_did_not() -> None:
     first = ["x-up", "x-down", "y-up", "y-down", "z-up", "x-forward", "y-forward", "z-forward"]
     last = ["z-down", "x-backward", "y-backward", "z-backward"]

@@ -135,11 +135,13 @@ def test_a_blind_spot_is_five_sigma_of_what_is_found():
     assert spot["largest"] > 10 * spot["limit"]
 
 
+@pytest.mark.slow
 def test_noise_is_silent():
     for seed in range(20):
         assert not named(turns(seed, rates=(40, -40))), seed
 
 
+@pytest.mark.slow
 def test_a_random_walk_of_the_biases_is_no_ripple():
     for seed in range(12):
         assert not named(turns(100 + seed, rates=(40, -40), walk=1e-5)), seed
@@ -233,6 +235,7 @@ def test_without_a_turn_it_says_so():
         assert "no whole turn at a steady rate" in row["sentence"]
 
 
+@pytest.mark.slow
 def test_what_the_laboratory_hides_in_a_campaign_is_named():
     effects = {
         "table_ripple": {"order": 36, "amplitude_arcsec": 0.5, "phase_deg": 30},

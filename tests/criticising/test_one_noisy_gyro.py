@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import chain
 import numpy as np
+import pytest
 
 import laboratory
 
@@ -11,6 +12,7 @@ COUNT = 1.085e-7  # rad, of the demo's gyros
 NOISE = 1.2e-4  # rad/√s, white: 34 times that of the demo
 
 
+@pytest.mark.slow
 def test_what_every_calibration_takes_up_is_not_named_for_it():
     """Its angles of the table are noisy, those of an effect in the same way."""
     recording = laboratory.perform(laboratory.specify(chain.demo(seed=3)))

@@ -40,6 +40,7 @@ def test_positions_worse_than_stated_are_named_and_nothing_else(seed: int, tilte
     assert "position_sigma_arcsec" in found["action"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilted", [pytest.param("case", marks=pytest.mark.slow), "axis"])
 def test_with_their_sigma_stated_they_are_no_cause_and_the_sigmas_hold(tilted: str) -> None:
     results = criticised(71, tilted, 60.0)
@@ -53,6 +54,7 @@ def test_with_their_sigma_stated_they_are_no_cause_and_the_sigmas_hold(tilted: s
         assert np.abs(errors).max() < 4.0
 
 
+@pytest.mark.slow
 def test_rests_of_one_position_that_were_set_anew_are_no_random_walk() -> None:
     """A random walk of the accelerometers was named; cross terms 5 sigma off were usable."""
     document = PLANS["stops"](seed=74)

@@ -26,6 +26,7 @@ def two_days(**effects: Any) -> dict[str, Any]:
     return document
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sensor", JUMPS)
 def test_it_is_the_only_cause_with_its_sizes(sensor: str) -> None:
     """It was a g-dependence, or harmless differences between the logs."""
@@ -46,6 +47,7 @@ def test_it_is_the_only_cause_with_its_sizes(sensor: str) -> None:
     assert (np.abs(result["value"] - truth) < 3.5 * result["sigma"]).all()
 
 
+@pytest.mark.slow
 def test_two_days_with_the_same_scale_factors_show_none() -> None:
     results = chain.in_memory_of(two_days(), "diagnosis")
     assert results["diagnosis/causes"].empty

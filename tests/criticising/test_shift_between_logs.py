@@ -5,6 +5,7 @@ from typing import Any
 
 import chain
 import numpy as np
+import pytest
 
 SHIFT = [300.0, -200.0, 250.0]  # arc seconds, about x, y and z
 
@@ -22,6 +23,7 @@ def rests_and_turns(**effects: Any) -> dict[str, Any]:
     return document
 
 
+@pytest.mark.slow
 def test_it_is_named_with_its_angles_and_the_manoeuvre_from_which_on_it_is() -> None:
     """What gyros tell holds for the second mounting alone: a g-sensitivity was named in it."""
     shift = {"rotation_arcsec": SHIFT, "at_s": 170.0}
@@ -36,6 +38,7 @@ def test_it_is_named_with_its_angles_and_the_manoeuvre_from_which_on_it_is() -> 
     assert verdicts["gyro"] == "not_usable"  # whose turns are all in the second mounting
 
 
+@pytest.mark.slow
 def test_a_bias_that_jumps_between_the_logs_is_three_numbers_and_no_bias_of_each_run() -> None:
     """All of it was "bias after each switch-on", of unknown size, or a g-sensitivity."""
     jump = {"size_micro_g": [300.0, -250.0, 200.0], "at_s": 170.0}
@@ -51,6 +54,7 @@ def test_a_bias_that_jumps_between_the_logs_is_three_numbers_and_no_bias_of_each
         assert abs(own["value"] - 9.80665e-6 * size) < 3.5 * own["sigma"]
 
 
+@pytest.mark.slow
 def test_a_log_of_another_imu_is_one_cause(tmp_path) -> None:
     """Its turns by an IMU whose axes and biases are others: five causes that all were wrong."""
     document, other = rests_and_turns(), rests_and_turns()

@@ -30,6 +30,7 @@ def named(tables):
     return {row.cause: members.get(row.id, {row.cause}) for row in findings.itertuples()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("effect", "told", "parameter", "size"),
     [
@@ -54,6 +55,7 @@ def test_a_scale_factor_that_depends_on_the_rate_is_found_with_its_size(
     assert np.all(np.abs(others["value"]) < 4 * others["sigma"])
 
 
+@pytest.mark.slow
 def test_without_an_effect_nothing_is_named_and_a_limit_is_stated():
     tables = rate_table()
     assert not named(tables)

@@ -87,6 +87,7 @@ def test_near_the_limit_it_is_still_told(seed):
     assert one["members"] == {"oscillation"}
 
 
+@pytest.mark.slow
 def test_multiples_of_one_order_are_one_finding_and_other_orders_another():
     (one,) = found(rippling(3, [(36.0, SNR_15), (72.0, SNR_15), (108.0, SNR_15)]))
     assert "36 times" in one["sentence"] and "108.0" in one["sentence"]

@@ -94,6 +94,7 @@ def test_a_designed_plan_is_better_and_a_campaign(imu, cube, sources, tmp_path, 
     np.testing.assert_allclose(sigmas(again), made.sigmas, rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_a_class_is_split_in_a_fraction_of_the_time(imu):
     """S3's class of nonlinearities and acceleration, at 20 ppm/(°/s), by a manoeuvre that is found.
 
@@ -132,6 +133,7 @@ def with_effect(data, name, size):
     return replace(data, blocks=blocks)
 
 
+@pytest.mark.slow
 def test_a_wanted_sigma_is_reached(imu, cube, sources):
     data = sources["S0"].data
     wanted = wanted_sigmas(["gyroscope/scale=1.2e-5"])

@@ -61,6 +61,7 @@ BOTH = ("accelerometer", "gyro")
 # ---- axes taken for others
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("faults", "cause", "sensors", "said"),
     [
@@ -111,6 +112,7 @@ def test_two_flips_that_cancel_are_told_by_the_determinant():
     assert "determinant +1" in sentence and "two mistakes cancel" in sentence
 
 
+@pytest.mark.slow
 def test_an_imu_that_is_mounted_turned_says_so_in_both_sensors():
     faults = [f for s in BOTH for f in (flip("all", s, "x"), flip("all", s, "y"))]
     found = found_in(segmented(faults))
@@ -118,6 +120,7 @@ def test_an_imu_that_is_mounted_turned_says_so_in_both_sensors():
     assert found["sentence"].str.contains("may be mounted turned against the plan").all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("fault", "cause", "sensor"),
     [
@@ -142,6 +145,7 @@ def test_axes_that_are_others_in_one_log_are_named_and_the_log_is_used(fault, ca
     assert finding["id"] in set(results["segment/close_ups"]["finding"])
 
 
+@pytest.mark.slow
 def test_one_long_log_is_found_by_the_right_axes():
     document = chain.short(faults=[swap("all", "accelerometer", "yz")])
     for manoeuvre in document["campaign"]["plan"]:
@@ -344,6 +348,7 @@ def counted_by_100_hz(rate: float, folder: Path, **table: float) -> chain.Result
     return chain.run(campaign.parent, folder / "derived", "segment")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rate", [125, pytest.param(50, marks=pytest.mark.slow)])
 def test_samples_that_are_counted_by_another_rate_are_one_finding(rate, tmp_path):
     """Rates are read as they are, and every angle is off by the same ratio."""
@@ -355,6 +360,7 @@ def test_samples_that_are_counted_by_another_rate_are_one_finding(rate, tmp_path
     assert performed(results)["found"].all()
 
 
+@pytest.mark.slow
 def test_a_rate_that_is_off_by_more_than_the_table_is_asked_about(tmp_path):
     """1000 ppm where the table keeps its rate to 100: all scale factors were off, "no fault"."""
     results = counted_by_100_hz(100.1, tmp_path, rate_sigma_ppm=100)
@@ -365,11 +371,13 @@ def test_a_rate_that_is_off_by_more_than_the_table_is_asked_about(tmp_path):
     assert performed(results)["complete"].all()
 
 
+@pytest.mark.slow
 def test_samples_that_are_counted_by_their_rate_raise_nothing(tmp_path):
     results = counted_by_100_hz(100, tmp_path, rate_sigma_ppm=100)
     assert found_in(results).empty and performed(results)["complete"].all()
 
 
+@pytest.mark.slow
 def test_lost_samples_that_no_stamp_shows_make_no_asymmetry(tmp_path):
     """An asymmetry of 5500 ppm in two axes; a scale factor was 1300 sigma off, "within limits"."""
     document = chain.short(seed=3)
@@ -392,6 +400,7 @@ def test_lost_samples_that_no_stamp_shows_make_no_asymmetry(tmp_path):
     assert verdicts["gyro"] == "not_usable"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["y-down", "x-down"])
 def test_a_log_that_is_a_copy_of_another_is_told(tmp_path, name):
     """It was a missing manoeuvre, and nothing where the plan has the same attitude in both."""
@@ -424,6 +433,7 @@ def overshooting(recording: laboratory.Recording, angle: float, seconds: float):
     return replace(recording, records=records)
 
 
+@pytest.mark.slow
 def test_a_table_that_overshoots_is_no_random_walk_of_the_gyros():
     """A random walk was named; scale factors 9 sigma off were "usable within limits"."""
     recording = laboratory.perform(laboratory.specify(chain.short(seed=7)))
@@ -434,6 +444,7 @@ def test_a_table_that_overshoots_is_no_random_walk_of_the_gyros():
     assert found_in(chain.in_memory(recording, "segment")).empty
 
 
+@pytest.mark.slow
 def test_turns_that_are_hardly_steady_do_not_tell_the_rate():
     """Ramps of 13 s of 31: they count for steady in part, so 3 % were asked about, "not usable"."""
     document = chain.short()

@@ -44,6 +44,7 @@ def creeps(effects: dict[str, Any]) -> list[dict[str, Any]]:
     return findings[findings["cause"] == "fixture_creep"].to_dict("records")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tau", [400.0, pytest.param(3000.0, marks=pytest.mark.slow)])
 def test_a_creep_is_named_with_the_angle_by_which_the_case_turns(tau: float) -> None:
     """It was a bias that wanders at rest, and cross terms 20 sigma off were usable."""
@@ -58,6 +59,7 @@ def test_a_creep_is_named_with_the_angle_by_which_the_case_turns(tau: float) -> 
     np.testing.assert_allclose(told, [0, 60, 300], atol=30)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "effects",
     [

@@ -176,6 +176,7 @@ STAMPS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", STAMPS)
 @pytest.mark.parametrize("seconds", [60, pytest.param(200, marks=pytest.mark.slow)])
 def test_the_interval_has_an_honest_sigma(kind, seconds):

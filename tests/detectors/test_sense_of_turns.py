@@ -54,6 +54,7 @@ def plan(other_way):
     return rows
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("other_way", "about", "count"),
     [

@@ -161,6 +161,7 @@ def test_a_rest_with_it_is_still_and_a_knock_in_it_is_one(readings):
     assert abs(event.first - 3000) <= 20 and abs(event.after - 3050) <= 20
 
 
+@pytest.mark.slow
 def test_a_campaign_with_it_is_calibrated_as_well_as_its_readings_allow():
     """Three of four records were "held" and masked, and the gyros were not usable."""
     recording = laboratory.perform(laboratory.specify(chain.short(seed=5)))

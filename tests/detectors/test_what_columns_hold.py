@@ -86,6 +86,7 @@ def copied(counts: np.ndarray) -> np.ndarray:
     return counts[:, [0, 1, 2, 3, 3, 5]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("columns", "cause", "sensor"),
     [(without_gravity, "gravity_removed", "accel"), (copied, "copied_channel", "gyro")],
@@ -106,6 +107,7 @@ def normalised(counts: np.ndarray) -> np.ndarray:
     return np.hstack([counts[:, :3] / length * 9.80665e6, counts[:, 3:]])
 
 
+@pytest.mark.slow
 def test_a_direction_in_place_of_the_specific_force_leaves_no_scale_factor():
     """An asymmetry was named, and scale factors that were off by 24 sigma were usable."""
     document = chain.short(seed=5)
@@ -121,6 +123,7 @@ def test_a_direction_in_place_of_the_specific_force_leaves_no_scale_factor():
     assert verdicts["accel"] == "not_usable" and verdicts["gyro"] == "usable"
 
 
+@pytest.mark.slow
 def test_a_counter_of_16_bits_that_begins_again_is_told_and_spoils_nothing():
     """A log of 65.536 s several times over ended criticism with an exception."""
     recording = laboratory.perform(laboratory.specify(chain.short(seed=5)))
@@ -152,6 +155,7 @@ def zeroed(folder: Path, records: int | None) -> chain.Results:
     return chain.run(folder / "raw", folder / "derived", "diagnosis")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rate", "said"),
     [
@@ -175,6 +179,7 @@ def test_milliseconds_that_are_stated_as_seconds_are_one_cause(rate, said, tmp_p
     assert said in cause["sentence"]
 
 
+@pytest.mark.slow
 def test_gyros_zeroed_at_the_beginning_of_each_log_keep_their_scale_factors(tmp_path):
     """By 4.7 s, which are no whole windows. Else it was a structure that nobody explained."""
     tables = zeroed(tmp_path, 470)

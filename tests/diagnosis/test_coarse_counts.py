@@ -11,6 +11,8 @@ from inertial.signal.scatter import noise_before_rounding, rounded_mean
 from stages.noise.spectra import Spectra
 from stages.noise.stage import rounding_levels
 
+pytestmark = pytest.mark.slow
+
 SEEDS = (1801, 1802, 1803)
 
 

@@ -6,6 +6,8 @@ from math import pi
 import chain
 import pytest
 
+pytestmark = pytest.mark.slow
+
 DEG_H_PER_G = pi / 180 / 3600 / 9.80665  # rad/s per m/s²
 NUMBER = re.compile(r"(g_[xyz]{2}) = (−?[\d.]+) ± ([\d.]+) °/h/g")
 

@@ -5,6 +5,8 @@ import pytest
 from campaigns import diagnosed
 from judge import parameters_of
 
+pytestmark = pytest.mark.slow
+
 SCALE = 40e-6
 AXES = "xyz"
 

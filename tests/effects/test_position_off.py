@@ -94,6 +94,7 @@ def leaning():
     return campaign_of(data).without_random_walks(), -level @ turned
 
 
+@pytest.mark.slow
 def test_a_position_that_is_off_with_its_axis_is_found_and_nothing_else_explains_it(leaning):
     campaign, truth = leaning
     axis, position, shift = (

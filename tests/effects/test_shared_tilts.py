@@ -34,6 +34,7 @@ def campaign(document):
     return _campaign(document)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tilted", ["case", "axis"])
 @pytest.mark.parametrize("degrees", [360, 90])
 def test_the_gyros_agree_with_the_tilts_that_the_accelerometers_show(document, tilted, degrees):
@@ -67,6 +68,7 @@ def test_the_axes_of_the_table_are_not_shown_twice(campaign):
     assert quarter == pytest.approx(np.sqrt(2), rel=0.02)
 
 
+@pytest.mark.slow
 def test_a_turn_may_be_named_by_the_other_end_of_its_axis(campaign, document):
     plan = [dict(manoeuvre) for manoeuvre in document["campaign"]["plan"]]
     for manoeuvre in plan:

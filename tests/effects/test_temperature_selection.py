@@ -68,6 +68,7 @@ def cubic_bias_and_a_scale_factor(above: Array, read: Array, time: Array) -> Arr
     return change
 
 
+@pytest.mark.slow
 def test_a_cubic_bias_and_a_linear_scale_factor_and_nothing_else(plan):
     campaign = soaks.recorded(plan, 11, cubic_bias_and_a_scale_factor)
     effects = [one for n, one in CATALOGUE.items() if n.startswith("accel")]
@@ -92,6 +93,7 @@ def test_a_cubic_bias_and_a_linear_scale_factor_and_nothing_else(plan):
     assert sigma[1] < 0.1 * abs(k2)
 
 
+@pytest.mark.slow
 def test_a_bend_is_a_knot_at_its_temperature(plan):
     def bent(above: Array, read: Array, time: Array) -> Array:
         change = np.zeros_like(read)

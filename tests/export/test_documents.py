@@ -95,6 +95,7 @@ def test_any_name_reads_back_as_it_is(name: str) -> None:
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False) | st.integers() | st.none()
 
 
+@pytest.mark.slow
 @given(st.text(st.characters(exclude_categories=["Cs"])), st.lists(NUMBERS))
 def test_any_text_and_number_reads_back_as_it_is(text: str, numbers: list[float | None]) -> None:
     content = {"text": text, "texts": [text, text], "numbers": numbers, "rows": [numbers, numbers]}

@@ -25,6 +25,7 @@ LAWS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("rates", "is_open"),
     [pytest.param([20, 40, 60], True, marks=pytest.mark.slow), ([20, 30, 45, 60], False)],

@@ -85,6 +85,7 @@ def test_what_is_not_scanned_stays_as_it_is():
     assert with_scanned_values(fit, [ramp], with_time_constant) is fit
 
 
+@pytest.mark.slow
 def test_a_jump_that_may_have_been_in_either_of_two_pauses_leaves_a_scale_factor_open():
     """Half of it before the last pair of faces, with another scale factor, explains as much."""
     document = chain.demo(seed=81)

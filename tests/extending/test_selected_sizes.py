@@ -26,6 +26,7 @@ THRESHOLD, DRAWS = 18.0, 6_000
 NOTHING = Estimate(np.zeros(0), np.zeros((0, 0)), np.zeros(0, bool), 0.0, 1, 0.0, 1)
 
 
+@pytest.mark.slow
 def test_each_sensor_follows_what_both_have_named():
     """The named effect is judged by both sensors; each is fitted alone, and so is a mate."""
     rng = np.random.default_rng(1)

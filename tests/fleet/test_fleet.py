@@ -127,6 +127,7 @@ def test_the_cost_of_a_campaign_does_not_grow_with_their_number():
 # ---- The search.
 
 
+@pytest.mark.slow
 def test_noise_alone_gives_findings_as_rarely_as_wanted():
     own = labels()
     evidence, _, _ = fleet(own, np.zeros((len(own["type"]), len(ALL))), 0)
@@ -184,6 +185,7 @@ def test_one_imu_on_one_table_tells_nothing_apart():
     assert set(one.levels) == {"type", "table", "imu"}
 
 
+@pytest.mark.slow
 def test_an_effect_of_type_and_table_has_a_share_of_each():
     own = labels(imus=6, each=4, tables=6)
     beta = sizes(own, "type", "type", EFFECTS["tilt"], 40.0, 13)
@@ -200,6 +202,7 @@ def test_an_effect_of_type_and_table_has_a_share_of_each():
 # ---- Shares and spreads.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["type", "table", "imu", "campaign"])
 def test_shares_are_those_of_what_was_drawn(level):
     own = labels(imus=12, each=3, tables=6)

@@ -19,6 +19,8 @@ from overviews.fleet.page import WOULD_TELL, fleet_page
 from overviews.fleet.results import results_of
 from overviews.fleet.selection import name_of, parts, selected
 
+pytestmark = pytest.mark.slow
+
 # IMU, table and seed: A on both tables, B on the first.
 CAMPAIGNS = {"one": ("A", "left", 171), "two": ("A", "right", 172), "three": ("B", "left", 173)}
 G_SENSITIVITY = 13.0  # °/h/g, 3.5 sigmas in each, of the x gyro by the force along y, of the type

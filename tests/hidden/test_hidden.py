@@ -38,6 +38,7 @@ def test_the_kinds_are_drawn_as_often_as_is_wanted():
     assert OUTSIDE and len({one.name for one in OUTSIDE}) == len(OUTSIDE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "plan",
     [
@@ -87,6 +88,7 @@ def test_what_remembers_forces_is_as_large_as_it_says_by_its_own_moves():
         assert abs(by_the_reference - told) > 0.2 * told
 
 
+@pytest.mark.slow
 def test_in_memory_is_as_on_disk(tmp_path):
     """The readers hand over what the bytes say, also of a log with a temperature."""
     document = chain.short(seed=3)
@@ -136,6 +138,7 @@ def test_a_single_effect_is_named_with_its_class(number):
     assert outcome["on_disk"] == one.on_disk and outcome["limits"]["limit"] > 0.99
 
 
+@pytest.mark.slow
 def test_a_decoy_is_not_named():
     one = draw(DECOY, size)
     assert one.sort == "absorbed"

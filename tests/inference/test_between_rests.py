@@ -123,6 +123,7 @@ def test_a_motion_that_is_left_out_starts_the_unknown_azimuth_anew():
     assert np.abs(pulls).max() < 4
 
 
+@pytest.mark.slow
 def test_by_hand_the_rate_of_a_clock_is_an_error_of_all_gyros_alike():
     """σ² of each scale factor grows by σ_c²; a clock of 300 ppm that is known to 200 is found."""
     imu = Imu(np.random.default_rng(6))
@@ -181,6 +182,7 @@ def test_turns_about_one_axis_tell_one_column_of_the_matrix():
 # ---- beyond noise
 
 
+@pytest.mark.slow
 def test_an_imu_that_sways_in_the_hand_is_known_by_it():
     # A rest of 30 s, then short ones, each astray by 5 mrad: the long one tells the bias.
     rng, sway = np.random.default_rng(6), 5e-3
@@ -201,6 +203,7 @@ def test_an_imu_that_sways_in_the_hand_is_known_by_it():
     assert estimate.sigma[9:UNKNOWNS].max() < 1.3 * sway / 30  # the long rest tells the bias
 
 
+@pytest.mark.slow
 def test_a_slip_and_a_shaken_rest_are_left_out_and_change_nothing():
     imu = Imu(np.random.default_rng(7), noise=MPU6050, bias=(0.02, 1e-2))
     stops, passages = handled(imu, TWENTY_FOUR, 5)
@@ -279,6 +282,7 @@ def test_cuyo_without_its_clipped_motions(cuyo):
     assert np.abs(estimate.values[:9] - np.eye(3).ravel()).max() < 0.03
 
 
+@pytest.mark.slow
 def test_cuyo_with_all_motions_is_what_was_published_clipped_readings_and_all(cuyo):
     stops, passages, clipped, theirs = cuyo
     fitted = gyros_of_cuyo(stops, passages)

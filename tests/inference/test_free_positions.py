@@ -36,6 +36,7 @@ def solved(found, scatter=0.0):
     return free_positions(found, GRAVITY, GRAVITY_SIGMA, scatter)
 
 
+@pytest.mark.slow
 def test_24_positions_by_a_tenth_of_a_degree_give_30_ppm_and_honest_sigmas():
     # 24 rests of a minute with the demo's noise: 1.4 ppm of g in each mean, and 5 ppm of gravity.
     pulls, errors, misfits = [], [], []
@@ -77,6 +78,7 @@ def test_noise_that_makes_readings_longer_does_not_make_the_scale_factors_larger
     assert abs(np.mean(scales)) < 2 * np.std(scales) / np.sqrt(60) < 0.8 * (0.8 / GRAVITY) ** 2
 
 
+@pytest.mark.slow
 def test_what_rests_differ_by_beyond_noise_is_found():
     rng, sizes = np.random.default_rng(3), []
     for _ in range(10):

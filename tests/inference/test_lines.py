@@ -20,6 +20,7 @@ def test_frequency_and_amplitude_come_back_within_their_sigmas():
     assert abs(np.mean(pulls)) < 0.5
 
 
+@pytest.mark.slow
 def test_in_noise_the_p_values_are_those_of_chance():
     rng = np.random.default_rng(4)
     lines = [strongest(rng.standard_normal(2000), 100.0, 2.0) for _ in range(300)]

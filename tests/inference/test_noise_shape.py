@@ -35,6 +35,7 @@ def test_it_is_that_of_the_filter_and_a_line_does_not_change_it():
         np.testing.assert_allclose(ratio / np.median(ratio), 1.0, atol=0.15)
 
 
+@pytest.mark.slow
 def test_in_filtered_noise_the_p_values_are_about_those_of_chance():
     p_values, together = [], []
     for seed in range(30):

@@ -44,6 +44,7 @@ def test_the_p_value_is_that_of_the_textbook():
     assert tests.p_values[place] == pytest.approx(stats.f.sf(ratio, 7, 6), rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [1.0, pytest.param(40.0, marks=pytest.mark.slow)])
 def test_a_scatter_of_any_size_is_named_as_often_as_the_level_says(size):
     random = np.random.default_rng(2)

@@ -106,6 +106,7 @@ def test_what_is_named_is_as_large_as_it_is_said_to_be(degrees, snr):
     assert (0.91 if degrees == 1 else 0.93) < inside / len(found) < 0.97
 
 
+@pytest.mark.slow
 def test_what_is_correlated_moves_along():
     """A scale factor that the fit takes for a part of the effect: both come back, with sigma."""
     covariance = np.array([[1.0, 0.5, 1.2], [0.5, 2.0, 0.8], [1.2, 0.8, 4.0]])

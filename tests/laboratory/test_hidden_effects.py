@@ -46,6 +46,7 @@ def test_zero_is_absent_and_anything_else_is_not(name: str, ideal: Callable[...,
     assert other != absent
 
 
+@pytest.mark.slow
 def test_all_of_them_at_once_are_the_same_at_every_performance(ideal: Callable[..., Any]) -> None:
     """Effects that remember begin anew, and those that draw have a stream of their own."""
     every = {name: other for name, (_, other) in AT_ZERO_AND_NOT.items()}

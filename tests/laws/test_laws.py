@@ -34,6 +34,7 @@ def named_in_memory(document):
     return named_law(chain.in_memory_of(document, "diagnosis", BESIDE))
 
 
+@pytest.mark.slow
 def test_a_cubic_drift_of_one_gyro_and_the_file_that_proposes_it(tmp_path):
     derived = tmp_path / "derived"
     document = hiding("positions", "gyro_cubic_drift", k_deg_h_h3=[0, 4, 0])
@@ -151,6 +152,7 @@ def test_states_and_their_functions():
     assert np.array(loops).max() < np.ptp(later[:, 2]) / 2
 
 
+@pytest.mark.slow
 def test_noise_reaches_the_odds_as_often_as_said():
     """By campaigns of two hundred readings of noise, and laws that are random functions."""
     random = np.random.default_rng(3)

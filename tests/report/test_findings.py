@@ -92,6 +92,7 @@ def test_samples_that_one_finding_has_shown_are_not_shown_again() -> None:
     assert html.count("The record before the gap") == 1
 
 
+@pytest.mark.slow
 def test_a_storm_of_findings_keeps_the_page_light() -> None:
     made = synthetic_faults.faulty()
     spikes = made["quality_findings"].query("cause == 'spike'")
@@ -108,6 +109,7 @@ def test_a_storm_of_findings_keeps_the_page_light() -> None:
     assert max(len(html.encode()) for html in found.values()) < 40_000
 
 
+@pytest.mark.slow
 def test_samples_without_time_are_drawn_over_their_lines() -> None:
     made = synthetic_faults.faulty()
     for name in ("traces", "segments", "clocks", "quality_findings"):

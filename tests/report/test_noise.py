@@ -36,6 +36,7 @@ def test_allan_deviation_spectrum_and_terms_in_this_order() -> None:
     assert [row.cells[0] for row in gyros.rows] == ["x", "y", "z", "data sheet"]
 
 
+@pytest.mark.slow
 def test_a_term_has_value_and_sigma_or_an_upper_limit_that_is_written_as_one() -> None:
     *_unused, gyros, accelerometers = made()
     named = [column.group for column in gyros.columns]

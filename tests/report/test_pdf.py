@@ -111,6 +111,7 @@ def test_the_files_are_attached_as_they_are(tmp_path: Path) -> None:
     assert {name: (tmp_path / name).read_bytes() for name in ATTACHED} == ATTACHED
 
 
+@pytest.mark.slow
 @needs_pango
 def test_the_same_page_gives_the_same_bytes() -> None:
     assert as_pdf(page(), ATTACHED) == printed()

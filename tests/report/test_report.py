@@ -132,6 +132,7 @@ def number(cell: str) -> float:
     return float(cell.replace("−", "-"))
 
 
+@pytest.mark.slow
 def test_sections_stand_in_their_order() -> None:
     page = Page(synthetic.documents()["html"])
     assert [heading.partition(" ")[2] for heading in page.headings] == TITLES
@@ -148,6 +149,7 @@ def test_every_determined_parameter_stands_with_its_sigma_and_unit() -> None:
         assert number(sigma) * UNITS[unit] == pytest.approx(row.sigma, rel=0.06)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("system", "unit", "per_si"), [("laboratory", "°/h", 180 / np.pi * 3600), ("SI", "rad/s", 1e6)]
 )
@@ -225,6 +227,7 @@ def test_a_result_that_is_withheld_is_said_to_be_and_why_once() -> None:
     assert any(text.startswith("Gyroscope by") for text in captions)  # as evidence
 
 
+@pytest.mark.slow
 def test_terms_are_those_that_the_report_uses() -> None:
     made = synthetic.documents()["html"]
     listed = made[made.index('<section id="terms">') :]
@@ -246,6 +249,7 @@ def test_without_a_laboratory_it_is_no_certificate() -> None:
         assert words in shown
 
 
+@pytest.mark.slow
 def test_effects_of_the_result_stand_below_its_parameters() -> None:
     made = synthetic.brief()
     effect = made["result"].query("sensor == 'gyro'").iloc[:1].assign(
@@ -530,6 +534,7 @@ def test_one_sensor_without_time_stamps_or_turns() -> None:
     assert "not recorded" in documents["html"]
 
 
+@pytest.mark.slow
 def test_a_hundred_manoeuvres_in_one_log() -> None:
     tables = synthetic.brief("x-up.asc")
     names = [f"tumble-{number:03d}" for number in range(102)]
@@ -581,6 +586,7 @@ def write(tables: dict[str, Any], derived: Path) -> None:
         pq.write_table(arrow.replace_schema_metadata({**arrow.schema.metadata, **made_by}), path)
 
 
+@pytest.mark.slow
 def test_a_section_reads_no_table_but_those_it_declares() -> None:
     made = synthetic.campaign(logs=("z-backward.asc",))
     read = {name for section in (*EVIDENCE, *ANNEXES) for name in section.reads}

@@ -52,6 +52,7 @@ def test_every_study_has_its_figure_and_a_sentence_with_numbers(made):
     assert left.items == ("z-backward: 240.38° of 360° recorded",)
 
 
+@pytest.mark.slow
 def test_the_middle_of_the_turns_is_held_against_the_whole(made):
     section = built(studies.SECTION, made)
     *_, middle = of(section, Table)
@@ -65,6 +66,7 @@ def test_the_middle_of_the_turns_is_held_against_the_whole(made):
     assert number(by_time[2]) - number(whole[2]) == pytest.approx(number(by_time[4]), abs=0.11)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*DECLARED.writes, "all"])
 def test_without_a_table_the_rest_of_the_page_is_there(made, name):
     empty = DECLARED.writes if name == "all" else {name: DECLARED.writes[name]}
@@ -74,6 +76,7 @@ def test_without_a_table_the_rest_of_the_page_is_there(made, name):
     assert bool(of(section, Sentences)) == (name not in ("not_studied", "all"))
 
 
+@pytest.mark.slow
 def test_chance_holds_what_the_noise_level_is_uncertain_by(made):
     """A level known to 3 % beside epochs whose own scatter is known better."""
     rows = [

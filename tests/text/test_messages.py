@@ -35,6 +35,7 @@ def calls() -> Iterator[tuple[str, ast.Call]]:
                     yield f"{path.relative_to(ROOT)}:{node.lineno}", node
 
 
+@pytest.mark.slow
 def test_the_catalogue_has_every_sentence_of_the_code_and_no_other() -> None:
     with CATALOGUE.open("rb") as file:
         listed = {message.id for message in read_po(file) if message.id}

@@ -14,6 +14,7 @@ def drawn(kind, ratio, number):
     return truth, walk_draws.drawn(PLAN, truth, random)
 
 
+@pytest.mark.slow
 def test_what_is_left_without_noise_is_nothing():
     """The noise of the clean campaign is taken out: it would be that of every draw."""
     said = quiet(PLAN).said
