@@ -39,7 +39,7 @@ HIDDEN = {
     ),
     "table_wobble": ({"east_arcsec": 0, "north_arcsec": 5}, {}),
 }
-# One of each kind in the quick tests; `make test-slow` hides them all.
+# In the quick tests; `make test-slow` hides them all.
 QUICK = ("lever_arm", "table_wobble")
 NOT_NEEDED = ("studies", "comparison", "compensation")  # by criticism and extension
 # What this plan cannot tell from it.

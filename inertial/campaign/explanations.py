@@ -446,11 +446,13 @@ def _reaches(cause: Hypothesis, structure: Hypothesis, touched: frozenset[str]) 
 def _is_noise(finding: Hypothesis) -> bool:
     """Whether it is a random walk at rest, or one that is not significant: a term of the noise.
 
-    It is in the sigmas and among the terms of the noise; the result lacks nothing by it.
+    It is in the sigmas and among the terms of the noise; the result lacks nothing by it. Of
+    severity 2 it is none of a sensor.
     """
     p_value = finding.row.get("p_value")
     walk = finding.cause.endswith("_random_walk") and not finding.members[1:]
-    return walk and (p_value is None or p_value >= MAX_WALK_P)
+    slight = finding.row["severity"] < 2
+    return walk and slight and (p_value is None or p_value >= MAX_WALK_P)
 
 
 def _root(finding: str, owner: dict[str, str]) -> str:

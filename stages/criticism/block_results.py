@@ -39,6 +39,7 @@ from stages.criticism.jump_not_testable import jumps_not_testable
 from stages.criticism.law_sentences import law_action
 from stages.criticism.selection import Selection
 from stages.criticism.shared_asymmetry import ASYMMETRY, shared_asymmetry
+from stages.criticism.unsteady_rests import Unsteady
 from stages.criticism.without_law import WithoutLaw
 
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
@@ -70,6 +71,19 @@ WALK_AT_REST = _(
     "The biases of the {sensors} change as by a random walk of {sizes} in the order of the axes: "
     "their noise within single static stretches shows it, and the differences between the "
     "stretches no more than that."
+)
+UNSTEADY = _(
+    "At rest the readings of the {sensors} wander by {wander} in {seconds:.0f} s, while they "
+    "scatter by {scatter} from one to the next. That is no drift of a sensor: something moves the "
+    "IMU slowly, or it oscillates faster than the log follows, and the sampling folds that to a "
+    "slow change."
+)
+UNSTEADY_CONSEQUENCE = _(
+    "The sigmas of all parameters allow for it as a random walk, and are large by it."
+)
+STEADY = _(
+    "Look at the readings of a rest. Sample faster than what oscillates, or filter before "
+    "sampling; and see to what the IMU stands on."
 )
 WALK_CONSEQUENCE = _(
     "The sigmas of all parameters allow for it; the biases are those at the middle of the campaign."
@@ -421,7 +435,7 @@ def random_walk_rows(
 
 
 def walk_at_rest_rows(
-    sensor: str, sizes: Array, lawless: WithoutLaw, mount: str
+    sensor: str, sizes: Array, unsteady: Unsteady | None, lawless: WithoutLaw, mount: str
 ) -> Iterator[TableRow]:
     """The random walk that the noise at rest shows, where the stretches differ by no more.
 
@@ -432,7 +446,8 @@ def walk_at_rest_rows(
     identifier = finding_id(cause, mount)
     size = float(np.max(sizes))  # of the worst axis
     sentence = WALK_AT_REST.format(sensors=PLURAL[sensor], sizes=_sizes(sizes, unit))
-    yield "findings", _walk_finding(sensor, mount, size, lawless.structured.get(sensor), sentence)
+    finding = _walk_finding(sensor, mount, size, lawless.structured.get(sensor), sentence)
+    yield "findings", finding | ({} if unsteady is None else _too_fast(sensor, unsteady))
     others = lawless.members[sensor] if lawless.owner[sensor] == cause else ()
     yield from member_rows(identifier, mount, list(dict.fromkeys([cause, *others])))
     for axis, value in zip(AXES, sizes.tolist(), strict=True):
@@ -442,6 +457,21 @@ def walk_at_rest_rows(
         )
     row: Row = {"mount": mount, "sensor": sensor, "value": 0.0, "sigma": None, "unit": unit}
     yield "random_walks", {**row, "finding": identifier}
+
+
+def _too_fast(sensor: str, found: Unsteady) -> dict[str, Any]:
+    """What differs in the finding of a random walk that is none of a sensor."""
+    unit = quantity("bias", UNITS[sensor]).laboratory
+    wander, scatter = (
+        f"{significant(size / unit.size, 2)} {unit.name}" for size in (found.wander, found.scatter)
+    )
+    words = {"wander": wander, "seconds": found.seconds, "scatter": scatter}
+    return {
+        "severity": 2,
+        "sentence": UNSTEADY.format(sensors=PLURAL[sensor], **words),
+        "consequence": UNSTEADY_CONSEQUENCE,
+        "action": STEADY,
+    }
 
 
 def _walk_finding(

@@ -37,6 +37,7 @@ from stages.criticism.selection import Selection
 from stages.criticism.set_position_scatter import select_beside_scatter
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_selection import select_with_temperature
+from stages.criticism.unsteady_rests import unsteady_rests
 from stages.criticism.without_law import without_law
 
 # Of the accepted probability of any false finding: what names effects, tests the residuals for
@@ -110,11 +111,13 @@ def _of_mount(
     extended = {name: partial(_with, plan, data) for name, plan in plans.items()}
     lawful = {selection.sensor(cause) for cause in selection.named.causes if cause.verdict in NAMED}
     drifts = measured.drifts.items()
-    at_rest = {s: drift.walk for s, drift in drifts if drift.walk.any() and s not in lawful}
+    walks = {s: drift.walk for s, drift in drifts if drift.walk.any()}
+    unsteady = {s: unsteady_rests(data, s, walk) for s, walk in walks.items()}
+    at_rest = {s: walk for s, walk in walks.items() if unsteady[s] or s not in lawful}
     lawless = without_law(selection, {*random_walks, *at_rest}, tested)
     for sensor, sizes in at_rest.items():
         if sensor not in random_walks:
-            yield from walk_at_rest_rows(sensor, sizes, lawless, mount)
+            yield from walk_at_rest_rows(sensor, sizes, unsteady[sensor], lawless, mount)
     for sensor, walk in random_walks.items():
         yield from random_walk_rows(sensor, walk, selection.alternatives, lawless, mount)
     yield from BlockResults(
