@@ -94,6 +94,7 @@ def test_what_a_session_hides_is_named_and_no_longer_moves_the_result(effect, hi
         assert np.abs(own).max() < 4.5
 
 
+@pytest.mark.slow
 def test_the_g_sensitivity_has_the_size_that_was_hidden(hiding):
     _, results = hiding("gyro_g_sensitivity")
     table = results["diagnosis/result"]

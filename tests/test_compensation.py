@@ -295,6 +295,7 @@ def compensated_before(tmp_path_factory) -> chain.Results:
     return chain.run(campaign, folder / "derived", "compensation")
 
 
+@pytest.mark.slow
 def test_a_second_compensation_is_refused_with_a_finding_and_all_else_runs(compensated_before):
     results = compensated_before
     for table in ("compensated", "checks", "compensated_traces"):

@@ -143,6 +143,7 @@ def test_the_manoeuvre_that_splits_a_class_is_named(criticised):
     assert cause["split_snr"] < 3.3 and "No further manoeuvre" in cause["action"]
 
 
+@pytest.mark.slow
 def test_a_jump_is_told_with_its_time(criticised):
     results = criticised("gyro_bias_jump", 51)
     effects = results["criticism/effects"].set_index(["effect", "parameter"])

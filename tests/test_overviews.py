@@ -239,6 +239,7 @@ def calibrated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Tables, ...]:
     return tuple(made)
 
 
+@pytest.mark.slow
 def test_two_simulated_campaigns_differ_by_what_was_changed_and_nothing_else(calibrated):
     pair = pair_of_campaigns(("one", "two"), calibrated, LEVEL)
     by_name = {one.key[1:]: one for one in pair.compared if one.effect is None}

@@ -53,6 +53,7 @@ def test_the_stated_sigmas_are_the_bound(drawn, pair):
     np.testing.assert_allclose(sigmas[:, told].mean(axis=0), bound[told], rtol=0.04)
 
 
+@pytest.mark.slow
 def test_what_each_plan_cannot_fix(drawn):
     """Plan d has an axis up only: there bias and M of the accelerometers are one."""
     found = {plan: np.isfinite(drawn[plan, "FSAS"][1]).all(axis=0).sum() for plan in "abcd"}
@@ -60,6 +61,7 @@ def test_what_each_plan_cannot_fix(drawn):
     assert len(planned("e").manoeuvres) == 3 * 18
 
 
+@pytest.mark.slow
 def test_errors_are_as_large_as_the_bound(drawn):
     ratios = []
     for pair, (errors, sigmas) in drawn.items():

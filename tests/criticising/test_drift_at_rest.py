@@ -49,6 +49,7 @@ def test_bias_instability_is_no_effect_and_no_structure(
     assert np.abs(errors).max() < MOST
 
 
+@pytest.mark.slow
 def test_bias_instability_that_shows_most_in_two_manoeuvres_stays_in_the_equations() -> None:
     """Without it x changes by p = 4 × 10⁻⁸, and with two of twelve left out no test detects it."""
     document = chain.demo(seed=29, effects={"accel_flicker": {"instability_micro_g": 40}})

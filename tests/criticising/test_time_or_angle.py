@@ -77,6 +77,7 @@ def test_a_line_that_turns_of_one_rate_alone_show_may_be_either(seed):
     assert one["verdict"] == "one_of_class" and one["members"] == BOTH
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_near_the_limit_it_is_still_told(seed):
     """A ratio of 5 in each turn: hardly one is significant alone."""

@@ -61,6 +61,7 @@ def test_the_covariance_of_the_stretches_is_that_of_the_walk():
     assert left @ left + eliminated.deviance == pytest.approx(direct, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_walk_of_the_gyros_comes_back_and_the_bias_keeps_its_sigma():
     """0.5 °/h/√h on S0's noise: by the end of the 50 minutes 0.45 °/h, 20 sigma of white noise."""
     size = 0.5 * UNIT
@@ -150,6 +151,7 @@ def named(run, walk: float) -> bool:
     return min(chances) < 0.01 / 2
 
 
+@pytest.mark.slow
 def test_a_walk_is_taken_for_an_effect_unless_the_equations_carry_it():
     runs = [campaign(seed, 0.3 * UNIT) for seed in range(200, 212)]
     assert sum(named(run, 0.0) for run in runs) > 6

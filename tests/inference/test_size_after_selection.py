@@ -86,6 +86,7 @@ def test_the_correction_grows_steadily_towards_the_threshold(degrees):
     assert 0.6 < factors[0] < 0.8 and max(factors) < 1.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("snr", [5.0, 6.0, 8.0])
 @pytest.mark.parametrize("degrees", DEGREES)
 def test_what_is_named_is_as_large_as_it_is_said_to_be(degrees, snr):

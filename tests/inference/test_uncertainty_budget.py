@@ -58,6 +58,7 @@ def test_a_bias_weighs_upright_positions_against_level_ones(parts):
     assert each["position"][BIAS_X] == pytest.approx(tilted * share**2 / 4, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_bias_has_the_mean_over_its_switch_ons():
     """Eight switch-ons of equal weight: the variance of a bias has τ²/8 of each."""
     document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document

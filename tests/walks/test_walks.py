@@ -23,6 +23,7 @@ def test_what_is_left_without_noise_is_nothing():
     assert np.abs(pulls).max() < 0.1
 
 
+@pytest.mark.slow
 def test_the_size_that_is_hidden_is_in_the_blocks():
     """A ramp of SNR 30: bᵀβ̂ is 30 ± 1 along it; so the laboratory's law is the campaign's."""
     known = quiet(PLAN)
