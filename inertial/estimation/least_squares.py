@@ -200,6 +200,27 @@ class System:
             np.sum(columns**2, axis=0),
         )
 
+    def shifts(self, fitted: int) -> tuple[list[str], Array]:
+        """What effects of the size one move, if the readings have them and the fit does not.
+
+        `fitted`: as in `projected`. The names of the m determined parameters, and (m, k), of the
+        further effects, in sigmas of the parameters.
+        """
+        further = self._effects[fitted:]
+        base = [i for i in range(len(self.names)) if i not in set(further)]
+        scaled, _ = self._whitened()
+        design = np.vstack([scaled[:, base] * self.prior_sigma[base], np.eye(len(base))])
+        inverse = solve_triangular(np.linalg.qr(design, mode="r"), np.eye(len(base)))
+        covariance = inverse @ inverse.T  # in units of the priors, as the changes
+        changes = covariance @ (design[: len(scaled)].T @ scaled[:, further])
+        sigma = np.sqrt(np.diag(covariance))
+        own = [
+            i
+            for i, at in enumerate(base)
+            if self.names[at][0] == "parameter" and sigma[i] < 1 / MIN_SIGMA_REDUCTION
+        ]
+        return [self.names[base[i]][1] for i in own], changes[own] / sigma[own, None]
+
     def effect_information(self) -> "EffectInformation":
         """The normal equations of the effects, all other unknowns fitted."""
         effects = self._effects

@@ -145,7 +145,7 @@ STRUCTURE_MANOEUVRES = Table(
 )
 DETECTION_LIMITS = Table(
     "detection_limits",
-    1,
+    2,
     (
         MOUNT,
         Column("effect", TEXT, "", "name in the catalogue"),
@@ -160,6 +160,15 @@ DETECTION_LIMITS = Table(
         ),
         Column("largest", DOUBLE, "as unit", "and where it is largest", nullable=True),
         Column("unit", TEXT, "", "unit of the limits"),
+        Column(
+            "moves",
+            DOUBLE,
+            "1",
+            "by how many sigma an effect of the size `limit`, not named, moves a parameter at most",
+            nullable=True,
+        ),
+        Column("moved_sensor", TEXT, "", "which one: its sensor, gyro or accel", nullable=True),
+        Column("moved_parameter", TEXT, "", "and its name, such as bias_x", nullable=True),
         Column(
             "reason",
             TEXT,

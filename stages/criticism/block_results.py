@@ -8,6 +8,7 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
+from inertial.campaign.external_reliability import Moved, most_moved
 from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.estimation.least_squares import whitening
 from inertial.estimation.random_walk import MeasuredDrift
@@ -175,6 +176,7 @@ class BlockResults:
 
     def _limits(self) -> Iterator[TableRow]:
         """The detection limit of each parameter, or why there is none."""
+        moved = self._moved()
         for limit in self.selection.limits:
             effect = KNOWN[limit.effect]
             parameter = effect.parameters[limit.parameter]
@@ -185,6 +187,7 @@ class BlockResults:
             why = sentences.explanation(effect, limit.reason, blind)
             remark = self._same_rate(effect, parameter.name)
             sentence = sentences.limit_sentence(effect, limit, why)
+            most = moved[effect.name][limit.parameter] if visible and effect.name in moved else None
             yield (
                 "detection_limits",
                 {
@@ -195,12 +198,24 @@ class BlockResults:
                     "smallest": limit.best if visible else None,
                     "largest": limit.worst if visible else None,
                     "unit": parameter.unit,
+                    "moves": most.sigmas * limit.size if most else None,
+                    "moved_sensor": most.sensor if most else None,
+                    "moved_parameter": most.parameter if most else None,
                     "reason": limit.reason,
                     "explanation": why,
                     "remark": remark,
                     "sentence": f"{sentence} {remark}" if remark else sentence,
                 },
             )
+
+    def _moved(self) -> dict[str, list[Moved]]:
+        """By effect that is not named, what each of its parameters moves most, per SI unit."""
+        families = self.selection.families
+        names = [name for name in dict.fromkeys(limit.effect for limit in self.selection.limits)]
+        names = [name for name in names if name in families and name not in self.causes]
+        tested = [families[name][len(families[name]) // 2] for name in names]
+        named = self.selection.fitted
+        return dict(zip(names, most_moved(self.campaign, named, tested), strict=True))
 
     def _action(self, cause: Cause, parameters: Sequence[Estimated]) -> str:
         if cause.verdict not in NAMED:

@@ -207,6 +207,7 @@ class OscillationResults:
                     "smallest": limit.smallest if limit else None,
                     "largest": limit.largest if limit else None,
                     "unit": parameter.unit,
+                    **dict.fromkeys(("moves", "moved_sensor", "moved_parameter")),
                     "reason": VISIBLE if limit else NOT_EXCITED,
                     "explanation": why,
                     "remark": remark,

@@ -254,8 +254,22 @@ def test_a_limit_is_no_number_beyond_what_is_possible(effect, unit, limit, shown
     score = {"effect": effect, "p_value": 1.0, "sentence": "", "finding": None}
     row = {"effect": effect, "mount": "", "parameter": "s", "unit": unit, "reason": "visible"}
     row |= {"limit": limit, "smallest": limit, "largest": limit, "remark": None}
+    row |= {"moves": 2.0, "moved_sensor": "gyro", "moved_parameter": "bias_x"}
     table, *_others = detection_limits([row], [Tested(score, (), "")])
     assert table.rows[0].cells[1:5] == shown
+
+
+def test_what_an_undetected_effect_moves_stands_beside_its_limit() -> None:
+    score = {"effect": "lever_arm", "p_value": 1.0, "sentence": "", "finding": None}
+    row = {"effect": "lever_arm", "mount": "", "parameter": "r_x", "unit": "m", "limit": 1e-3}
+    row |= {"reason": "visible", "smallest": 1e-3, "largest": 1e-3, "remark": None}
+    rows = [
+        row | {"moves": moves, "moved_sensor": "accel", "moved_parameter": parameter}
+        for moves, parameter in ((2.04, "bias_x"), (3.31, "cross_yz"))
+    ]
+    table, *_others = detection_limits(rows, [Tested(score, (), "")])
+    assert table.rows[0].cells[5:7] == ("3.3", "m_yz (accelerometer)")
+    assert "external reliability" in str(table)
 
 
 def test_effects_that_are_there_or_not_have_no_other_size() -> None:

@@ -189,6 +189,8 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             outline.Column(_("parameter"), "symbol", _("Detection limit (5 σ)")),
             outline.Column(_("best axis"), "number", _("Detection limit (5 σ)")),
             outline.Column(_("unit"), "unit", _("Detection limit (5 σ)")),
+            outline.Column(_("σ"), "number", _("Undetected, it moves")),
+            outline.Column(_("parameter"), "symbol", _("Undetected, it moves")),
             outline.Column("p", "number"),
         ),
         [
@@ -201,6 +203,11 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
                 _(
                     "p: the probability that noise alone makes the largest of all tested effects "
                     "this significant (corrected for the number of tests, so it is often 1)."
+                ),
+                _(
+                    "What an effect as large as its detection limit moves most, in sigmas of that "
+                    "parameter, which hold no effect that is not named (external reliability, "
+                    "Baarda 1968)."
                 ),
                 *_remarks(seen, by_name),
             ]
@@ -237,9 +244,20 @@ def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
     return outline.table_row(
         capital(tested.name),
         *(_noticed(first) if tested.effect in THERE_OR_NOT else _sizes(rows)),
+        *_moves(rows),
         numbers.probability(tested.score["p_value"]),
         anchor="/".join(("limit", *filter(None, _effect(first)), first["parameter"])),
     )
+
+
+def _moves(rows: Sequence[Record]) -> tuple[str, str]:
+    """By how many sigma undetected effects of these rows move a parameter, and which one."""
+    known = [row for row in rows if row["moves"] is not None and row["limit"] <= _largest(row)]
+    if not known or rows[0]["effect"] in THERE_OR_NOT:
+        return "", ""
+    most = max(known, key=lambda row: row["moves"])
+    moved = f"{symbol(most['moved_parameter'])} ({SENSOR[most['moved_sensor']]})"
+    return numbers.significant(most["moves"], 2), moved
 
 
 def _noticed(row: Record) -> tuple[str, str, str, str]:
