@@ -24,7 +24,7 @@ from inertial.campaign.records import (
     manoeuvres_of,
     performed_of,
     share_a_clock,
-    switch_ons_of,
+    switch_on_times,
     with_mount,
 )
 from inertial.campaign.solution import Estimated, Solution, solution_of
@@ -190,7 +190,7 @@ def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
     clocks = {} if tables.clocks is None else clocks_of(tables.clocks)
     shared = tables.clocks is not None and share_a_clock(tables.clocks)
     result, whole = [], manoeuvres_of(tables.manoeuvres)
-    switched_on = switch_ons_of(whole, clocks, tables.blocks)
+    switched_on = switch_on_times(whole, clocks, tables.blocks)
     for mount, plan in by_mount(whole):
         data = CampaignData(
             plan,

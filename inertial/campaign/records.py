@@ -293,7 +293,7 @@ def runs_of(logs: Iterable[str], clocks: Mapping[str, Clock], shared: bool) -> d
     return runs
 
 
-def switch_ons_of(
+def switch_on_times(
     plan: Sequence[Manoeuvre], clocks: Mapping[str, Clock], blocks: pd.DataFrame
 ) -> dict[int, float]:
     """When the IMU was switched on again, s since the first sample of all logs, by `switch_on`.

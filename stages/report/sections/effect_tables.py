@@ -189,7 +189,7 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             outline.Column(_("parameter"), "symbol", _("Detection limit (5 σ)")),
             outline.Column(_("best axis"), "number", _("Detection limit (5 σ)")),
             outline.Column(_("unit"), "unit", _("Detection limit (5 σ)")),
-            outline.Column(_("σ"), "number", _("Undetected, it moves")),
+            outline.Column("σ", "number", _("Undetected, it moves")),
             outline.Column(_("parameter"), "symbol", _("Undetected, it moves")),
             outline.Column("p", "number"),
         ),
