@@ -337,8 +337,10 @@ class Evidence:
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
         if cause.cause == "gap":
-            whole = all(each.complete or each.bridged for each in done)
-            return INTERPOLATED if whole else LEFT_OUT, None, None
+            if not all(each.complete or each.bridged for each in done):
+                return LEFT_OUT, None, None
+            turns = any(each.rate for each in done)  # else a rest, or a pause between two
+            return (INTERPOLATED, None, None) if turns else (NONE, 0.0, None)
         if cause.masked:
             return MASKED, None, None
         if done and not any(each.complete or each.bridged for each in done):

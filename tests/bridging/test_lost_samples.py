@@ -76,6 +76,15 @@ def test_the_scale_factors_stay_and_no_line_is_found(share):
 
 
 @pytest.mark.slow
+def test_what_is_missing_in_a_rest_is_harmless():
+    lost = {"lose": {"log": "x-up.asc", "line": 900, "samples": 400}}
+    tables = chain.in_memory_of(chain.short(seed=5, faults=[lost]), "diagnosis", chain.BESIDE)
+    (cause,) = tables["diagnosis/causes"].to_dict("records")
+    assert (cause["cause"], cause["cure"], cause["moves"]) == ("gap", "none", 0.0)
+    assert set(tables["diagnosis/verdict"]["verdict"]) <= {"usable", "usable_within_limits"}
+
+
+@pytest.mark.slow
 def test_records_out_of_order_are_missing_nowhere():
     """Where time leaps before a record that came early: a scale factor was 190 sigma off."""
     document = chain.short(seed=5)
