@@ -78,10 +78,7 @@ def test_the_sigmas_of_a_clean_session_are_honest(clean):
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "effect",
-    [
-        pytest.param(effect, marks=() if n == 0 else pytest.mark.slow)
-        for n, effect in enumerate(HIDDEN)
-    ],
+    list(HIDDEN),
 )
 def test_what_a_session_hides_is_named_and_no_longer_moves_the_result(effect, hiding):
     document, results = hiding(effect)

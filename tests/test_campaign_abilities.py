@@ -165,7 +165,7 @@ def test_axes_and_signs_of_each_sensor_undo_those_of_the_log(simple, simple_resu
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("message", [pytest.param("columns", marks=pytest.mark.slow), "RAWIMUSA"])
+@pytest.mark.parametrize("message", ["columns", "RAWIMUSA"])
 def test_one_reversed_gyro_that_is_stated_needs_no_repair(message, tmp_path):
     document = in_columns()
     document["faults"] = [{"flip": {"log": "all", "sensor": "gyro", "axis": "x"}}]
@@ -492,9 +492,9 @@ def test_two_logs_with_the_same_stamps_are_the_same_campaign(simple, simple_resu
 @pytest.mark.parametrize(
     ("gyro_hz", "late_s"),
     [
-        pytest.param(100, 0.0037, marks=pytest.mark.slow),
+        (100, 0.0037),
         (73, 0.0),
-        pytest.param(400, 0.0, marks=pytest.mark.slow),
+        (400, 0.0),
     ],
 )
 def test_two_logs_with_stamps_of_their_own_are_joined(simple, gyro_hz, late_s, tmp_path):

@@ -40,7 +40,7 @@ HIDDEN = {
     "table_wobble": ({"east_arcsec": 0, "north_arcsec": 5}, {}),
 }
 # In the quick tests; `make test-slow` hides them all.
-QUICK = ("lever_arm", "table_wobble")
+QUICK = ("lever_arm",)
 NOT_NEEDED = ("studies", "comparison", "compensation")  # by criticism and extension
 # What this plan cannot tell from it.
 CLASS = {

@@ -171,6 +171,7 @@ def test_a_member_that_the_sensor_does_not_show_leaves_its_joint_fit(quadratic):
     assert dict(candidates["gyro"]) == pytest.approx({"joint": 0.5, "member_1": 0.5}, abs=0.02)
 
 
+@pytest.mark.slow
 def test_a_scanned_member_gets_its_value_from_the_data(tmp_path):
     """A jump of a gyro half way, of which criticism is made to say that a ramp is likelier."""
     results = run(

@@ -159,29 +159,26 @@ def damaged(log: ByHand) -> Files:
     return {"log.csv": "\n".join(lines)}
 
 
-FORMS: dict[Callable[[ByHand], Files], bool] = {  # whether the quick tests have it
-    serial_labels: True,
-    labels_of_counts: False,
-    json_lines: False,
-    phone: True,
-    either_sensor: True,
-    micros: True,
-    without_sign: True,
-    units_in_header: False,
-    quoted: False,
-    ros_export: False,
-    beside_others: False,
-    damaged: True,
-}
+FORMS: tuple[Callable[[ByHand], Files], ...] = (
+    serial_labels,
+    labels_of_counts,
+    json_lines,
+    phone,
+    either_sensor,
+    micros,
+    without_sign,
+    units_in_header,
+    quoted,
+    ros_export,
+    beside_others,
+    damaged,
+)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "form",
-    [
-        pytest.param(form, id=form.__name__, marks=() if quick else pytest.mark.slow)
-        for form, quick in FORMS.items()
-    ],
+    [pytest.param(form, id=form.__name__) for form in FORMS],
 )
 def test_a_log_gives_its_truth_by_draft_and_check(form, tmp_path):
     log = by_hand_log(7)

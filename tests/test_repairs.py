@@ -188,23 +188,10 @@ SET_RIGHT = {
 }
 
 
-# Of the same kind as another case, or told in tests of the plan and of the diagnosis.
-ALIKE = {
-    "all gyros reversed",
-    "all accelerometers reversed",
-    "x and y accelerometers exchanged",
-    "another full scale of the gyros",
-    "a turn and its opposite exchanged",
-}
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("edits", "repair", "cause"),
-    [
-        pytest.param(*case, id=name, marks=pytest.mark.slow if name in ALIKE else ())
-        for name, case in SET_RIGHT.items()
-    ],
+    [pytest.param(*case, id=name) for name, case in SET_RIGHT.items()],
 )
 def test_what_is_wrong_as_a_whole_is_set_right_and_named_once(edits, repair, cause):
     results = recorded(*edits)
@@ -379,7 +366,8 @@ def test_large_scale_errors_of_all_gyros_are_no_count_size():
     "bias",
     [
         *([6.4, 0, 0], [-6.4, 6.4, 6.4]),
-        *(pytest.param(bias, marks=pytest.mark.slow) for bias in ([0, 0, 6.4], [9.8, 0, 0])),
+        [0, 0, 6.4],
+        [9.8, 0, 0],
     ],
 )
 def test_a_large_bias_of_an_accelerometer_is_no_count_size(bias):

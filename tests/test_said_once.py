@@ -86,7 +86,7 @@ def test_turns_whose_gyro_clips_show_no_other_rate_of_the_table():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("above", [0.0, pytest.param(1.0, marks=pytest.mark.slow), 2.0])
+@pytest.mark.parametrize("above", [0.0, 1.0, 2.0])
 def test_a_position_whose_noise_is_cut_off_gives_no_mean_of_that_channel(above):
     """`above`: scatters of a reading by which the limit lies above the mean reading."""
     place = {"log": "z-up.asc", "channel": "accel_z", "counted_from": "mean"}

@@ -96,7 +96,7 @@ def clean() -> chain.Results:
     return chain.in_memory_of(good(), "criticism", chain.BESIDE)
 
 
-@pytest.mark.parametrize("spoilt", [pytest.param(lost, marks=pytest.mark.slow), spiked, fast])
+@pytest.mark.parametrize("spoilt", [lost, spiked, fast])
 def test_the_result_stays_where_it_is(spoilt, clean):
     moved = np.abs(values(chain.in_memory_of(good(**spoilt()))) - values(clean))
     assert moved[1, :9].max() < 25e-6

@@ -337,10 +337,8 @@ class Evidence:
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
         if cause.cause == "gap":
-            if not all(each.complete or each.bridged for each in done):
-                return LEFT_OUT, None, None
-            turns = any(each.rate for each in done)  # else a rest, or a pause between two
-            return (INTERPOLATED, None, None) if turns else (NONE, 0.0, None)
+            cure = _cure_of_gap(done)
+            return cure, 0.0 if cure == NONE else None, None
         if cause.masked:
             return MASKED, None, None
         if done and not any(each.complete or each.bridged for each in done):
@@ -371,6 +369,13 @@ class Evidence:
             # What manoeuvres differ by is in the sigmas, so the shift is measured in these.
             return (MODELLED if modelled else NONE), largest, max(drops, default=None)
         return NONE, largest, None
+
+
+def _cure_of_gap(touched: Sequence[Performed]) -> str:
+    """The cure of a gap in these manoeuvres; a rest, or a pause between two, needs none."""
+    if not all(each.complete or each.bridged for each in touched):
+        return LEFT_OUT
+    return INTERPOLATED if any(each.rate for each in touched) else NONE
 
 
 def _may_be_shift(cause: Hypothesis) -> bool:

@@ -36,8 +36,8 @@ def louder(recording: laboratory.Recording, start: float, end: float, times: flo
         # It begins 2 s before a rest of 300 s ends, where a window of the spectrum is next to zero.
         ("positions", 1378.0, 2600.0, 3.0),
         # And while the table slows down after a turn.
-        pytest.param("rates", 690.0, 1410.0, 3.0, marks=pytest.mark.slow),
-        pytest.param("positions", 1712.0, 2405.0, 17.0, marks=pytest.mark.slow),
+        ("rates", 690.0, 1410.0, 3.0),
+        ("positions", 1712.0, 2405.0, 17.0),
     ],
 )
 def test_nothing_is_found(plan, start, end, times):

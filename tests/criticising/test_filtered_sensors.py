@@ -30,7 +30,8 @@ def behind_filter(recording: laboratory.Recording, corner: float, order: int):
     ("corner", "order"),
     [
         (20.0, 2),
-        *(pytest.param(*low_pass, marks=pytest.mark.slow) for low_pass in [(3.0, 1), (10.0, 2)]),
+        (3.0, 1),
+        (10.0, 2),
     ],
 )
 def test_no_oscillation_no_ripple_and_sigmas_that_hold(corner, order):

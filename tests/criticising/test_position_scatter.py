@@ -41,7 +41,7 @@ def test_positions_worse_than_stated_are_named_and_nothing_else(seed: int, tilte
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("tilted", [pytest.param("case", marks=pytest.mark.slow), "axis"])
+@pytest.mark.parametrize("tilted", ["case", "axis"])
 def test_with_their_sigma_stated_they_are_no_cause_and_the_sigmas_hold(tilted: str) -> None:
     results = criticised(71, tilted, 60.0)
     assert not results["criticism/findings"]["verdict"].isin(CLEAR).any()

@@ -35,10 +35,7 @@ def named(tables):
     ("effect", "told", "parameter", "size"),
     [
         ("gyro_scale_cubic", {"k3_ppm_per_deg_s_2": [0, 0, 0.1]}, "k_z", 0.1 * PPM / DEGREE**2),
-        pytest.param(
-            *("gyro_scale_asymmetry", {"asymmetry_ppm": [0, 400, 0]}, "a_y", 400 * PPM),
-            marks=pytest.mark.slow,
-        ),
+        ("gyro_scale_asymmetry", {"asymmetry_ppm": [0, 400, 0]}, "a_y", 400 * PPM),
     ],
 )
 def test_a_scale_factor_that_depends_on_the_rate_is_found_with_its_size(

@@ -21,7 +21,7 @@ def swaying(channel, log):
     ("channel", "manoeuvre"),
     [
         ("accel_y", "x-forward"),
-        pytest.param("accel_z", "y-backward", marks=pytest.mark.slow),
+        ("accel_z", "y-backward"),
     ],
 )
 def test_a_structure_of_one_manoeuvre_is_said_to_be_there(channel, manoeuvre):

@@ -151,6 +151,7 @@ def test_the_ripple_of_the_laboratory(power):
     assert gain.loc["held-out", "drop"] > 0.8 * gain.loc["fitted", "drop"] > 0
 
 
+@pytest.mark.slow
 def test_the_oscillation_of_the_laboratory():
     effects = {"oscillation": {"frequency_hz": 6, "amplitude_rad_s": 2e-4, "axis": "+z"}}
     document = two_rates(effects=effects, seed=44)

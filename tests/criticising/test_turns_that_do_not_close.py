@@ -8,7 +8,7 @@ NOT_NEEDED = ("studies", "comparison", "compensation")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("order", [33.5, pytest.param(5.25, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("order", [33.5, 5.25])
 def test_only_the_ripple_is_named(order):
     """13.6″ at half a period too much: a turn there and one back end up to 23″ to one side.
 

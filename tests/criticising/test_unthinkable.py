@@ -6,7 +6,7 @@ from hidden import hidden_plans
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("plan", ["positions", pytest.param("stops", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("plan", ["positions", "stops"])
 def test_twice_the_earth_rate_is_not_left_out(plan):
     """On the other hemisphere, with azimuths unknown: “earth rate left out, s = 2000070 ppm”."""
     document = getattr(hidden_plans, plan)(seed=11)

@@ -66,21 +66,12 @@ BOTH = ("accelerometer", "gyro")
     ("faults", "cause", "sensors", "said"),
     [
         ([swap("all", "accelerometer", "xy")], "axis_swap", ["accel"], "x reads y and y reads x"),
-        pytest.param(
-            *([swap("all", "gyro", "yz")], "axis_swap", ["gyro"], "y reads z and z reads y"),
-            marks=pytest.mark.slow,
-        ),
+        ([swap("all", "gyro", "yz")], "axis_swap", ["gyro"], "y reads z and z reads y"),
         ([flip("all", s, "y") for s in BOTH], "sign_flip", ["accel", "gyro"], "y reads −y"),
-        pytest.param(
-            *([flip("all", "accelerometer", "x")], "sign_flip", ["accel"], "x reads −x"),
-            marks=pytest.mark.slow,
-        ),
+        ([flip("all", "accelerometer", "x")], "sign_flip", ["accel"], "x reads −x"),
         # Told from exchanged names by the rests, in which the gyros see the earth turn.
         ([flip("all", "gyro", "z")], "sign_flip", ["gyro"], "z reads −z"),
-        pytest.param(
-            *([swap("all", s, "xz") for s in BOTH], "axis_swap", ["accel", "gyro"], "x reads z"),
-            marks=pytest.mark.slow,
-        ),
+        ([swap("all", s, "xz") for s in BOTH], "axis_swap", ["accel", "gyro"], "x reads z"),
     ],
 )
 def test_axes_that_are_others_in_all_logs_are_named(faults, cause, sensors, said):
@@ -125,10 +116,7 @@ def test_an_imu_that_is_mounted_turned_says_so_in_both_sensors():
     ("fault", "cause", "sensor"),
     [
         (swap("x-up.asc", "accelerometer", "xy"), "axis_swap", "accel"),
-        pytest.param(
-            *(flip("y-down.asc", "accelerometer", "y"), "sign_flip", "accel"),
-            marks=pytest.mark.slow,
-        ),
+        (flip("y-down.asc", "accelerometer", "y"), "sign_flip", "accel"),
         (flip("y-forward.asc", "accelerometer", "y"), "sign_flip", "accel"),
         (swap("z-backward.asc", "gyro", "xz"), "axis_swap", "gyro"),
     ],
@@ -349,7 +337,7 @@ def counted_by_100_hz(rate: float, folder: Path, **table: float) -> chain.Result
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("rate", [125, pytest.param(50, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("rate", [125, 50])
 def test_samples_that_are_counted_by_another_rate_are_one_finding(rate, tmp_path):
     """Rates are read as they are, and every angle is off by the same ratio."""
     results = counted_by_100_hz(rate, tmp_path)

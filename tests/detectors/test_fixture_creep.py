@@ -45,7 +45,7 @@ def creeps(effects: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("tau", [400.0, pytest.param(3000.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("tau", [400.0, 3000.0])
 def test_a_creep_is_named_with_the_angle_by_which_the_case_turns(tau: float) -> None:
     """It was a bias that wanders at rest, and cross terms 20 sigma off were usable."""
     turns = -np.expm1(-FIRST_TO_LAST_S / tau)

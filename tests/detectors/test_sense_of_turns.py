@@ -60,7 +60,7 @@ def plan(other_way):
     [
         ({"+y", "-y"}, "y", 4),
         ({"-x", "-y", "-z"}, "negative", 6),
-        pytest.param({"+x", "-x", "+y", "-y", "+z", "-z"}, "", 12, marks=pytest.mark.slow),
+        ({"+x", "-x", "+y", "-y", "+z", "-z"}, "", 12),
     ],
 )
 def test_turns_of_one_kind_that_are_planned_the_other_way_are_named_and_taken_so(

@@ -39,8 +39,8 @@ def rounded(seed: int, noise: float, *, carries: bool) -> dict:
 @pytest.fixture(
     scope="module",
     params=[
-        pytest.param(0.3, marks=pytest.mark.slow),
-        pytest.param(0.15, marks=pytest.mark.slow),
+        0.3,
+        0.15,
         0.02,
     ],
 )

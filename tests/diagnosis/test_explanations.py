@@ -118,11 +118,17 @@ def test_what_has_no_law_is_one_cause_of_a_sensor():
     assert len(list(compete([demoted, accel]))) == 2
 
 
-@pytest.mark.parametrize(("p_value", "named"), [(None, False), (0.02, False), (1e-6, True)])
-def test_a_random_walk_that_chance_may_make_is_noise_and_no_cause(p_value, named):
-    """Nor is one that only the noise at rest shows, which has no p-value."""
+@pytest.mark.parametrize(
+    ("p_value", "severity", "named"),
+    [(None, 1, False), (0.02, 1, False), (1e-6, 1, True), (None, 2, True)],
+)
+def test_a_random_walk_that_chance_may_make_is_noise_and_no_cause(p_value, severity, named):
+    """Nor is one that only the noise at rest shows, which has no p-value, if a sensor may have it.
+
+    Of severity 2 it is faster than that.
+    """
     walk = effect("gyro_random_walk", "gyro", "unknown_structure", "gyro_random_walk")
-    walk.row["p_value"] = p_value
+    walk.row.update({"p_value": p_value, "severity": severity})
     assert bool(causes(walk)) == named
     rest = finding("criticism", "unexplained", "gyro")
     assert causes(walk, rest) == {"gyro_random_walk": {"unexplained"}}

@@ -49,7 +49,6 @@ GROUPS = (
     ("gyro_scale_ramp", "accel_scale_ramp"),
     ("accel_scale_jump",),
 )
-FAST = GROUPS[:1]  # the others draw as many campaigns again
 
 
 def test_every_effect_with_a_way_to_hide_it_is_in_a_group():
@@ -79,9 +78,10 @@ def without(sensed):
     return _campaign(sensed, {})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "group",
-    [pytest.param(g, id=g[0], marks=() if g in FAST else pytest.mark.slow) for g in GROUPS],
+    [pytest.param(g, id=g[0]) for g in GROUPS],
 )
 def test_each_parameter_comes_back(group, sensed, without):
     random = np.random.default_rng(sum(map(len, group)))

@@ -28,7 +28,7 @@ LAWS = {
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("rates", "is_open"),
-    [pytest.param([20, 40, 60], True, marks=pytest.mark.slow), ([20, 30, 45, 60], False)],
+    [([20, 40, 60], True), ([20, 30, 45, 60], False)],
 )
 def test_as_many_terms_as_rates_confirm_no_form(rates: list[float], is_open: bool) -> None:
     """A scale factor 129 sigma off was "usable": at rate 0 the laws go where nothing was read."""

@@ -41,10 +41,7 @@ def test_the_kinds_are_drawn_as_often_as_is_wanted():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     "plan",
-    [
-        pytest.param(p, marks=() if p == "positions" else pytest.mark.slow)
-        for p in hidden_plans.PLANS
-    ],
+    list(hidden_plans.PLANS),
 )
 def test_a_plan_shows_what_is_hidden_in_it(plan):
     """What is hidden there is seen, and noise alone makes a name of it as often as allowed."""
@@ -154,6 +151,7 @@ def test_effects_at_once_are_all_named():
     assert all(detected(outcome, effect) for effect in one.effects)
 
 
+@pytest.mark.slow
 def test_what_is_sought_elsewhere_is_found():
     one = draw(17, size)
     assert one.sort == "elsewhere" and truly_named(run(one))

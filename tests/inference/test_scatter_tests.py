@@ -45,7 +45,7 @@ def test_the_p_value_is_that_of_the_textbook():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("size", [1.0, pytest.param(40.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("size", [1.0, 40.0])
 def test_a_scatter_of_any_size_is_named_as_often_as_the_level_says(size):
     random = np.random.default_rng(2)
     share = named_share([scatter_tests(sensor(np.ones(DEGREES)), RAW, SEARCHED)], LEVEL)

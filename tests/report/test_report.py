@@ -346,6 +346,7 @@ def test_the_error_of_navigation_is_stated_in_mrad_and_mm_per_second() -> None:
     assert "is up to 0.291 ± 0.001 mrad and 85.5 ± 0.3 mm/s at rest, 0.029" in text
 
 
+@pytest.mark.slow
 def test_no_effect_is_detected() -> None:
     tables = synthetic_unmodelled.without_effects()
     tables["scores"]["degrees"] = 3
@@ -486,6 +487,7 @@ def test_every_link_leads_somewhere() -> None:
         assert not {target for target in targets if f'id="{target}"' not in made}
 
 
+@pytest.mark.slow
 def test_the_same_tables_give_the_same_bytes() -> None:
     first, second = (synthetic.report_on(synthetic.brief("z-backward.asc")) for _ in range(2))
     assert first == second

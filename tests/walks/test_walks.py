@@ -33,6 +33,7 @@ def test_the_size_that_is_hidden_is_in_the_blocks():
     assert along * np.sign(size) == pytest.approx(30, abs=4)
 
 
+@pytest.mark.slow
 def test_the_likelihood_of_a_walk_is_that_of_its_path():
     """By half waves, and by the covariance of a walk from stretch to stretch in the stages."""
     known = quiet(PLAN)
