@@ -268,7 +268,7 @@ def test_what_an_undetected_effect_moves_stands_beside_its_limit() -> None:
         for moves, parameter in ((2.04, "bias_x"), (3.31, "cross_yz"))
     ]
     table, *_others = detection_limits(rows, [Tested(score, (), "")])
-    assert table.rows[0].cells[5:7] == ("3.3", "m_yz (accelerometer)")
+    assert table.rows[0].cells[5:8] == ("3.3", "m_yz", "accelerometer")
     assert "external reliability" in str(table)
 
 

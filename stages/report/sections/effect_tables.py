@@ -37,6 +37,7 @@ NOTICED, NOT_NOTICED = _("would be noticed"), _("would not be noticed")
 NOT_DETECTABLE = _("not detectable here")
 LARGEST_ANGLE, LARGEST_SHARE = pi, 1.0  # rad; no error is larger
 MIN_CLOCK_SHARE = 1e-6  # of a frequency: no clock of a log is known to less
+LEAST_MOVE = 0.1  # sigma; how much less does not matter
 TESTS = {
     "time": _("time"),
     "angle": _("the angle of the table"),
@@ -191,6 +192,7 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             outline.Column(_("unit"), "unit", _("Detection limit (5 σ)")),
             outline.Column("σ", "number", _("Undetected, it moves")),
             outline.Column(_("parameter"), "symbol", _("Undetected, it moves")),
+            outline.Column(_("sensor"), "text", _("Undetected, it moves")),
             outline.Column("p", "number"),
         ),
         [
@@ -205,9 +207,9 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
                     "this significant (corrected for the number of tests, so it is often 1)."
                 ),
                 _(
-                    "What an effect as large as its detection limit moves most, in sigmas of that "
-                    "parameter, which hold no effect that is not named (external reliability, "
-                    "Baarda 1968)."
+                    "Undetected, it moves: the parameter that an effect as large as its detection "
+                    "limit moves most, by how many of its sigmas, which hold no effect that is not "
+                    "named (external reliability, Baarda 1968)."
                 ),
                 *_remarks(seen, by_name),
             ]
@@ -250,14 +252,15 @@ def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
     )
 
 
-def _moves(rows: Sequence[Record]) -> tuple[str, str]:
-    """By how many sigma undetected effects of these rows move a parameter, and which one."""
+def _moves(rows: Sequence[Record]) -> tuple[str, str, str]:
+    """By how many sigma undetected effects of these rows move a parameter, which, and whose."""
     known = [row for row in rows if row["moves"] is not None and row["limit"] <= _largest(row)]
     if not known or rows[0]["effect"] in THERE_OR_NOT:
-        return "", ""
+        return "", "", ""
     most = max(known, key=lambda row: row["moves"])
-    moved = f"{symbol(most['moved_parameter'])} ({SENSOR[most['moved_sensor']]})"
-    return numbers.significant(most["moves"], 2), moved
+    slight = most["moves"] < LEAST_MOVE
+    moves = f"< {LEAST_MOVE}" if slight else numbers.significant(most["moves"], 2)
+    return moves, symbol(most["moved_parameter"]), SENSOR[most["moved_sensor"]]
 
 
 def _noticed(row: Record) -> tuple[str, str, str, str]:
