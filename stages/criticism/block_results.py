@@ -211,8 +211,8 @@ class BlockResults:
     def _moved(self) -> dict[str, list[Moved]]:
         """By effect that is not named, what each of its parameters moves most, per SI unit."""
         families = self.selection.families
-        names = [name for name in dict.fromkeys(limit.effect for limit in self.selection.limits)]
-        names = [name for name in names if name in families and name not in self.causes]
+        limited = dict.fromkeys(limit.effect for limit in self.selection.limits)
+        names = [name for name in limited if name in families and name not in self.causes]
         tested = [families[name][len(families[name]) // 2] for name in names]
         named = self.selection.fitted
         return dict(zip(names, most_moved(self.campaign, named, tested), strict=True))

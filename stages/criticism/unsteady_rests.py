@@ -38,7 +38,8 @@ def unsteady_rests(data: CampaignData, sensor: str, sizes: Array) -> Unsteady | 
     longest = max(float(position.seconds.sum()) for position in positions)
     seconds = min(WITHIN, longest)
     wander, scatter = sizes * np.sqrt(seconds), np.nanmedian(scatters, axis=0)
-    worst = int(np.nanargmax(wander / scatter))
-    if not wander[worst] > scatter[worst]:
+    known = np.where(scatter > 0, scatter, np.inf)  # an axis that is not read, or stands still
+    worst = int(np.argmax(wander / known))
+    if not wander[worst] > known[worst]:
         return None
     return Unsteady(seconds, float(wander[worst]), float(scatter[worst]))
