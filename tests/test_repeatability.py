@@ -502,3 +502,10 @@ def test_the_sessions_of_snu_repeat_within_their_sigmas(drafted):
     assert len(between) >= 20
     ratio = between.set_index(["sensor", "quantity"])["value"] / within
     assert ratio.median() < 1.0  # the sessions show no more than their sigmas
+
+
+def test_where_some_biases_are_known_a_million_times_better_than_others_there_is_a_limit():
+    """The search began where the deviance of the best known had risen already, and stopped."""
+    information = np.diag([1e12, 1e12, 1.0, 1e-2])
+    value, _sigma, upper = between(information, np.zeros(4))
+    assert value == 0 and 1e-6 < upper < 1e-5  # of two that are known to 1e-6

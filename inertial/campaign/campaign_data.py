@@ -190,12 +190,13 @@ def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
     clocks = {} if tables.clocks is None else clocks_of(tables.clocks)
     shared = tables.clocks is not None and share_a_clock(tables.clocks)
     result, whole = [], manoeuvres_of(tables.manoeuvres)
-    switched_on = switch_on_times(whole, clocks, tables.blocks)
+    blocks = _since_first_sample(tables.blocks, clocks)
+    switched_on = switch_on_times(whole, clocks, blocks)
     for mount, plan in by_mount(whole):
         data = CampaignData(
             plan,
             done,
-            tables.blocks,
+            blocks,
             noise,
             tables.given,
             mount,
@@ -210,6 +211,14 @@ def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
             data = with_attitudes(data, solution.accelerometer)
         result.append(data)
     return result
+
+
+def _since_first_sample(blocks: pd.DataFrame, clocks: Mapping[str, Clock]) -> pd.DataFrame:
+    """Blocks with times since the first sample of all logs, where the logs share a clock."""
+    offsets = {log: clock.offset for log, clock in clocks.items()}
+    if not any(offsets.values()):
+        return blocks
+    return blocks.assign(time=blocks["time"] + blocks["log"].map(offsets))
 
 
 # How a stage takes the mounts: `gathers` of its Stage.

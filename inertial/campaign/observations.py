@@ -58,7 +58,9 @@ def campaign_of(data: CampaignData) -> Campaign:
         if not turn.by_hand:
             levels = [data.noise.of(recorded.plan.name, at, ACCEL) for at in ("steady", "rest")]
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
-            parts = _turning(recorded.plan, recorded.blocks, motion, levels, edges)
+            clock = data.clocks.get(recorded.plan.log)
+            early = 0.0 if clock is None or clock.averaged else clock.step / np.sqrt(12)
+            parts = _turning(recorded.plan, recorded.blocks, motion, levels, edges, early)
             stretches = _stretches(turn.stretch, [at for _, _, at in parts], drifts["accel"])
             static_forces += [
                 (m, replace(part, stretch=own), at)
@@ -126,12 +128,20 @@ def _stretches(
 
 
 def _turning(
-    m: Manoeuvre, blocks: Blocks, motion: Motion, levels: Sequence[Array], edges: Sequence[int]
+    m: Manoeuvre,
+    blocks: Blocks,
+    motion: Motion,
+    levels: Sequence[Array],
+    edges: Sequence[int],
+    early: float,
 ) -> list[tuple[str, StaticForce, Motion]]:
     """The accelerometers during a rotation in means of some blocks, none across the `edges`.
 
     `levels`: their noise at the steady rate and at rest. While the table starts and stops it is
     the larger one: what shakes the rest after a turn may begin before the table is at rest.
+    `early`: sigma of the time of a sample against that of the gyros, s. By it a mean is off in
+    proportion to the change from its start to its end, of specific force that does not turn with
+    the table: that of a lever arm in a ramp.
     """
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
@@ -147,6 +157,9 @@ def _turning(
     if is_vertical(m.up, m.axis):
         axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes(m.up)]
         level = list(np.stack(axes, axis=1))
+        between = np.concatenate([read[:1], (read[1:] + read[:-1]) / 2, read[-1:]])
+        change = between[[*starts[1:], len(read)]] - between[starts]
+        sigmas = np.hypot(sigmas, early * change / merged.seconds[:, None])
     means = zip(merged.mean(ups), merged.mean(read), sigmas, level, strict=True)
     rests = [
         StaticForce(m.position, up, mean, sigma, turning=True, level=own)

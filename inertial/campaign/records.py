@@ -230,13 +230,19 @@ def known_of(table: pd.DataFrame) -> dict[str, Known]:
     return {row["quantity"]: Known(row["value"], row["sigma"]) for row in rows_of(table)}
 
 
+OWN = "own"  # of a log whose stamps are not GPS time
+MAX_PAUSE = 600.0  # s, between two logs of one run of the instrument
+MIN_ABSOLUTE = 1e8  # s, since any epoch: no logger runs for three years
+
+
 @dataclass(frozen=True)
 class Clock:
     """The clock of a log, s: median interval, and what a sample counts for in a sum over time.
 
     `averaged`: whether a sample is the mean over its interval, an increment, as receivers log it;
-    `begin`, `end`: GPS time of the first and last sample, NaN where it is not known; `sigma`: of
-    the interval by stamps of arrival, relative, 0 where the stamps are those of sampling.
+    `begin`, `end`: of the first and last sample, by the clock that all logs share, NaN where they
+    share none; `sigma`: of the interval by stamps of arrival, relative, 0 where the stamps are
+    those of sampling; `offset`: of time 0 of the log since that of all logs, s.
     """
 
     interval: float | None
@@ -245,6 +251,7 @@ class Clock:
     begin: float = np.nan
     end: float = np.nan
     sigma: float = 0.0
+    offset: float = 0.0
 
     @property
     def step(self) -> float:
@@ -254,26 +261,27 @@ class Clock:
 
 def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
     """The clocks by the name of the log."""
+    shared, rows = share_a_clock(table), rows_of(table)
+    began = [row["began"] for row in rows if row["clock"] == OWN and shared]
     return {
         row["log"]: Clock(
             row["interval"],
             row["integration_step"],
             row["clock"] == "GPS",
-            _gps_time(row, "from_s"),
-            _gps_time(row, "to_s"),
+            *(_span(row) if shared else (np.nan, np.nan)),
             (row.get("interval_sigma") or 0.0) / (row["interval"] or 1.0),
+            (row["began"] or 0.0) - min(began) if began and None not in began else 0.0,
         )
-        for row in rows_of(table)
+        for row in rows
     }
 
 
-MAX_PAUSE = 600.0  # s, between two logs of one run of the instrument
-
-
-def _gps_time(row: Row, key: str) -> float:
-    """s."""
-    epoch, time = row.get("epoch_gps"), row.get(key)
-    return np.nan if epoch is None or time is None else float(epoch + time)
+def _span(row: Row) -> tuple[float, float]:
+    """The stamps of the first and last sample of a log, s; NaN where there are none."""
+    zero = row["began"] if row["clock"] == OWN else row["epoch_gps"]
+    times = [row["from_s"], row["to_s"]]
+    first, last = (np.nan if None in (zero, time) else float(zero + time) for time in times)
+    return first, last
 
 
 def runs_of(logs: Iterable[str], clocks: Mapping[str, Clock], shared: bool) -> dict[str, int]:
@@ -315,6 +323,17 @@ def switch_on_times(
 
 
 def share_a_clock(table: pd.DataFrame) -> bool:
-    """Whether times of all logs count from one start: GPS time, or a single log of its own."""
-    clocks = [row["clock"] for row in rows_of(table)]
-    return set(clocks) == {"GPS"} or clocks == ["own"]
+    """Whether times of all logs count from one start: GPS time, a single log, or logs in a row.
+
+    Stamps of several logs that go on from one to the next, none before the last one ends, are of
+    one clock: absolute time, or that of a logger which runs on. Logs that each begin at zero are
+    not.
+    """
+    clocks = table["clock"].tolist()
+    if set(clocks) == {"GPS"} or clocks == [OWN]:
+        return True
+    if set(clocks) != {OWN}:
+        return False
+    begin, end = np.array(sorted(_span(row) for row in rows_of(table))).T
+    pauses = begin[1:] - end[:-1]
+    return bool((pauses > 0).all() and (begin[0] > MIN_ABSOLUTE or (pauses < MAX_PAUSE).all()))

@@ -69,13 +69,14 @@ ACCOUNTS = Table(
 )
 CLOCKS = Table(
     "clocks",
-    5,
+    6,
     (
         LOG,
         Column(
             "clock", TEXT, "", "GPS: shared by the logs; own: each log from its first sample; none"
         ),
         Column("epoch_gps", DOUBLE, "s", "GPS time at time 0", nullable=True),
+        Column("began", DOUBLE, "s", "stamp of a clock of its own at time 0", nullable=True),
         Column("recorded_on", TEXT, "", "UTC date of the first sample", nullable=True),
         Column("from_s", DOUBLE, "s", "time of the first sample", nullable=True),
         Column("to_s", DOUBLE, "s", "time of the last sample", nullable=True),

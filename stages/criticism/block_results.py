@@ -239,7 +239,8 @@ class BlockResults:
         if cause.effect == per_log_name(sensor):
             difference = self._between_runs(cause)
             sentence = sentences.per_log_sentence(cause, difference, UNITS[sensor])
-            size = (difference, UNITS[sensor]) if self._long_runs() else (cause.snr, "sigma")
+            covered = self.campaign.by_hand is not None and not self._long_runs()
+            size = (cause.snr, "sigma") if covered else (difference, UNITS[sensor])
         else:
             sentence = sentences.cause_sentence(cause, effect, parameters, self._places(effect))
             size = cause.snr, "sigma"
@@ -299,7 +300,7 @@ class BlockResults:
         return max(float(np.ptp(own)) for own in runs)
 
     def _long_runs(self) -> bool:
-        """Whether a run holds so many manoeuvres that a scatter of these does not stand for it."""
+        """Whether a run holds so many manoeuvres that their scatter by hand is none of runs."""
         motion = self.campaign.motion
         return len(np.unique(motion.visit)) > MAX_SCATTERED * len(np.unique(motion.run))
 

@@ -105,6 +105,7 @@ def _pieces_of(
         "log": log.name,
         "clock": log.clock,
         **(log.epoch(origin) if isinstance(log, ReceiverLog) else NO_EPOCH),
+        "began": log.began(origin, absolute=False) if log.clock == "own" else None,
         "from_s": ends[0] if ends else None,
         "to_s": ends[-1] if ends else None,
         "records": records,

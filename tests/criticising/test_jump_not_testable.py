@@ -39,7 +39,7 @@ def test_accelerometers_whose_axes_are_all_up_before_it_hold_on_condition() -> N
     down = [f"{axis}-{what}" for axis in "xyz" for what in ("down", "backward")]
     log_of = dict.fromkeys(up, "up.csv") | dict.fromkeys(down, "down.csv")
     verdicts, causes = judged(log_of, "-")
-    assert causes == ["gyro_bias_per_log", "jump_not_testable"]
+    assert causes == ["gyro_bias_jump", "jump_not_testable"]
     assert verdicts["verdict"]["accel"] == "on_condition"
     assert "did not change" in verdicts["condition"]["accel"]
     assert "Set right" not in verdicts["sentence"]["accel"]

@@ -49,6 +49,7 @@ def test_without_time_there_is_no_clock(tmp_path):
         "log": "log",
         "clock": "none",
         "epoch_gps": None,
+        "began": None,
         "recorded_on": None,
         "from_s": None,
         "to_s": None,

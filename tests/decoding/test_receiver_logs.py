@@ -26,6 +26,7 @@ def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
         "log": ["log"],
         "clock": ["GPS"],
         "epoch_gps": [2283 * 604800 + 42699.879998762],
+        "began": [None],
         "recorded_on": ["2023-10-08"],  # T24
         "from_s": [0.0],
         "to_s": [11.979999994],
