@@ -197,7 +197,7 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Sequence[Exchange]:
         before, after, sigma = _beside(values, k, smallest)
         fitting = [p for p in PERMUTATIONS if _fits(p, before, after, sigma)]
         others += not fitting
-        if not fitting or (sensor == "accel" and _turned(piece, log, places, k, before, after)):
+        if not fitting or (sensor == "accel" and _moved(piece, log, places, k, before, after)):
             continue
         if _struck(piece, log, int(places[k]), "gyro" if sensor == "accel" else "accel"):
             continue
@@ -287,8 +287,11 @@ def _struck(piece: Piece, log: Log, place: int, other: str) -> bool:
     return bool(jumps[at - SIDE_READINGS : at + SIDE_READINGS - 1].any())
 
 
-def _turned(piece: Piece, log: Log, places: Integers, k: int, before: Array, after: Array) -> bool:
-    """Whether a turn of the IMU explains part of the change: df/dt = −ω × f, by the gyros."""
+def _moved(piece: Piece, log: Log, places: Integers, k: int, before: Array, after: Array) -> bool:
+    """Whether a motion of the IMU explains part of the change, by the gyros.
+
+    A turn does, df/dt = −ω × f; or a ramp that begins or ends here, by the lever arm.
+    """
     rates = piece.values[
         places[k - SIDE_READINGS] : places[k + SIDE_READINGS - 1] + 1, COLUMNS["gyro"]
     ]
@@ -296,7 +299,27 @@ def _turned(piece: Piece, log: Log, places: Integers, k: int, before: Array, aft
     if not len(known) or not np.isfinite(log.interval):
         return False
     turned = cross(known.mean(axis=0), before) * log.interval
-    return bool(np.linalg.norm(turned) > MAX_TURNED_SHARE * np.abs(after - before).max())
+    if np.linalg.norm(turned) > MAX_TURNED_SHARE * np.abs(after - before).max():
+        return True
+    return _accelerated(piece, places, k, np.nan_to_num(log.quantum[COLUMNS["gyro"]]))
+
+
+def _accelerated(piece: Piece, places: Integers, k: int, smallest: Array) -> bool:
+    """Whether the slope of any gyro's readings changes between two of them."""
+    slopes, variances = [], []
+    for part in (places[max(k - SCATTER_READINGS, 0) : k], places[k : k + SCATTER_READINGS]):
+        rates = piece.values[part, COLUMNS["gyro"]]
+        rates = rates[np.isfinite(rates).all(axis=1)]
+        if len(rates) < SIDE_READINGS:
+            return False
+        time = np.arange(len(rates)) - (len(rates) - 1) / 2
+        slope = time @ rates / (time @ time)
+        off = rates - rates.mean(axis=0) - np.outer(time, slope)
+        scatter = np.maximum((off**2).sum(axis=0) / (len(rates) - 2), smallest**2 / 12)
+        slopes.append(slope)
+        variances.append(scatter / (time @ time))
+    change = np.abs(slopes[1] - slopes[0])
+    return bool((change > MAX_FIT_SIGMA * np.sqrt(variances[0] + variances[1])).any())
 
 
 # How far an IMU may be mounted from the planned direction

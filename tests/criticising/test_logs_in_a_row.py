@@ -45,7 +45,7 @@ def test_by_absolute_time_a_long_pause_is_another_run():
 
 @pytest.mark.slow
 def test_a_warm_up_over_a_log_for_each_manoeuvre_is_found_with_its_size():
-    """It was a bias that jumps, or is another one after each switch-on, and b was off by 7 sigma."""
+    """It was a jump, or a bias of each switch-on, and the bias was off by 7 sigma."""
     hidden = {"start_deg_h": [40.0, -30.0, 50.0], "time_constant_s": 150.0}
     document = chain.short(effects={"gyro_warm_up": hidden}, seed=4)
     document["handling"] |= {"still_s": 8, "change_s": 6}

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from on_a_table import askew, recorded, rest, tumble, turn
-from recorded_by_hand import NOISE, assert_told
+from on_a_table import BIAS, RAMP, askew, profile, recorded, rest, tumble, turn
+from recorded_by_hand import INTERVAL, NOISE, assert_told
 
 from inertial.detectors.misread_axes_and_signs import (
     AxisSwap,
@@ -90,3 +90,12 @@ def test_clean_readings_are_silent(seed):
     readings = [rest(200_000, seed, up) for up in range(3)]
     readings += [turn(seed), tumble(seed), askew(turn(seed)), askew(tumble(seed))]
     assert [found(values) for values in readings] == [[]] * 7
+
+
+def test_a_lever_arm_that_pulls_as_far_below_zero_as_the_bias_is_above_turns_no_sign():
+    """Two good turns were lost to it: the table begins to turn at that record."""
+    values, speeding = turn(), np.gradient(profile())
+    values[:, 0] -= (
+        2 * BIAS[0] * np.where(np.abs(speeding) > RAMP * INTERVAL / 4, np.sign(speeding), 0)
+    )
+    assert found(values) == []
