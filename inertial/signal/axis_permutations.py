@@ -180,10 +180,11 @@ def exchanges_of(piece: Piece, log: Log, sensor: str) -> list[Exchange]:
 def _exchanges(piece: Piece, log: Log, sensor: str) -> Sequence[Exchange]:
     """The exchanges in a piece of a log, in their order.
 
-    None where readings jump so at other places too, as by hand: one that fits is then by chance.
+    None where readings jump so at other places too, as by hand, or where rests were joined without
+    what lay between them: one that fits is then by chance.
     """
     found: list[Exchange] = []
-    others = 0  # jumps that no exchange explains
+    others = 0  # jumps that no exchange explains, nor its end
     triad = piece.values[:, COLUMNS[sensor]]
     places = np.flatnonzero(np.isfinite(triad).all(axis=1))
     values = triad[places]
@@ -210,6 +211,7 @@ def _exchanges(piece: Piece, log: Log, sensor: str) -> Sequence[Exchange]:
             until = int(places[k])
             found.append(Exchange(int(places[start]), until, back[0], earlier, later, False))
             open_ = None
+        others += not back
     if open_ is not None:
         start, earlier, later, possible = open_
         end = len(piece)

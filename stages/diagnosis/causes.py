@@ -32,6 +32,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
+from stages.diagnosis.decision import UNEXPLAINED
 from stages.diagnosis.sensor_results import SensorResult
 
 REPAIRED, MODELLED, CURVE, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
@@ -350,6 +351,8 @@ class Evidence:
         self, cause: Hypothesis, own: Sequence[SensorResult]
     ) -> tuple[str, float | None, float | None]:
         if cause.id in self.walks:
+            return MODELLED, None, None
+        if cause.cause == UNEXPLAINED and all(result.decision.widened > 1 for result in own):
             return MODELLED, None, None
         modelled = [result for result in own if result.models(cause.causes)]
         others = [result for result in own if result not in modelled]

@@ -22,6 +22,8 @@ UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
 OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
+MAX_WIDENED = 1.5  # times noise: smaller residuals without a name widen the sigmas, no more
+MIN_WIDENED_DROP = 0.5  # of the SNR²: what effects then bring on held-out manoeuvres at least
 
 NO_JOINT = _("There is no joint result of the {sensors}.")
 DOUBTFUL = _(
@@ -48,11 +50,15 @@ ONE_NOT_DETERMINED = _("beside it one parameter would not be determined")
 NOT_DETERMINED = _("beside it {count} parameters would not be determined")
 REPLACED = _(
     "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {drop}, "
-    "where exactly known effects would bring {expected}, and no finding remains unexplained."
+    "where exactly known effects would bring {expected}{left}."
 )
 REPLACED_WALK = _(
     "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {drop} "
-    "against the joint fit and its random walk, and no finding remains unexplained."
+    "against the joint fit and its random walk{left}."
+)
+NOTHING_LEFT = _(", and no finding remains unexplained")
+WIDENED = _(
+    "; the residuals remain {ratio} times as large as noise, and the sigmas are widened by that"
 )
 FREED = _(
     "The result of the {sensors} includes {effects}: that is the own error of "
@@ -70,13 +76,15 @@ class Decision:
 
     `method`: joint, or that of the most probable candidate with effects; `reason`: a sentence;
     `freed`: by finding the manoeuvre whose own error it is in this candidate; `alike`: methods of
-    candidates whose effects the same manoeuvres carry, which for all others say the same.
+    candidates whose effects the same manoeuvres carry, which for all others say the same;
+    `widened`: by how much its sigmas are, for residuals that nothing explains (Birge 1932).
     """
 
     method: str
     reason: str
     freed: Mapping[str, str] = field(default_factory=dict)
     alike: frozenset[str] = frozenset()
+    widened: float = 1.0
 
 
 def alarms_of(findings: Iterable[Row], mount: str, sensor: str) -> list[Row]:
@@ -126,7 +134,8 @@ def decided(
     own = effects_of(best)
     names = _listed([row["effect"] for row in own])
     others = _other_members(own, effects)
-    if against := _against(best, own, causes):
+    widened = _widening(best, alarms)
+    if against := _against(best, own, "" if widened > 1 else causes):
         kept = KEPT.format(sensors=sensors, effects=names, reason=against)
         return Decision(JOINT, kept + others)
     if freed := _freed(own):
@@ -140,14 +149,28 @@ def decided(
         effects=names,
         drop=significant(best["drop"]),
         expected=significant(best["snr_squared"]),
+        left=WIDENED.format(ratio=significant(widened, 2)) if widened > 1 else NOTHING_LEFT,
     )
-    return Decision(best["method"], reason + others)
+    return Decision(best["method"], reason + others, widened=widened)
 
 
 def likeliest(candidates: Iterable[Row]) -> Row | None:
     """The most probable candidate with effects; None where there is none."""
     extended = [row for row in candidates if row["method"] != JOINT]
     return max(extended, key=lambda row: float(row["probability"]), default=None)
+
+
+def _widening(best: Row, alarms: Sequence[Row]) -> float:
+    """By how much the sigmas of a candidate are widened, where that is all its misfit asks for.
+
+    What is left beside effects that predict other manoeuvres as well as they should, and is little
+    more than noise, casts no doubt on them. 1 where nothing is left, or too much.
+    """
+    sizes = [float(row["size"]) for row in alarms if row["cause"] == UNEXPLAINED]
+    few = bool(sizes) and len(sizes) == len(alarms) and max(sizes) <= MAX_WIDENED
+    snr_squared, drop = best["snr_squared"] or 0.0, best["drop"] or 0.0
+    proven = snr_squared >= MIN_SNR_SQUARED and drop >= MIN_WIDENED_DROP * snr_squared
+    return max(sizes) if few and proven else 1.0
 
 
 def _against(best: Row, effects: Sequence[Row], causes: str) -> str:

@@ -1,7 +1,7 @@
 """The parameters that count for one sensor, with covariance: of one candidate, or of a mixture."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -28,6 +28,11 @@ class Result:
     method: str
     rows: Sequence[Row]
     covariance: Array
+
+    def widened(self, by: float) -> "Result":
+        """The same with sigmas so many times as large."""
+        rows = [row | {"sigma": row["sigma"] and row["sigma"] * by} for row in self.rows]
+        return replace(self, rows=rows, covariance=self.covariance * by**2)
 
     def covariance_rows(self) -> pd.DataFrame:
         """The covariance as its table has it, of the parameters that are determined."""

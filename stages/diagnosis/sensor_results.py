@@ -61,7 +61,8 @@ class SensorResult:
     def covers_misfit(self) -> bool:
         """Whether the sigmas of the result include what manoeuvres differ by beyond the noise."""
         fit = self.fits.get(FREE if self.chosen.method == FREE else self.decision.method)
-        return fit is not None and bool(fit["scatter"] or fit["random_walk"])
+        scatters = fit is not None and bool(fit["scatter"] or fit["random_walk"])
+        return scatters or self.decision.widened > 1
 
     @property
     def scale_sigma(self) -> float | None:
@@ -217,7 +218,7 @@ class Estimated:
             decision = decided(candidates, effects, alarms, determined=determined)
             chosen = result_of(
                 decision.method, by_method, self._covariance, _competing(candidates, decision)
-            )
+            ).widened(decision.widened)
             if (mount, sensor) in self.free and decision.method == JOINT:
                 chosen = replace(
                     chosen, method=FREE, rows=[row | {"method": FREE} for row in chosen.rows]

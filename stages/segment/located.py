@@ -138,7 +138,8 @@ def divide(
     above_noise = moving(binned.rates, binned.forces, level, noise)
     for lowest in (threshold, noise):
         # Where gravity is another one after a pause of the recording, the IMU was moved in it.
-        moves = moving(binned.rates, binned.forces, level, lowest) | binned.beside_pauses
+        moves = moving(binned.rates, binned.forces, level, lowest)
+        moves |= binned.beside_pauses | binned.beside_jumps
         divided = stretches(moves, binned.bin_seconds, binned.forces)
         divided = with_slow_ends(divided, above_noise, binned.bin_seconds, swings=swings)
         ways.append((divided, observe(binned, divided, level)))

@@ -9,10 +9,12 @@ from inertial.arrays import Array, Booleans, Integers
 from inertial.campaign.masked_samples import Batch, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.sums import MeansOver
+from inertial.signal.rests_and_motions import MAX_KNOCK_TILT
 
 BIN_S = 0.1  # s, of the short means in which motion is sought
 MIN_PAUSE_S = 1.0  # s without a record, in which an IMU may be set anew
 MAX_BINS = 2_000_000  # of them in a campaign; one of more than two days has longer ones
+MIN_BINS_OF_A_JUMP = 7  # three before it, three after it, and one that may hold readings of both
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,22 @@ class Binned:
             usual = float(np.median(known)) if len(known) else 0.0
             pauses = np.flatnonzero(lasting > MIN_PAUSE_S + 2 * usual)
             beside[pauses] = beside[pauses + shift] = True
+        return beside
+
+    @property
+    def beside_jumps(self) -> Booleans:
+        """The bins across which gravity jumps to another direction, as no rest does, (k,).
+
+        So it does where rests were joined without what lay between them.
+        """
+        beside = np.zeros(self.bins, bool)
+        if self.bins < MIN_BINS_OF_A_JUMP:
+            return beside
+        means = np.stack([self.forces[i : self.bins - 2 + i] for i in range(3)]).mean(axis=0)
+        before, after = means[:-4], means[4:]  # of three bins each, and one between them
+        size = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+        cosine = np.sum(before * after, axis=1) / size
+        beside[3:-3] = cosine < np.cos(MAX_KNOCK_TILT)  # not where they are not recorded
         return beside
 
     def bins_in(self, seconds: float) -> int:

@@ -81,6 +81,27 @@ def test_what_one_manoeuvre_alone_shows_may_be_its_own_error_whatever_else_it_ma
     assert decided(rows, [effect("mounting_shift"), off, another]).method == "extended"
 
 
+def unexplained(size: float) -> Row:
+    return {"cause": "unexplained", "size": size}
+
+
+def test_a_little_more_than_noise_widens_the_sigmas_of_effects_that_predict_as_they_should():
+    """A lever arm known to 0.01 mm was refused for residuals of 1.2 times noise, and all was red."""
+    decision = decided([JOINT, candidate()], [effect()], [unexplained(1.2)])
+    assert (decision.method, decision.widened) == ("extended", 1.2)
+    assert "1.2 times as large as noise" in decision.reason
+    assert "no finding remains unexplained" not in decision.reason
+    for changes, alarms in (
+        ({}, [unexplained(2.0)]),
+        ({"drop": 15.0}, [unexplained(1.2)]),
+        ({"drop": 4.0, "snr_squared": 4.0}, [unexplained(1.2)]),
+        ({}, [unexplained(1.2), {"cause": "gyro_drift", "size": 5.0}]),
+    ):
+        decision = decided([JOINT, candidate(**changes)], [effect()], alarms)
+        assert (decision.method, decision.widened) == ("joint", 1.0)
+        assert "some findings are not explained" in decision.reason
+
+
 def test_a_sensor_that_shows_no_effect_keeps_its_result():
     alone = candidate("joint", sensor="accel", drop=None)
     decision = decided([alone], [])

@@ -90,3 +90,11 @@ def test_a_constant_of_an_effect_has_no_covariance():
 def test_a_sensor_without_a_result_has_no_rows():
     result = result_of("joint", {"joint": []}, {}, {})
     assert (list(result.rows), len(result.covariance_rows())) == ([], 0)
+
+
+def test_widened_its_sigmas_and_covariances_agree():
+    result = made((3.0, 99.0), extended=1.0).widened(1.5)
+    assert {row["sigma"] for row in result.rows} == {1.5 * SIGMA}
+    assert [row["value"] for row in result.rows] == [3.0] * 12 + [7.0]
+    assert np.diag(result.covariance) == pytest.approx((1.5 * SIGMA) ** 2)
+    assert made((None, None), extended=1.0).widened(1.5).rows[0]["sigma"] is None
