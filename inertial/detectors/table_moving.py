@@ -19,6 +19,7 @@ from inertial.signal.static_tilt import (
     Jump,
     Resting,
     jumps,
+    quiet_force,
     shaken,
 )
 from inertial.signal.steps import MAX_SIDE_S
@@ -249,11 +250,14 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
     k = len(resting) // max(length, 1)
     if length < 1 or k < MIN_BLOCKS:
         return
-    force = resting.force.copy()
+    force = quiet_force(resting)
     for jump in own:
         if jump.channel < 3:
             force[jump.step.place :, jump.channel] -= jump.step.size
-    blocks = force[: k * length].reshape(k, length, 3).mean(axis=1)
+    in_blocks = force[: k * length].reshape(k, length, 3)
+    if np.isnan(in_blocks).all(axis=1).any():  # nothing is left where the case is shaken for long
+        in_blocks = resting.force[: k * length].reshape(k, length, 3)
+    blocks = np.nanmean(in_blocks, axis=1)
     blocks = blocks - blocks.mean(axis=0)
     tilt = resting.tilt(blocks)
     upright = blocks @ resting.up / np.linalg.norm(resting.force.mean(axis=0))

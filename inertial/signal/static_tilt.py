@@ -1,5 +1,6 @@
 """What a rest shows of an IMU that does not quite stand still: tilts and jumps, by both sensors."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -149,14 +150,14 @@ class Resting:
         sigma = self.tilt_noise(1) * float(np.linalg.norm(inverse[2]))
         return Agreement(float(kink @ level) / size**2, sigma / size)
 
-    def shaken(self, length: int) -> Booleans:
-        """Which blocks of so many records jerk in both sensors: k = n // length, (k,).
+    def shaken(self, length: int, sensors: Sequence[str] = ("accel", "gyro")) -> Booleans:
+        """Which blocks of so many records jerk in all these sensors: k = n // length, (k,).
 
         By the median of the changes from reading to reading, which no spike moves.
         """
         k = len(self) // length
         both = np.ones(k, bool)
-        for sensor in ("accel", "gyro"):
+        for sensor in sensors:
             own = np.flatnonzero(np.isfinite(self.noise[COLUMNS[sensor]])) + COLUMNS[sensor].start
             # Between two readings a part of their change is in each record.
             change = np.abs(np.diff(self.values[: k * length, own], axis=0)) * self.records[own]
@@ -211,6 +212,15 @@ def jumps(piece: Piece, log: Log) -> tuple[Resting, list[Jump]]:
 def shaken(resting: Resting) -> Booleans:
     """Which blocks of 0.1 s, or longer ones of five readings, jerk in both sensors, (k,)."""
     return resting.shaken(_length(resting))
+
+
+def quiet_force(resting: Resting) -> Array:
+    """The specific force, (n, 3), NaN in the blocks in which it jerks, and in those beside them."""
+    length, force = _length(resting), resting.force.copy()
+    jerks = resting.shaken(length, ("accel",))
+    jerks = jerks | np.append(jerks[1:], False) | np.append(False, jerks[:-1])
+    force[: len(jerks) * length][np.repeat(jerks, length)] = np.nan
+    return force
 
 
 def _length(resting: Resting) -> int:

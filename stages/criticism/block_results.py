@@ -22,6 +22,7 @@ from inertial.model_selection.cause import (
 )
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
+from inertial.physics.drift import without_clock
 from inertial.physics.effect import Effect
 from inertial.physics.setting_in import SettingIn
 from inertial.physics.site import EARTH_RATE
@@ -225,7 +226,8 @@ class BlockResults:
         if cause.effect == "latitude_error":
             known = np.arcsin(self.campaign.solution.site.earth_up / EARTH_RATE)
             return sentences.action_against_latitude(known + (parameters[0].value or 0.0))
-        return sentences.action_against(KNOWN.get(cause.effect))
+        timed = not without_clock(self.campaign.motion)
+        return sentences.action_against(KNOWN.get(cause.effect), timed=timed)
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
         split = None if cause.effect in LAWS else self.extended.splitting(number)

@@ -41,6 +41,10 @@ ACTION_PER_RUN = _(
     "If the IMU was switched off in between, state power_cycle: true in the first manoeuvre after "
     "it: then each run has biases of its own, and the report says how well they repeat."
 )
+NO_COMMON_TIME = _(
+    " If it stayed on, a warm-up or a drift does the same, and without a time that the logs share "
+    "nothing tells them apart: record all in one log, or with stamps that go on from log to log."
+)
 ACTION_OF_JUMP = _(
     "If the IMU was switched off and on at that time, state power_cycle: true in the first "
     "manoeuvre after it; else remove it at its origin, or compensate readings with its terms too, "
@@ -161,10 +165,10 @@ def limit_sentence(effect: Effect, limit: Visible, why: str | None) -> str:
     return LIMIT_SCANNED.format_map(values)
 
 
-def action_against(effect: Effect | None) -> str:
-    """What to do against an effect; None: biases of each run."""
+def action_against(effect: Effect | None, *, timed: bool = True) -> str:
+    """What to do against an effect; None: biases of each run, of logs that are `timed` alike."""
     if effect is None:
-        return ACTION_PER_RUN
+        return ACTION_PER_RUN if timed else ACTION_PER_RUN + NO_COMMON_TIME
     if isinstance(effect, Jump):
         return ACTION_OF_JUMP
     if effect.terms:

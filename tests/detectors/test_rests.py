@@ -238,6 +238,20 @@ def test_a_knock_is_told_and_is_no_jump():
     assert event.from_s == pytest.approx(K * INTERVAL, abs=0.2)
 
 
+@pytest.mark.parametrize("swings", [0.0, 0.02])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_knock_after_which_the_case_stands_otherwise_is_a_tilt(axis, swings):
+    """600 µg of it were "no fault" of the accelerometers: the knock hid the step that it left."""
+    values = tilting(144.4, K, K + 10, axis)
+    knock = np.random.default_rng(3).normal(size=(40, 3))
+    values[K : K + 40, :3] += 0.3 * knock
+    values[K : K + 40, 3 + axis] += swings * np.diff(knock[:, 0], prepend=0)
+    ((name, event),) = seen(values)
+    assert name == "table_moving" and event.severity is None
+    assert event.size == pytest.approx(144.4, rel=0.05)
+    assert "the gyros turn along" in TableMoving().describe(event, "z-up").sentence
+
+
 def test_a_jump_of_a_level_gyro_is_told_from_a_turn():
     values = rest(N)
     values[K:, 3] += 10 * NOISE[3]  # turning so for 18 s, the case would tilt by 0.4°

@@ -13,8 +13,8 @@ def turned(rates: list[float], effects: dict[str, object]) -> chain.Tables:
         one
         | {"id": f"{one['id']}-{rate}", "log": f"{one['id']}-{rate}.asc"}
         | {"rate_deg_s": rate, "accel_deg_s2": 60}
-        for rate in rates
         for one in turns
+        for rate in rates  # so that no jump of the scale factor does what they do
     ]
     return chain.in_memory_of(document, "extension")
 
