@@ -514,6 +514,38 @@ def test_what_is_set_anew_in_a_pause_of_the_recording_is_another_rest(behind, re
     assert rests == 1 or (still[0].after == 299 and still[1].first in (300, 301))
 
 
+def in_bins(forces: np.ndarray, seed: int) -> windows.Binned:
+    """Rests in bins of 0.1 s without a pause, the gyros still in all of them."""
+    k, noise = len(forces), np.random.default_rng(seed)
+    time, rates = 0.1 * np.arange(k), 1e-4 * noise.standard_normal((k, 3))
+    forces = forces + 1e-3 * noise.standard_normal((k, 3))
+    window, edges = windows.Window("log", 0, k, []), np.arange(k + 1)
+    return windows.Binned(window, edges, rates, forces, np.full(k, 0.1), time, time + 0.08)
+
+
+def rests_of(binned: windows.Binned) -> list[BinStretch]:
+    divided = divide(binned, np.zeros(3), 0.01, 0.001, swings=False)
+    found = locate(divided, manoeuvres=[]).stretches
+    return [stretch for stretch in found if not stretch.moves]
+
+
+def test_rests_joined_without_what_lay_between_are_several():
+    """They were one, in which biases jump by −19.6 m/s²; a tilt of 2° is none of these."""
+    ups = [(9.8, 0, 0), (-9.8, 0, 0), (0, 9.8, 0), (0.34, 9.79, 0)]
+    still = rests_of(in_bins(np.repeat(ups, 200, axis=0), 9))
+    assert [(s.first, s.after) for s in still] == [(0, 199), (201, 399), (401, 800)]
+
+
+def test_a_hand_that_shakes_the_accelerometers_alone_is_no_part_of_a_rest():
+    forces = np.tile([0, 0, 9.8], (300, 1)).astype(float)
+    forces[:8] += 0.05 * np.random.default_rng(2).choice([-1, 1], (8, 3))
+    forces[293:] += 0.05 * np.random.default_rng(3).choice([-1, 1], (7, 3))
+    forces[150] += 0.05  # a knock within it is no end
+    around = np.array([(9.8, 0, 0)] * 20)
+    (_, middle, _) = rests_of(in_bins(np.vstack([around, forces, around]), 10))
+    assert (middle.first, middle.after) == (29, 312)  # one more on each side
+
+
 @pytest.mark.parametrize("step", [0.02, 2.0])
 def test_a_log_without_a_pause_has_none_however_slow_it_is(step):
     time = step * np.arange(100)

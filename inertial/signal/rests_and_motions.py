@@ -15,6 +15,7 @@ MAX_KNOCK_TILT = np.radians(5.0)  # rad: an IMU that is knocked stands again as 
 BINS_BESIDE = 3  # whose mean is the direction of gravity before and after
 MAX_SLOW_END_S = 3.0  # s, at most, in which a motion begins or ends below what counts as motion
 MAX_SWING_S = 10.0  # s, the same of a table that swings on
+MIN_BINS_OF_A_REST = 20  # whose own scatter tells what is off
 MIN_TURN_SHARE = 0.05  # of the rate of a turn: what is less is no part of it
 MAX_PAUSE_S = 0.3  # s, in which a table that swings on turns back
 MAX_SETTLED = 5.0  # scatters of bins from the plateau of a turn, within which a rate has settled
@@ -106,6 +107,23 @@ def _fell(stretch: BinStretch, forces: Array | None) -> bool:
     after = forces[stretch.after : stretch.after + BINS_BESIDE].mean(axis=0)
     cosine = before @ after / (np.linalg.norm(before) * np.linalg.norm(after))
     return bool(cosine < np.cos(MAX_KNOCK_TILT))  # not where they are not recorded
+
+
+def shaken(found: list[BinStretch], forces: Array) -> Booleans:
+    """Which bins of still stretches differ from one beside them by more than others do, (k,).
+
+    A hand that takes the IMU shakes the accelerometers before the gyros show that it turns.
+    """
+    shakes = np.zeros(len(forces), bool)
+    for stretch in found:
+        own = forces[stretch.first : stretch.after]
+        if stretch.moves or len(own) < MIN_BINS_OF_A_REST or not np.isfinite(own).all():
+            continue
+        change = np.abs(np.diff(own, axis=0))
+        scatter = MAD_TO_SIGMA * np.median(change, axis=0)
+        far = (change > MIN_MOTION_SIGMA * scatter).any(axis=1) & (scatter > 0).all()
+        shakes[stretch.first : stretch.after] = np.append(far, False) | np.append(False, far)
+    return shakes
 
 
 def with_slow_ends(

@@ -71,6 +71,10 @@ OWN_ERROR = _(
 ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
 IN_COVARIANCE = _("The covariance of the result includes it.")
 NO_JUMP = _("The biases of the {sensors} did not change when those of the others did.")
+ONE_CHANGE = _(
+    "The biases of the {sensors} changed at that place alone, and not from log to log: of logs that "
+    "share no time nothing else could be told."
+)
 OF_GYROS = _("The asymmetry is that of the gyros, and not of the table.")
 STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
 HARMLESS = _("Nothing need be done about it for this result.")
@@ -155,10 +159,18 @@ class Cause:
             return OF_GYROS
         if self.main.cause == JUMP_NOT_TESTABLE:
             return NO_JUMP.format(sensors=PLURAL[self.sensors[0]])
+        if self._once_or_in_each_run:
+            return ONE_CHANGE.format(sensors=PLURAL[self.sensors[0]])
         if self.main.cause == CLOCK and self.main.sensor == "gyro" and (self.moves or 0) > MAX_MOVE:
             return STAMPS_RIGHT
         repair = self.main.repair
         return repair["condition"] if repair is not None and repair["state"] == "applied" else None
+
+    @property
+    def _once_or_in_each_run(self) -> bool:
+        """Whether the model has a bias that changes once, which may as well do so in each run."""
+        each = any(name in self.main.causes for name in PER_RUN)
+        return self.cure == MODELLED and each and self.main.cause not in PER_RUN
 
     @property
     def spoils(self) -> bool:

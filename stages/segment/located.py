@@ -14,6 +14,7 @@ from inertial.signal.axis_permutations import Permutation
 from inertial.signal.rests_and_motions import (
     BinStretch,
     moving,
+    shaken,
     stretches,
     with_slow_ends,
 )
@@ -141,7 +142,8 @@ def divide(
         moves = moving(binned.rates, binned.forces, level, lowest)
         moves |= binned.beside_pauses | binned.beside_jumps
         divided = stretches(moves, binned.bin_seconds, binned.forces)
-        divided = with_slow_ends(divided, above_noise, binned.bin_seconds, swings=swings)
+        above = above_noise | shaken(divided, binned.forces)
+        divided = with_slow_ends(divided, above, binned.bin_seconds, swings=swings)
         ways.append((divided, observe(binned, divided, level)))
     return Division(binned, ways)
 

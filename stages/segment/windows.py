@@ -90,10 +90,9 @@ class Binned:
         if self.bins < MIN_BINS_OF_A_JUMP:
             return beside
         means = np.stack([self.forces[i : self.bins - 2 + i] for i in range(3)]).mean(axis=0)
-        before, after = means[:-4], means[4:]  # of three bins each, and one between them
-        size = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
-        cosine = np.sum(before * after, axis=1) / size
-        beside[3:-3] = cosine < np.cos(MAX_KNOCK_TILT)  # not where they are not recorded
+        # Of three bins each and of one, with one between them; not where they are not recorded.
+        lasting = _has_turned(means[:-4], means[4:])
+        beside[3:-3] = lasting & _has_turned(self.forces[2:-4], self.forces[4:-2])
         return beside
 
     def bins_in(self, seconds: float) -> int:
@@ -113,6 +112,12 @@ class Binned:
     def duration(self, first: int, after: int) -> float:
         """From the first record of the bins [first, after) to the last, s; 0 without time."""
         return float(np.nan_to_num(self.last_s[after - 1] - self.first_s[first]))
+
+
+def _has_turned(before: Array, after: Array) -> Booleans:
+    """Whether directions (k, 3) differ by more than a knock leaves, (k,)."""
+    size = np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
+    return np.asarray(np.sum(before * after, axis=1) < np.cos(MAX_KNOCK_TILT) * size)
 
 
 class Selection:
