@@ -86,7 +86,7 @@ def unexplained(size: float) -> Row:
 
 
 def test_a_little_more_than_noise_widens_the_sigmas_of_effects_that_predict_as_they_should():
-    """A lever arm known to 0.01 mm was refused for residuals of 1.2 times noise, and all was red."""
+    """A lever arm known to 0.01 mm was refused for residuals of 1.2 times noise."""
     decision = decided([JOINT, candidate()], [effect()], [unexplained(1.2)])
     assert (decision.method, decision.widened) == ("extended", 1.2)
     assert "1.2 times as large as noise" in decision.reason
