@@ -14,6 +14,7 @@ from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.signal.static_tilt import (
     CAMPAIGN_RESTS,
     FALSE_ALARM_LEVEL,
+    KNOCKED,
     UNCONFIRMED,
     Agreement,
     Jump,
@@ -143,14 +144,16 @@ class TableMoving(Detector):
                     "records."
                 ),
             )
-        confirmation = (
-            _("the gyros turn along ({share:.0%} of it)", share=motion.agreement.share)
-            if motion.agreement.conclusive
-            else _(
+        if motion.agreement.knocked:
+            confirmation = _("and the gyros read a spike at that place, which is masked: a knock")
+        elif motion.agreement.conclusive:
+            share = motion.agreement.share
+            confirmation = _("the gyros turn along ({share:.0%} of it)", share=share)
+        else:
+            confirmation = _(
                 "too slowly for the gyros to confirm, and by more than the biases of the "
                 "accelerometers do by themselves"
             )
-        )
         kind = _("tilts") if motion.kind == "tilt" else _("creeps")
         return Description(
             _(
@@ -275,6 +278,9 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
     _, _, drift = _farthest(upright[:, None])
     least = max(position, MIN_DRIFT_RATIO * (drift - 5 * float(scatter[3])))
     agreement = _turned(resting, own, tilt, length)
+    way = _moving(tilt, i, j, max(MAX_STILL_SIGMA * sigma, MAX_STILL_SHARE * size))
+    if resting.masked[way[0] * length : (way[1] + 1) * length].any():
+        agreement = KNOCKED
     if not agreement.conclusive:
         second = sigma * np.sqrt(length * resting.interval)
         least = max(least, MIN_TILT, MIN_TILT_SIGMA * second)
@@ -287,7 +293,7 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
             size = float(np.linalg.norm(slope))
             off = size / 2
         else:
-            i, j = _moving(tilt, i, j, max(MAX_STILL_SIGMA * sigma, MAX_STILL_SHARE * size))
+            i, j = way
             first, after = i * length, min((j + 1) * length, len(resting))
             stood = tilt[: i + 1].mean(axis=0)
             size = float(np.linalg.norm(tilt[j:].mean(axis=0) - stood))

@@ -15,6 +15,7 @@ from inertial.signal.scatter import MAD_TO_SIGMA, median
 from inertial.signal.steps import MAX_SIDE_S, Step, steps
 
 MIN_RECORDED_SHARE = 0.2  # of the records of a rest that a channel must be in
+MAX_MASKED_SHARE = 0.01  # of the records of a rest: single readings that were left out
 SIDE_S = 2.0  # s on each side of a place whose means are compared
 MOTION_S = 0.15  # s on each side of a place that a sudden motion may take
 # Times the usual change of readings: 10⁻¹⁶ a block of 10 in both sensors by chance
@@ -24,10 +25,14 @@ MAX_SHARE_SIGMA = 0.25  # largest sigma of the share of a motion that the other 
 
 @dataclass(frozen=True)
 class Agreement:
-    """How much of a motion that one sensor shows the other one shows too: share and its sigma."""
+    """How much of a motion that one sensor shows the other one shows too: share and its sigma.
+
+    `knocked`: that cannot be said, for a gyro's readings were masked as a spike at the very place.
+    """
 
     share: float
     sigma: float
+    knocked: bool = False
 
     @property
     def conclusive(self) -> bool:
@@ -36,18 +41,19 @@ class Agreement:
 
     @property
     def moved(self) -> bool:
-        """Whether both sensors agree that the IMU moved."""
-        return self.conclusive and 0.5 < self.share < 1.5
+        """Whether both sensors agree that the IMU moved, or one was knocked when it did."""
+        return self.knocked or (self.conclusive and 0.5 < self.share < 1.5)
 
 
 UNCONFIRMED = Agreement(0.0, np.inf)
+KNOCKED = Agreement(0.0, np.inf, knocked=True)
 
 
 class Resting:
     """The n records of a rest; where a channel has no reading of its own, it is interpolated.
 
     noise: (6,), of a reading; mean_noise: (6,), √n times that of the mean over n records, which
-    is more where a reading is held over several.
+    is more where a reading is held over several; masked: (n,), where a gyro's reading is left out.
 
     When the case turns by a small angle φ, the force in its axes changes by f × φ. So the
     accelerometers show the two level components: φ = δf × u / g with u = f / g. About the
@@ -67,6 +73,10 @@ class Resting:
                 scatter = MAD_TO_SIGMA / np.sqrt(2) * float(np.median(np.abs(np.diff(read))))
                 self.noise[i] = max(scatter, float(np.nan_to_num(log.quantum[i])) / np.sqrt(12))
         self.mean_noise = self.noise * np.sqrt(self.records)
+        gaps = np.isnan(piece.values[:, COLUMNS["gyro"]])
+        self.masked: Booleans = np.asarray(
+            gaps[:, gaps.mean(axis=0) < MAX_MASKED_SHARE].any(axis=1)
+        )
 
     def __len__(self) -> int:
         return len(self.values)
@@ -123,6 +133,8 @@ class Resting:
         size = float(np.linalg.norm(tilt))
         if not (self.recorded("gyro") and size > 0):
             return tilt, UNCONFIRMED
+        if self.masked[first:after].any():
+            return tilt, KNOCKED
         usual = (self.rate[earlier].mean(axis=0) + self.rate[later].mean(axis=0)) / 2
         turned = (self.rate[first:after] - usual).sum(axis=0) * self.interval
         by_rate = float(np.max(self.mean_noise[3:])) * self.interval * np.sqrt(after - first)
@@ -248,7 +260,7 @@ def _judged(i: int, step: Step, all_steps: list[tuple[int, Step]], resting: Rest
         agreement = resting.speeded(start, step.place, stop)
         return Jump(i, step, agreement, agreement.moved)
     _, agreement = resting.shifted(start, step.earliest, step.latest, stop)
-    if agreement.conclusive:
+    if agreement.conclusive or agreement.knocked:
         return Jump(i, step, agreement, agreement.moved)
     # Without a gyro that confirms it: a jump of one axis is a bias, of both level axes a tilt.
     others = [

@@ -252,6 +252,22 @@ def test_a_knock_after_which_the_case_stands_otherwise_is_a_tilt(axis, swings):
     assert "the gyros turn along" in TableMoving().describe(event, "z-up").sentence
 
 
+@pytest.mark.parametrize(
+    ("lasts", "place", "told"),
+    [(2, K + 1, "table_moving"), (10, K + 5, "table_moving"), (2, K + 300, "bias_jump")],
+)
+def test_a_step_of_an_accelerometer_at_a_spike_of_a_gyro_is_a_knock(lasts, place, told):
+    """Three readings of a gyro were masked, and so was the turn that they measured."""
+    values = tilting(144.4, K, K + lasts, 1)
+    values[:, 3:] = rest(N)[:, 3:]
+    values[place - 1 : place + 2, 4] = np.nan
+    ((name, event),) = seen(values)
+    assert name == told
+    if told == "table_moving":
+        assert event.size == pytest.approx(144.4, rel=0.05)
+        assert "a knock" in TableMoving().describe(event, "z-up").sentence
+
+
 def test_a_jump_of_a_level_gyro_is_told_from_a_turn():
     values = rest(N)
     values[K:, 3] += 10 * NOISE[3]  # turning so for 18 s, the case would tilt by 0.4°
