@@ -253,14 +253,7 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
     k = len(resting) // max(length, 1)
     if length < 1 or k < MIN_BLOCKS:
         return
-    force = quiet_force(resting)
-    for jump in own:
-        if jump.channel < 3:
-            force[jump.step.place :, jump.channel] -= jump.step.size
-    in_blocks = force[: k * length].reshape(k, length, 3)
-    if np.isnan(in_blocks).all(axis=1).any():  # nothing is left where the case is shaken for long
-        in_blocks = resting.force[: k * length].reshape(k, length, 3)
-    blocks = np.nanmean(in_blocks, axis=1)
+    blocks = _quiet_means(resting, own, k, length)
     blocks = blocks - blocks.mean(axis=0)
     tilt = resting.tilt(blocks)
     upright = blocks @ resting.up / np.linalg.norm(resting.force.mean(axis=0))
@@ -300,6 +293,17 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
             off = float(np.linalg.norm(tilt.mean(axis=0) - stood))
         kind = "tilt" if (after - first) * resting.interval <= MAX_SUDDEN_S else "creep"
         yield Motion(first, after, kind, size, off, agreement, chance)
+
+
+def _quiet_means(resting: Resting, own: list[Jump], k: int, length: int) -> Array:
+    """The force in k blocks, (k, 3), without jumps, and what jerks where something else is left."""
+    force = quiet_force(resting)
+    if np.isnan(force[: k * length]).reshape(k, length, 3).all(axis=1).any():
+        force = resting.force.copy()
+    for jump in own:
+        if jump.channel < 3:
+            force[jump.step.place :, jump.channel] -= jump.step.size
+    return np.asarray(np.nanmean(force[: k * length].reshape(k, length, 3), axis=1))
 
 
 def _scatter(series: Array) -> float:
