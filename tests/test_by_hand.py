@@ -133,6 +133,7 @@ def test_degrees_that_are_stated_as_radians_are_told_by_what_no_hand_turns(tmp_p
     assert verdicts["gyro"] == "not_usable" and verdicts["accel"] == "usable"
 
 
+@pytest.mark.slow
 def test_what_no_session_by_hand_can_show_has_one_reason(hiding):
     limits = hiding("gyro_g_sensitivity")[1]["criticism/detection_limits"]
     of_tables = limits[limits["effect"].str.startswith(("table_tilt", "table_wobble"))]

@@ -484,6 +484,7 @@ def add_together(
         Archive(root, simulated=False).add(calibration(bias, campaign=campaign))
 
 
+@pytest.mark.slow
 def test_two_at_once_do_no_harm(tmp_path: Path) -> None:
     alike = [f"alike-{i}" for i in range(ROUNDS)]
     apart = [f"apart-{i}" for i in range(ROUNDS)]

@@ -201,6 +201,7 @@ def test_before_calibration_the_errors_are_those_that_were_hidden(navigated_clea
         assert row["nominal"] == pytest.approx(expected, rel=0.04)
 
 
+@pytest.mark.slow
 def test_calibration_is_worth_it_and_the_error_stays_in_its_corridor(clean, navigated_clean):
     """The result of one recording corrects another one of the same IMU: noise of its own."""
     made = [navigated_clean]

@@ -19,6 +19,7 @@ def rms(sigma: np.ndarray) -> float:
     return float(np.sqrt(np.mean(sigma**2)))
 
 
+@pytest.mark.slow
 def test_the_bound_is_that_of_the_design_study():
     """Design study 6: plans a and b, FSAS and STIM300; where its plan is told well enough."""
     a, b = least("a", "FSAS"), least("b", "FSAS")

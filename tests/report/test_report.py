@@ -355,6 +355,7 @@ def test_no_effect_is_detected() -> None:
     assert "Detected" not in documents["txt"]
 
 
+@pytest.mark.slow
 def test_an_effect_of_two_mounts_stands_twice() -> None:
     tables = synthetic.brief()
     for name in ("scores", "effects", "criticism_findings", "members", "detection_limits"):
@@ -420,6 +421,7 @@ def test_the_gain_by_rotation_stands_with_its_sigma() -> None:
     assert "A turn does: the bias turns with the case" in text
 
 
+@pytest.mark.slow
 def test_texts_from_outside_are_harmless() -> None:
     tables = synthetic.brief("x-up.asc")
     for table in ("campaign", "known", "inputs", "manoeuvres", "accounts", "refused", "performed"):
@@ -515,6 +517,7 @@ def test_a_campaign_that_gave_nothing_says_so_in_words() -> None:
     assert "None: there are no static positions that could be studied." in page.text
 
 
+@pytest.mark.slow
 def test_one_sensor_without_time_stamps_or_turns() -> None:
     tables = synthetic.brief("x-up.asc", "y-up.asc")
     for axis in "xyz":
