@@ -270,10 +270,8 @@ def _creep(resting: Resting, own: list[Jump], position: float) -> Iterator[Motio
         return
     _, _, drift = _farthest(upright[:, None])
     least = max(position, MIN_DRIFT_RATIO * (drift - 5 * float(scatter[3])))
-    agreement = _turned(resting, own, tilt, length)
     way = _moving(tilt, i, j, max(MAX_STILL_SIGMA * sigma, MAX_STILL_SHARE * size))
-    if resting.masked[way[0] * length : (way[1] + 1) * length].any():
-        agreement = KNOCKED
+    agreement = _agreement(resting, own, tilt, length, way)
     if not agreement.conclusive:
         second = sigma * np.sqrt(length * resting.interval)
         least = max(least, MIN_TILT, MIN_TILT_SIGMA * second)
@@ -339,6 +337,19 @@ def _moving(tilt: Array, i: int, j: int, still: float) -> tuple[int, int]:
     first = int(np.flatnonzero(along[i:j] < along[i] + still)[-1]) + i
     last = int(np.flatnonzero(along[first:] > along[j] - still)[0]) + first
     return first, last
+
+
+def _agreement(
+    resting: Resting, own: list[Jump], tilt: Array, length: int, way: tuple[int, int]
+) -> Agreement:
+    """How much of a tilt the gyros confirm: over the rest, or of a short motion from its blocks."""
+    first, after = way[0] * length, (way[1] + 1) * length
+    if resting.masked[first:after].any():
+        return KNOCKED
+    whole = _turned(resting, own, tilt, length)
+    if whole.conclusive or (after - first) * resting.interval > MAX_SUDDEN_S:
+        return whole
+    return resting.shifted(0, first, after, len(resting))[1]
 
 
 def _turned(resting: Resting, own: list[Jump], tilt: Array, length: int) -> Agreement:

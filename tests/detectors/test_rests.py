@@ -252,6 +252,18 @@ def test_a_knock_after_which_the_case_stands_otherwise_is_a_tilt(axis, swings):
     assert "the gyros turn along" in TableMoving().describe(event, "z-up").sentence
 
 
+@pytest.mark.parametrize("gyros", [True, False])
+def test_a_tilt_of_two_seconds_is_confirmed_in_these_seconds(gyros):
+    """Over the whole rest the noise of such gyros wanders by as much as they turn."""
+    still, moved = rest(N), tilting(150, K, K + 150, 0)
+    rng = np.random.default_rng(8)
+    noise = np.hstack([9e-3 * rng.normal(size=(N, 3)), 4e-4 * rng.normal(size=(N, 3))])
+    values = np.hstack([moved[:, :3], (moved if gyros else still)[:, 3:]]) + noise
+    found = seen(values)
+    assert [name for name, _ in found] == ["table_moving"] * gyros
+    assert all(event.size == pytest.approx(150, rel=0.15) for _, event in found)
+
+
 @pytest.mark.parametrize(
     ("lasts", "place", "told"),
     [(2, K + 1, "table_moving"), (10, K + 5, "table_moving"), (2, K + 300, "bias_jump")],
