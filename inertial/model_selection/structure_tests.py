@@ -10,6 +10,7 @@ from inertial.estimation.probability import chi2_isf, chi2_sf, f_sf
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.null_simulation import chance
 from inertial.model_selection.scan import MIN_EIGENVALUE, Candidates
+from inertial.physics.motion import without_leans
 
 # ---- The functions of the tests.
 
@@ -126,7 +127,7 @@ def of_attitude(readings: Conditions) -> Iterator[FunctionGroups]:
     known = np.isfinite(readings.up.sum(axis=1))
     if known.sum() < MIN_DISTINCT:
         return
-    x, y, z = np.where(known[:, None], readings.up, 0.0).T
+    x, y, z = np.where(known[:, None], without_leans(readings.up), 0.0).T
     constant = known.astype(np.float64)
     yield _single_group(np.column_stack([x, y, z, constant, x * x, y * y, x * y, x * z, y * z]))
 

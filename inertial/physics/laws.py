@@ -8,7 +8,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.physics.drift import without_clock, without_temperature
-from inertial.physics.motion import Motion
+from inertial.physics.motion import Motion, without_leans
 from inertial.text.parameters import AXES
 from inertial.text.units import DEGREE, HOUR
 
@@ -58,12 +58,13 @@ def state(name: str, motion: Motion, axis: int) -> Array:
         about = np.broadcast_to(motion.about, motion.up.shape)[:, axis]
         rate = motion.rate[:, None] + motion.acceleration[:, None] * later
         return np.asarray(about[:, None] * rate) / RATE
+    up = without_leans(motion.up)
     if name.startswith("force"):
-        values = motion.up[:, AXES.index(name[-1])]
+        values = up[:, AXES.index(name[-1])]
     elif name == "own_force":
-        values = motion.up[:, axis]
+        values = up[:, axis]
     elif name == "other_forces":
-        values = np.prod(np.delete(motion.up, axis, axis=1), axis=1)
+        values = np.prod(np.delete(up, axis, axis=1), axis=1)
     elif name == "temperature":
         values = motion.temperature - np.average(motion.temperature, weights=motion.seconds)
     else:

@@ -15,6 +15,7 @@ from inertial.text.messages import _
 
 MIN_VERTICAL_COSINE = 1 - 1e-6  # of the angle from an axis to the vertical: 0.1 degrees
 MIN_PART_OF_TURN = 1e-3  # sine of half the angle: less is whole turns
+MAX_LEAN = 0.01  # of a direction cosine: 34', what a set position leans and nobody meant
 NEARLY = 0.1  # of a direction cosine: differences that do not count
 _NEXT, _LAST = np.array([1, 2, 0]), np.array([2, 0, 1])
 
@@ -40,6 +41,15 @@ def level_axes(up: Array) -> tuple[Array, Array]:
     """Two horizontal directions in body axes that form, with `up`, a right-handed triad."""
     first, second = all_level_axes(up[None])[0]
     return first, second
+
+
+def without_leans(up: Array) -> Array:
+    """Upward directions (n, 3) with 0 for components that are but the lean of a set position.
+
+    How far it leans is known by its own readings. A function of these that is steep there, or that
+    nothing else determines, would explain the readings by themselves.
+    """
+    return np.where(np.abs(up) < MAX_LEAN, 0.0, up)
 
 
 def is_vertical(up: Array, about: Array) -> bool:
