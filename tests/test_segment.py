@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import laboratory
-from inertial.campaign.records import Manoeuvre
+from inertial import tables
+from inertial.campaign.masked_samples import Batch, Masks
+from inertial.campaign.records import Clock, Manoeuvre
 from inertial.signal.rests_and_motions import BinStretch, slow_motion, steady_part
 from stages.segment import windows
 from stages.segment.located import divide, locate
@@ -512,6 +514,24 @@ def test_what_is_set_anew_in_a_pause_of_the_recording_is_another_rest(behind, re
     still = [stretch for stretch in found.stretches if not stretch.moves]
     assert len(still) == rests and still[-1].after == 600
     assert rests == 1 or (still[0].after == 299 and still[1].first in (300, 301))
+
+
+def test_the_windows_of_a_log_may_overlap():
+    """Turns that the plan selects lay in the window of all others; nine "were not there"."""
+    n = 1000
+    readings = {channel: np.arange(n, dtype=float) for channel in tables.CHANNELS}
+    columns = {"record": np.arange(n), "time": 0.01 * np.arange(n), "mean_of": np.ones(n)}
+    made = [windows.Window("log", *span, []) for span in ((0, n), (200, 400), (300, 500))]
+    masks = Masks(tables.MASKS.empty())
+    bins = windows.Bins(made, {"log": Clock(0.01, 0.01)}, masks)
+    for part in np.array_split(np.arange(n), 3):
+        bins.add(
+            Batch("log", {name: column[part] for name, column in (columns | readings).items()})
+        )
+    for window, binned in zip(made, bins.binned(), strict=True):
+        assert binned.window == window
+        middles = np.arange(window.first, window.after, 10) + 4.5
+        assert binned.forces[:, 0] == pytest.approx(middles)
 
 
 def in_bins(forces: np.ndarray, seed: int) -> windows.Binned:

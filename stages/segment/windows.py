@@ -159,41 +159,65 @@ def windows(
     return sorted(made, key=lambda window: (window.log, window.first))
 
 
-class Bins(MeansOver):
-    """Every window in bins; windows ascend within a log."""
+class Bins:
+    """Every window in bins; they may overlap, as where the plan selects parts of a log.
+
+    Windows of one layer do not, for means are over stretches that ascend.
+    """
+
+    columns = MeansOver.columns
 
     def __init__(
         self, windows: Sequence[Window], clocks: Mapping[str, Clock], masks: Masks
     ) -> None:
         records = sum(window.after - window.first for window in windows)
         self._edges: list[tuple[Integers, Integers]] = []
-        by_log: dict[str, list[tuple[Integers, Integers]]] = {}
+        self._layer: list[int] = []
+        layers: list[dict[str, list[tuple[Integers, Integers]]]] = []
+        reached: list[dict[str, int]] = []
         for window in windows:
             bin_records = round(BIN_S / clocks[window.log].step) if window.log in clocks else 1
             length = max(1, bin_records, -(-records // MAX_BINS))
             first, after = regular(window.after - window.first, length)
             self._edges.append((window.first + first, window.first + after))
-            by_log.setdefault(window.log, []).append(self._edges[-1])
-        super().__init__(
-            {
-                log: (np.concatenate([f for f, _ in own]), np.concatenate([a for _, a in own]))
-                for log, own in by_log.items()
-            },
-            masks,
-        )
+            free = [n for n, r in enumerate(reached) if r.get(window.log, 0) <= window.first]
+            number = free[0] if free else len(layers)
+            if not free:
+                layers.append({})
+                reached.append({})
+            self._layer.append(number)
+            layers[number].setdefault(window.log, []).append(self._edges[-1])
+            reached[number][window.log] = window.after
+        self._means = [
+            MeansOver(
+                {
+                    log: (np.concatenate([f for f, _ in own]), np.concatenate([a for _, a in own]))
+                    for log, own in layer.items()
+                },
+                masks,
+            )
+            for layer in layers
+        ]
         self._windows = windows
         self._clocks = clocks
         self._censoring = masks
 
+    def add(self, batch: Batch) -> None:
+        """Take in the next batch."""
+        for means in self._means:
+            means.add(batch)
+
     def binned(self) -> Iterator[Binned]:
         """The windows, once every batch was added."""
-        means = self.result()
-        used = dict.fromkeys(means, 0)
-        for window, (first, after) in zip(self._windows, self._edges, strict=True):
-            part = slice(used[window.log], used[window.log] + len(first))
-            used[window.log] += len(first)
-            own = means[window.log]
+        results = [means.result() for means in self._means]
+        used = [dict.fromkeys(means, 0) for means in results]
+        each = zip(self._windows, self._edges, self._layer, strict=True)
+        for window, (first, after), number in each:
+            begin = used[number][window.log]
+            part = slice(begin, begin + len(first))
+            used[number][window.log] += len(first)
             edges = np.append(first, after[-1:])
+            own = results[number][window.log]
             yield Binned(
                 window,
                 edges,
