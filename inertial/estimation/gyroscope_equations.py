@@ -202,8 +202,9 @@ def steady_equations(
     if steady.position.north is not None:
         north = earth.level * steady.position.north
         known = shares @ turned_all(north, steady.about, angles)
-    up = matrix @ steady.position.up
-    truth = steady.rate * steady.about + known + earth.up * steady.position.up
+    mean_up = shares @ turned_all(steady.position.up, steady.about, angles)
+    up = matrix @ mean_up
+    truth = steady.rate * steady.about + known + earth.up * mean_up
     columns = [design_of(truth), up[:, None], steady.sensitivities.of(effects)]
     sigma |= dict.fromkeys(names, horizontal_sigma(steady.position, earth))
     if names:
@@ -314,8 +315,9 @@ def _block_angles(
     for key, axis in zip(horizontal_names(position), horizontal_axes(position), strict=False):
         level = level + point.levels.get(key, 0.0) * axis
     angle = np.zeros(len(sums))
-    for _ in range(2):  # the direction of the horizontal earth rate depends on the angle
-        rate = earth.up * position.up + turned_all(level, segment.about, segment.turned(angle))
+    for _ in range(2):  # the direction of the earth's rate depends on the angle
+        earth_rate = earth.up * position.up + level
+        rate = turned_all(earth_rate, segment.about, segment.turned(angle))
         residual = sums - rate * segment.seconds[:, None] @ matrix.T
         residual -= np.outer(segment.seconds, point.bias)
         angle = (residual * weight) @ along / (along @ along)
@@ -346,14 +348,15 @@ class _Blocks:
         position, about, s = segment.position, segment.about, len(self.prior)
         seconds, angle, middle = segment.seconds[some], self.angle[some], self.middle[some]
         rows = np.zeros((len(seconds), 3, s + len(self.own) + 1))
-        rate = np.full((len(seconds), 3), earth.up * position.up)
+        up = turned_all(position.up, about, middle)
+        rate = earth.up * up
         if position.north is not None:
             rate += turned_all(earth.level * position.north, about, middle)
         truth = angle[:, None] * about + rate * seconds[:, None]
         for row in range(3):
             rows[:, row, 3 * row : 3 * row + 3] = truth
             rows[:, row, 9 + row] = seconds
-        rows[:, :, UNKNOWNS] = np.outer(seconds, matrix @ position.up)
+        rows[:, :, UNKNOWNS] = seconds[:, None] * (up @ matrix.T)
         if segment.sensitivities.names:
             sensitivities = segment.sensitivities.of(self.effects)[some]
             rows[:, :, UNKNOWNS + 1 : s] = sensitivities * seconds[:, None, None]

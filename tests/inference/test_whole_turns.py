@@ -4,12 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from inertial.estimation.gyroscope_observations import (
     Earth,
     Position,
     RateSegment,
     StaticRate,
+    SteadyRate,
     WholeTurn,
 )
 from inertial.estimation.gyroscopes import bias_and_scale, joint
@@ -81,6 +83,41 @@ def test_the_truth_comes_back_also_from_turns_of_one_direction(directions):
     assert fit.determined[:12].all()
     assert np.abs(pulls).max() < 4
     assert fit.sigma[0] < 1e-5  # a scale factor to 10 ppm
+    assert fit.p_value() > 1e-3
+
+
+@pytest.mark.parametrize("whole", [True, False])
+def test_while_an_imu_turns_about_a_level_axis_the_vertical_earth_rate_turns_in_it(whole):
+    """It stood still there: a position that leans by 14" was named in a clean campaign.
+
+    By turns from rest to rest, or by their middles at a known rate.
+    """
+    rng, noise = np.random.default_rng(8), 3.5e-6
+    M = np.eye(3) + 5e-3 * rng.standard_normal((3, 3))
+    bias = 1e-5 * rng.standard_normal(3)
+    rests, turns = campaign((1.0, -1.0), rng, M, bias)
+    steadies = []
+    for axis in range(3):
+        up, about, level = np.roll(np.eye(3), -axis, axis=0)
+        for sign in (1.0, -1.0):
+            count = 190 if whole else 160  # not in whole turns
+            rate = np.full(count, sign * 2 * np.pi / 190)
+            angle = np.cumsum(rate) - rate / 2
+            turning = Rotation.from_rotvec(-np.outer(angle, about))
+            truth = np.outer(rate, about) + 0.2 * turning.apply(UP * up + LEVEL * level)
+            sums = truth @ M.T + 0.2 * bias + noise * np.sqrt(0.2) * rng.standard_normal((count, 3))
+            position, density = Position(f"lying {axis} {sign}", up), np.full(3, noise)
+            seconds = np.full(count, 0.2)
+            if whole:
+                given = (sign * 2 * np.pi, 1e-5, sums, seconds, density, density)
+                turns.append(RateSegment(position, about, *given))
+            else:
+                mean, elapsed = sums.mean(axis=0) / 0.2, np.cumsum(seconds) - 0.1
+                known = (rate[0] / 0.2, 1e-9, seconds, elapsed, mean, noise / np.sqrt([32] * 3))
+                steadies.append(SteadyRate(position, about, *known))
+    fit = joint(rests, turns, steadies, EARTH, 1e-5)
+    pulls = (fit.values[:12] - np.append(M.ravel(), bias)) / fit.sigma[:12]
+    assert np.abs(pulls).max() < 4
     assert fit.p_value() > 1e-3
 
 
