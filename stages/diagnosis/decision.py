@@ -134,7 +134,7 @@ def decided(
     own = effects_of(best)
     names = _listed([row["effect"] for row in own])
     others = _other_members(own, effects)
-    widened = _widening(best, alarms)
+    widened = 1.0 if _freed(own) else _widening(best, alarms)
     if against := _against(best, own, "" if widened > 1 else causes):
         kept = KEPT.format(sensors=sensors, effects=names, reason=against)
         return Decision(JOINT, kept + others)
