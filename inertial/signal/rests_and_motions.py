@@ -109,7 +109,7 @@ def _fell(stretch: BinStretch, forces: Array | None) -> bool:
     return bool(cosine < np.cos(MAX_KNOCK_TILT))  # not where they are not recorded
 
 
-def shaken(found: list[BinStretch], forces: Array) -> Booleans:
+def shaken_bins(found: list[BinStretch], forces: Array) -> Booleans:
     """Which bins of still stretches differ from one beside them by more than others do, (k,).
 
     A hand that takes the IMU shakes the accelerometers before the gyros show that it turns.

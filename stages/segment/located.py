@@ -14,7 +14,7 @@ from inertial.signal.axis_permutations import Permutation
 from inertial.signal.rests_and_motions import (
     BinStretch,
     moving,
-    shaken,
+    shaken_bins,
     stretches,
     with_slow_ends,
 )
@@ -142,7 +142,7 @@ def divide(
         moves = moving(binned.rates, binned.forces, level, lowest)
         moves |= binned.beside_pauses | binned.beside_jumps
         divided = stretches(moves, binned.bin_seconds, binned.forces)
-        above = above_noise | shaken(divided, binned.forces)
+        above = above_noise | shaken_bins(divided, binned.forces)
         divided = with_slow_ends(divided, above, binned.bin_seconds, swings=swings)
         ways.append((divided, observe(binned, divided, level)))
     return Division(binned, ways)
