@@ -224,6 +224,32 @@ def test_two_turns_the_other_way_may_be_two_in_the_other_order():
     assert "or they were done in the other order, which gives the same" in row["condition"]
 
 
+def y_turns_exchanged(of_one_log: bool) -> Edit:
+    """A turn of 360° and one of 1080° the same way, recorded in each other's place."""
+
+    def edit(document: Document) -> None:
+        turns = {one["id"]: one for one in document["campaign"]["plan"]}
+        turns["y-backward"]["degrees"] = 1080
+        if not of_one_log:
+            return faults(exchange("y-forward", "y-backward"))(document)
+        turns["y-backward"]["degrees"], turns["y-forward"]["degrees"] = 360, 1080
+        misstated(plan={"y-forward": {"degrees": 360}, "y-backward": {"degrees": 1080}})(document)
+
+    return edit
+
+
+@pytest.mark.parametrize("of_one_log", [True, False])
+def test_two_turns_of_other_angles_one_way_are_exchanged(of_one_log):
+    edits = [in_one_log] if of_one_log else []
+    results = recorded(*edits, y_turns_exchanged(of_one_log))
+    (row,) = repairs(results).reset_index().to_dict("records")
+    assert (row["id"], row["state"]) == ("exchanged_manoeuvres/y-backward/y-forward", "applied")
+    (finding,) = findings(results).to_dict("records")
+    assert finding["cause"] == "manoeuvre_swapped"
+    assert results["segment/performed"]["complete"].all()
+    assert np.abs(pulls(results)).max() < MAX_PULL
+
+
 @cache
 def spans_of_session() -> pd.DataFrame:
     """When each manoeuvre of one log begins and ends, its rests with it."""

@@ -477,7 +477,7 @@ def _moved_by_measure(cause: Hypothesis, own: Sequence[SensorResult]) -> float |
 
 def _gain(cause: Hypothesis, drop: float | None) -> str | None:
     repair = cause.repair
-    if repair is not None and repair["fitting_after"] is not None:
+    if repair is not None and repair["fitting_after"] != repair["fitting_before"]:
         return _(
             "With it {after} of {all} observations fit the plan, without it {before}.",
             after=repair["fitting_after"],

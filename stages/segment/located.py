@@ -104,6 +104,13 @@ class Located:
         """The observations that agree with the plan, by manoeuvre and number."""
         return [(m.name, n) for m in self.plan for n, agrees in enumerate(self._agree(m)) if agrees]
 
+    def ratio(self, m: Manoeuvre, planned: Manoeuvre) -> float:
+        """What is recorded of a turn that was found, over the plan of a turn: inf without one."""
+        place, size = self.place(m), _planned(planned)
+        if place is None or not size:
+            return np.inf
+        return _about(self.observed[place], planned) / size
+
     def _agree(self, m: Manoeuvre) -> list[bool]:
         place = self.place(m)
         if m.do == "positions":
@@ -115,8 +122,8 @@ class Located:
             return [place is not None] if known else []
         agreements = []
         if any(np.isfinite(observation.rate).all() for observation in self.observed):
-            planned = m.rate if m.recorded == "steady" else m.angle
             turned = 0.0 if place is None else _about(self.observed[place], m)
+            planned = _planned(m)
             agreements.append(turned != 0 if planned is None else turned * planned > 0)
         before = self.rest_before(m)
         if (
@@ -306,6 +313,11 @@ def _quieter(forces: Array, length: int, now: int) -> int:
     changes = quarter * ((quarters - quarters.mean(axis=0)) ** 2).sum(axis=(0, 2))
     quiet = np.flatnonzero(changes <= changes.min() + MIN_QUIETER * variance)
     return int(quiet[np.argmin(np.abs(quiet - now))])
+
+
+def _planned(m: Manoeuvre) -> float | None:
+    """The planned rate of a turn at a steady rate, rad/s, of another its angle, rad."""
+    return m.rate if m.recorded == "steady" else m.angle
 
 
 def _about(observation: Observation, m: Manoeuvre) -> float:

@@ -16,7 +16,7 @@ from inertial.signal.axis_permutations import (
 )
 from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA, rest_level
 from stages.segment.located import AS_NAMED, AS_PLANNED, Axes, Division, Located, divide, locate
-from stages.segment.matching import Observation
+from stages.segment.matching import MAX_WHOLE_DIFFERENCE, MIN_SCALE_RATIO, Observation
 from stages.segment.steps import (
     ALL_REVERSED,
     Exchanged,
@@ -139,6 +139,8 @@ def explain(
         assert case.step is not None
         if len(alike) > 1 and not confirmed:
             rivals[case.step.id] = [one.step for one in alike if one.step and one is not case]
+    while (best := next(_exchanged_by_size(windows, case), None)) is not None:
+        case = best
     misread = dict(_misread(windows, case))
     signs = earth_seen(case.located, case.everywhere, earth_rate)
     right = sum(located.agreeing[0] for located in plain.located)
@@ -255,6 +257,28 @@ def _exchanges(windows: Sequence[Division], case: _Case, lacking: Sequence[int])
         for one, two in combinations(_visits(case.plans[k]), 2):
             if len(one) == len(two) > 1 and not {m.name for m in lost}.isdisjoint([*one, *two]):
                 yield _with_places_exchanged(windows, case, k, one, two)
+
+
+def _exchanged_by_size(windows: Sequence[Division], case: _Case) -> Iterator[_Case]:
+    """Two turns exchanged, each of which has the size of the other's plan and not of its own."""
+    taken = {name for exchanged in case.exchanged for name in exchanged.names}
+    turns = [
+        (k, m)
+        for k, located in enumerate(case.located)
+        for m in located.plan
+        if m.do == "turn" and m.name not in taken and located.place(m) is not None
+    ]
+    for (a, one), (b, other) in combinations(turns, 2):
+        crossed = [case.located[a].ratio(one, other), case.located[b].ratio(other, one)]
+        own = [case.located[a].ratio(one, one), case.located[b].ratio(other, other)]
+        if any(abs(ratio - 1) > MAX_WHOLE_DIFFERENCE for ratio in crossed):
+            continue
+        if any(1 / MIN_SCALE_RATIO < ratio < MIN_SCALE_RATIO for ratio in own):
+            continue
+        if a == b:
+            yield _with_places_exchanged(windows, case, a, [one.name], [other.name])
+        elif len(case.plans[a]) == len(case.plans[b]):
+            yield _with_names_exchanged(windows, case, a, b)
 
 
 def _visits(plan: Sequence[Manoeuvre]) -> list[list[str]]:

@@ -235,7 +235,7 @@ class _Campaign:
     def set_axes_and_names(self) -> None:
         """What explains that the plan is not found as it is."""
         right, _after, total = self._explained.fitting
-        if right == total:
+        if right == total and not self._explained.exchanged:
             return
         seen = axes_by_gravity(self._binned, self._level)
         self._by_gravity = seen is not None and seen.axes == AS_NAMED
