@@ -14,9 +14,10 @@ from inertial.signal.axis_permutations import (
     read_as_other_axes,
     simplicity,
 )
-from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA, rest_level
+from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA
 from stages.segment.located import AS_NAMED, AS_PLANNED, Axes, Division, Located, divide, locate
-from stages.segment.matching import MAX_WHOLE_DIFFERENCE, MIN_SCALE_RATIO, Observation
+from stages.segment.matching import MAX_WHOLE_DIFFERENCE, MIN_SCALE_RATIO
+from stages.segment.rest_readings import earth_seen, forces_at_rest, level_of
 from stages.segment.steps import (
     ALL_REVERSED,
     Exchanged,
@@ -31,8 +32,6 @@ from stages.segment.windows import Binned
 
 MIN_RATE_SHARE = 0.05  # of the slowest planned rate: what counts as motion
 MIN_GAIN = 2  # observations more that agree with the plan, in place of as many that do not
-MIN_UPRIGHT_SHARE = 0.9  # share of the vertical in an axis that points up
-MIN_EARTH_SIGMA = 4.0  # sigmas to which the earth's rate must be seen to half of itself
 MAX_EXCHANGED = 4  # manoeuvres of a log for which an exchange with every other one is tried
 MAX_RIVAL_AXES = 2  # axes of a permutation that is a rival of exchanged names
 MIN_GAIN_OF_BOTH = 3  # the same, for both sensors of one log: it may have had another attitude
@@ -110,7 +109,7 @@ def explain(
 
     First what may have happened to the campaign as a whole: names or places of two manoeuvres
     exchanged, one signed permutation of the axes of a sensor, or of both, or turns that are
-    counted the other way. Then log by log.
+    counted the other way. Then turns that differ by their size alone, then log by log.
 
     Parameters
     ----------
@@ -139,8 +138,8 @@ def explain(
         assert case.step is not None
         if len(alike) > 1 and not confirmed:
             rivals[case.step.id] = [one.step for one in alike if one.step and one is not case]
-    while (best := next(_exchanged_by_size(windows, case), None)) is not None:
-        case = best
+    while (by_size := next(_exchanged_by_size(windows, case), None)) is not None:
+        case = by_size
     misread = dict(_misread(windows, case))
     signs = earth_seen(case.located, case.everywhere, earth_rate)
     right = sum(located.agreeing[0] for located in plain.located)
@@ -167,7 +166,7 @@ def explained_of(
     gyros_confirmed: bool = False,
 ) -> tuple[Array, ExplainedRecording]:
     """What the gyros read at rest, (3,), rad/s, and where the manoeuvres are; as `explain`."""
-    level, scatter = _rest_level(binned)
+    level, scatter = level_of(binned)
     rates = [abs(m.rate) for m in plan if m.rate]
     noise = MIN_MOTION_SIGMA * scatter
     threshold = max(MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE, noise)
@@ -437,63 +436,12 @@ def _axes_by_force(case: _Case, own: list[int], now: int, said: int) -> Axes | N
         return None
     longest = max(rests, key=lambda place: case.located[k].observed[place].seconds)
     force = case.located[k].observed[longest].force
-    others = [pair for other in case.located for pair in _forces(other)]
+    others = [pair for other in case.located for pair in forces_at_rest(other)]
     if not others or not np.isfinite(force).all():
         return None
     forces, ups = (np.array(column) for column in zip(*others, strict=True))
     permutation = read_as_other_axes(force, m.up, forces, ups)
     return None if permutation is None else replace(case.everywhere, accel=permutation)
-
-
-def earth_seen(located: Sequence[Located], axes: Axes, earth_rate: float) -> list[int]:
-    """The signs of the gyros by the earth rate: +1 right, −1 wrong, 0 nothing, (3,).
-
-    A gyro reads the upward part of the earth's rate with one sign while its axis points up, with
-    the other while it points down, whatever its bias. Gyros that are too noisy give 0.
-    """
-    rests = [pair for window in located for pair in _rates(window, axes)]
-    signs = [0, 0, 0]
-    for i in range(3):
-        ways = []
-        for sign in (1, -1):
-            same = [
-                (r, u)
-                for up, r, u in rests
-                if sign * up[i] > MIN_UPRIGHT_SHARE and np.isfinite(u[i])
-            ]
-            if same:
-                weight = np.array([1 / max(u[i], 1e-12) ** 2 for _, u in same])
-                mean = float(weight @ np.array([r[i] for r, _ in same]) / weight.sum())
-                ways.append((mean, float(1 / np.sqrt(weight.sum()))))
-        if len(ways) == 2 and earth_rate:
-            (above, sigma_above), (below, sigma_below) = ways
-            ratio = (above - below) / 2 / earth_rate
-            sigma = np.hypot(sigma_above, sigma_below) / 2 / earth_rate
-            if MIN_EARTH_SIGMA * abs(sigma) < 0.5 and 0.5 < abs(ratio) < 1.5:
-                signs[i] = int(np.sign(ratio))
-    return signs
-
-
-def _rates(located: Located, axes: Axes) -> Iterator[tuple[Array, Array, Array]]:
-    """The rests of a window: what points up, rates, and their sigmas, along the plan's axes."""
-    unsigned = replace(axes.gyro, signs=(1, 1, 1))
-    for up, observation in _rests(located):
-        yield axes.accel.of(up), axes.gyro.of(observation.rate), unsigned.of(observation.unsure)
-
-
-def _forces(located: Located) -> Iterator[tuple[Array, Array]]:
-    """The specific forces at the rests of a window, each with the direction that was planned up."""
-    for up, observation in _rests(located):
-        if np.isfinite(observation.force).all():
-            yield observation.force, up
-
-
-def _rests(located: Located) -> Iterator[tuple[Array, Observation]]:
-    """The rests of a window, those before turns too: what was planned up, and what was seen."""
-    for m in located.plan:
-        place = located.place(m) if m.do == "rest" else located.rest_before(m)
-        if place is not None and m.up is not None and located.place(m) is not None:
-            yield m.up, located.observed[place]
 
 
 def unlike(axes: Axes, others: Axes) -> Iterator[tuple[str, Permutation]]:
@@ -504,20 +452,3 @@ def unlike(axes: Axes, others: Axes) -> Iterator[tuple[str, Permutation]]:
     ):
         if own != other:
             yield sensor, own
-
-
-def _rest_level(every: Sequence[Binned]) -> tuple[Array, float]:
-    """The gyros at rest over the campaign: from the windows of rests alone, if there are any.
-
-    An axis that none of them records does not count; one that some do not record is taken from the
-    others.
-    """
-    rests = [binned for binned in every if {m.do for m in binned.window.manoeuvres} == {"rest"}]
-    for group in (rests, every):
-        read = [binned.rates[binned.seconds > 0] for binned in group]  # not where all is masked
-        rates = np.concatenate([np.empty((0, 3)), *read])
-        recorded = np.isfinite(rates).any(axis=0)
-        whole = rates[np.isfinite(rates[:, recorded]).all(axis=1)] if recorded.any() else []
-        if len(whole):
-            return rest_level(np.where(recorded, whole, 0.0))
-    return np.zeros(3), 0.0
