@@ -152,10 +152,11 @@ def reads_in_words(axes: Permutation) -> str:
 
 def _handed(misread: Misread, recorded: Recorded) -> str:
     flips = misread.axes.in_place
-    usual = _(
-        "RAWIMUS writes z, −y, x: a sign that is forgotten, or taken twice, is the usual cause."
+    usual = (
+        _("A sign that a reader forgets, or takes twice, is the usual cause: RAWIMUS has −y.")
+        if flips
+        else _("Another order of the fields is the usual cause: RAWIMUS has z, −y, x.")
     )
-    usual = usual if flips else _("RAWIMUS writes z, −y, x: another order of the fields does this.")
     if determinant(misread.axes) < 0:
         return _(
             "So the triad is left-handed (determinant −1), which no mounting does. {usual}",

@@ -181,7 +181,7 @@ def _axes(entry: dict[str, Any]) -> dict[str, list[str]]:
 
 
 def count_sizes(listed: YamlFile) -> Iterator[Row]:
-    """The increments that one count is worth in each of the listed instruments."""
+    """The increments that one count of a log is worth in each of the listed instruments."""
     for name, entry in listed.content.items():
         for sensor, key, size in (
             ("accel", "accelerometer", "count_m_s"),

@@ -79,6 +79,7 @@ def plan(
     used = sorted(_logs_of(file, named, raw))
     stated = Statements(file, laboratory, certificate)
     others = [row for path in published for row in published_values(YamlFile(path))]
+    in_counts = any(row["layout"]["kind"] == "rawimus" for row in manoeuvres)
     return {
         "campaign": pd.DataFrame([_campaign(file, entry, manoeuvres)]),
         "known": pd.DataFrame(taken_as_known),
@@ -86,7 +87,7 @@ def plan(
         "sensors": pd.DataFrame(sensors(entry)),
         "logs": pd.DataFrame(logs(manoeuvres, entry, table)),
         "ranges": pd.DataFrame(ranges(manoeuvres, entry)),
-        "count_sizes": pd.DataFrame(count_sizes(listed)),
+        "count_sizes": list(count_sizes(listed)) if in_counts else [],
         "inputs": pd.DataFrame(
             {"file": path.name, "size": path.stat().st_size, "sha256": hash_of_file(path)}
             for path in [campaign[0], *used]
