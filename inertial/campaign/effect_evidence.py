@@ -14,6 +14,7 @@ from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 
 MIN_OBSERVABLE_SIGMAS = 5.0  # sigmas of an effect at its largest size; less is not observable
+MIN_OWN_SIGMAS = 1.0  # the same, by one sensor of those that see it
 
 
 def evidence(
@@ -24,9 +25,9 @@ def evidence(
     The two share the tilts of the positions. That of the gyros is what they add to the
     accelerometers, so that the two are independent. The columns are named by label and parameter of
     an effect. The information is zero for an effect that is sought elsewhere, and where it is not
-    observable at its largest size: there it could only absorb rounding errors. That is judged
-    against noise alone: a scatter by hand may be all effect. `noise_degrees`: of freedom of the
-    noise estimate.
+    observable at its largest size: there it could only absorb errors of the linearisation. So it is
+    of a sensor by itself, where the other one sees it. That is judged against noise alone: a
+    scatter by hand may be all effect. `noise_degrees`: of freedom of the noise estimate.
     """
     systems, informative = _informative(campaign, effects)
     quiet = campaign.without_scatter()
@@ -40,10 +41,14 @@ def evidence(
             for parameter in effect.parameters
         ]
     )
-    information = sum((np.diag(reduced.information) for _, reduced in against), np.zeros(1))
-    observable = (largest * np.sqrt(information) > MIN_OBSERVABLE_SIGMAS).astype(np.float64)
+    own = [largest**2 * np.diag(reduced.information) for _, reduced in against]
+    observable = sum(own, np.zeros(1)) > MIN_OBSERVABLE_SIGMAS**2
+    seen = [observable & (squares > MIN_OWN_SIGMAS**2) for squares in own]
     return Evidence(
-        tuple(_restricted(reduced, observable) for _, reduced in informative),
+        tuple(
+            _restricted(reduced, columns.astype(np.float64))
+            for (_, reduced), columns in zip(informative, seen, strict=True)
+        ),
         tuple(sensor for sensor, _ in informative),
         tuple(campaign.noise_degrees(sensor, noise_degrees) for sensor, _ in informative),
         np.array([system.raw_information()[: len(largest)] for _, system in systems]),
