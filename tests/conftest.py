@@ -19,7 +19,13 @@ from inertial.tables.campaign_files import logs_of
 
 CAMPAIGNS = Path(__file__).parent / "campaigns"
 # They take longest, so they stand first: all processes are then busy to the end.
-FIRST = ("test_workflow", "test_recordings_by_hand", "test_drafts_of_recordings", "test_report")
+FIRST = (
+    "test_workflow",
+    "test_recordings_by_hand",
+    "test_drafts_of_recordings",
+    "test_report",
+    "test_browser",
+)
 
 settings.register_profile("untimed", deadline=None)  # a busy machine is no fault
 settings.load_profile("untimed")

@@ -204,7 +204,7 @@ def test_a_table_that_counts_clockwise(simple, simple_results, tmp_path):
 # ---- what is not known: attitude, time
 
 
-@pytest.mark.parametrize("recorded", ["whole", "steady"])
+@pytest.mark.parametrize("recorded", ["whole", pytest.param("steady", marks=pytest.mark.slow)])
 def test_a_turn_of_which_only_the_axis_is_known_gives_its_scale(
     recorded, simple, simple_results, tmp_path
 ):

@@ -16,7 +16,7 @@ MOST_SIGMA = 4.5  # of some 700 errors of parameters in all cases, one in 200 ru
         pytest.param(
             case,
             id=case.name,
-            marks=() if n % 10 == 0 and case.name not in ELSEWHERE else pytest.mark.slow,
+            marks=() if n % 15 == 0 and case.name not in ELSEWHERE else pytest.mark.slow,
         )
         for n, case in enumerate(CASES)
     ],

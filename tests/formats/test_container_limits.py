@@ -85,6 +85,7 @@ def assert_a_bomb(log, refusal):
     assert refusal.cure.startswith("write the log anew in smaller pieces; ")
 
 
+@pytest.mark.slow
 def test_a_row_group_of_parquet(tmp_path, limited):
     log = tmp_path / "log"
     parquet.write_table(pa.table({"x": np.arange(FEW) * 0.1}), log, row_group_size=FEW // 4)
@@ -194,7 +195,7 @@ def ros_1_bomb(log, compression):
         bag.write(imu, 1, bytes(8 * MANY))
 
 
-@pytest.mark.parametrize("compression", ["LZ4", "BZ2"])
+@pytest.mark.parametrize("compression", ["LZ4", pytest.param("BZ2", marks=pytest.mark.slow)])
 def test_a_chunk_of_a_ros_1_bag(tmp_path, limited, compression):
     log = tmp_path / "log"
     ros_1_bomb(log, Writer1.CompressionFormat[compression])

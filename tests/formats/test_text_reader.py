@@ -32,7 +32,7 @@ def path(tmp_path_factory):
     return tmp_path_factory.mktemp("log") / "log.txt"
 
 
-@settings(max_examples=300)
+@settings(max_examples=100)
 @given(
     lines=st.lists(st.tuples(LINE, st.sampled_from(["\n", "\r\n", "\n \t\r\n"])), max_size=20),
     delimiter=st.sampled_from([None, ",", " ", "\t", "·", "x"]),

@@ -65,6 +65,7 @@ def test_gravity_scales_all_scale_factors_alike():
     assert covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1]) > 0.95
 
 
+@pytest.mark.slow
 def test_noise_that_makes_readings_longer_does_not_make_the_scale_factors_larger():
     # At 0.8 m/s² it would be σ²/g² = 0.7 %.
     sigma, scales = np.array([0.6, 0.8, 1.0]), []

@@ -27,7 +27,7 @@ OPTIONS += " --enable-logging=stderr --window-size=1500,1000 --dump-dom"
 
 AXE = importlib.util.find_spec("axe_core_python")
 SERIOUS = ("serious", "critical")
-ALWAYS = [(1400, "light", "en"), (400, "dark", "zh")]  # the others with the slow tests
+ALWAYS = [(1400, "light", "en")]  # the others with the slow tests
 FOCUSED = """(() => {
   const one = document.activeElement, style = getComputedStyle(one);
   return { ring: style.outlineStyle !== "none" && parseFloat(style.outlineWidth) > 0,

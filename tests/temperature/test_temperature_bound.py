@@ -59,6 +59,7 @@ def test_between_the_nodes_of_a_cubic_the_bound_is_that_of_the_interpolation() -
     assert sigma == pytest.approx([each, each * np.linalg.norm(weights)], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_an_unknown_knot_costs_nothing_far_from_it_and_more_at_it() -> None:
     knee = Curve(9, "knee", 283.15, 30.0, 290.15)
     known = bound().sigmas([knee])[25]
