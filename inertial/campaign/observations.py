@@ -19,7 +19,7 @@ from inertial.campaign.motions import (
     positions_of,
 )
 from inertial.campaign.records import Manoeuvre
-from inertial.campaign.static_positions import Blocks, StaticPosition
+from inertial.campaign.static_positions import Blocks, StaticPosition, stops_of
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
 from inertial.physics.motion import Motion, is_vertical, level_axes, mean_turned
@@ -153,17 +153,26 @@ def _turning(
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
     density = np.where(steady, levels[0], np.fmax(*levels))
     sigmas = density / np.sqrt(merged.seconds)[:, None]
-    level: Sequence[Array | None] = [None] * len(starts)
+    case = np.array(level_axes(m.up))
+    level = np.stack([merged.mean(mean_turned(axis, *turned)) for axis in case], axis=1)
     if is_vertical(m.up, m.axis):
-        axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes(m.up)]
-        level = list(np.stack(axes, axis=1))
         between = np.concatenate([read[:1], (read[1:] + read[:-1]) / 2, read[-1:]])
         change = between[[*starts[1:], len(read)]] - between[starts]
         sigmas = np.hypot(sigmas, early * change / merged.seconds[:, None])
-    means = zip(merged.mean(ups), merged.mean(read), sigmas, level, strict=True)
+    angles = merged.mean(motion.angle[:, None])[:, 0] / (m.angle or np.inf)
+    means = zip(merged.mean(ups), merged.mean(read), sigmas, level, angles, strict=True)
     rests = [
-        StaticForce(m.position, up, mean, sigma, turning=True, level=own)
-        for up, mean, sigma, own in means
+        StaticForce(
+            m.position,
+            up,
+            mean,
+            sigma,
+            turning=True,
+            level=own,
+            case=case,
+            stops=stops_of(m, float(share)),
+        )
+        for up, mean, sigma, own, share in means
     ]
     return [
         (m.name, rest, at) for rest, at in zip(rests, mean_motions(motion, merged), strict=True)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Manoeuvre, Part, Performed
-from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.accelerometers import NO_STOPS, StaticForce, Stops
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import are_parts_of_turns, is_vertical, level_axes, turned
@@ -83,6 +83,7 @@ def _blocks(table: pd.DataFrame) -> Blocks:
 
 # --- Static positions of known attitude ---
 
+SQRT2 = float(np.sqrt(2))
 UNTIMED = Stretch("")
 NO_UP = _("which way is up is not known")
 NO_ATTITUDE = _("its attitude is not known, for the turn is not whole")
@@ -133,9 +134,8 @@ class StaticPosition:
 
     @property
     def _level(self) -> Array | None:
-        """The level axes of the start in body axes now, (2, 3), after part of an upright turn."""
-        part = are_parts_of_turns(np.asarray(self.angle))
-        if not part or not is_vertical(self.up, self.about):
+        """The level axes of the start in body axes now, (2, 3), after part of a turn."""
+        if not are_parts_of_turns(np.asarray(self.angle)) or not self.up.any():
             return None
         return np.array([turned(axis, self.about, self.angle) for axis in level_axes(self.up)])
 
@@ -151,7 +151,14 @@ class StaticPosition:
         mean, sigma = self.over(seconds)
         stretch = self.during(seconds)
         return StaticForce(
-            self.manoeuvre.position, self.up_now, mean, sigma, stretch=stretch, level=self._level
+            self.manoeuvre.position,
+            self.up_now,
+            mean,
+            sigma,
+            stretch=stretch,
+            level=self._level,
+            case=None if self._level is None else np.array(level_axes(self.up)),
+            stops=stops_of(self.manoeuvre, 1.0 if self.part.phase == "rest-after" else 0.0),
         )
 
     def mean_of(self, values: Array) -> float:
@@ -210,6 +217,18 @@ class StaticPosition:
         recorded = np.isfinite(self.means)
         samples, duration = recorded * self.counts[:, None], recorded * self.seconds[:, None]
         return np.cumsum([samples * np.nan_to_num(self.means), samples, duration], axis=1)
+
+
+def stops_of(m: Manoeuvre, turned_share: float) -> Stops:
+    """The stops of a turn about a level axis, where a share of it is behind.
+
+    The angle is that from one stop to the other, so each has half of its variance.
+    """
+    if m.do != "turn" or m.up is None or not m.angle_sigma or is_vertical(m.up, m.axis):
+        return NO_STOPS
+    shares = {f"{m.name} before": 1 - turned_share, f"{m.name} after": turned_share}
+    axes = {name: share * m.axis for name, share in shares.items() if share}
+    return Stops(axes, m.angle_sigma / SQRT2)
 
 
 def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosition], list[Part]]:

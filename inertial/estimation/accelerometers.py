@@ -40,8 +40,24 @@ ITERATIONS = 3  # linearisations about the last result
 BIAS = 9  # column of the first of the three biases
 MAX_RANDOM_WALK = 2e-3  # m/s²/√s, 10 mg/√h: a hundred times that of the poorest sensors
 MAX_SHOWN = 5.0  # sigma of a position that a tilt may be to be its own
+MIN_SHOWN = 1e-4  # rad; of a smaller tilt what is not linear is less than 0.005 µg
 FREE_TILT = 0.2  # rad, sigma of the tilt of a position of which nothing is known
+STOP = "angle"  # the kind of the error of a stop
 SCATTER_BOUNDS = (1e-7, 1.0)  # m/s², between static positions beyond the noise
+
+
+class Stops(NamedTuple):
+    """Where a turn about a level axis begins and ends: the table stops there to its angle's sigma.
+
+    `axes`: by the name of each stop the axis of the turn, (3,), times the share of the error of the
+    stop that is in a mean; `sigma`: of the error, rad.
+    """
+
+    axes: Mapping[str, Array]
+    sigma: float
+
+
+NO_STOPS = Stops({}, 0.0)
 
 
 @dataclass(frozen=True)
@@ -50,8 +66,9 @@ class StaticForce:
 
     `sensitivities`: of the means to the parameters of effects, or with `felt` of the specific force
     that the sensors feel; `stretch`: of time; `turning`: not at rest, the table turns steadily;
-    `level`: where it turns about the vertical, or has turned, the level axes at the start of that,
-    mean in body axes.
+    `level`: where it turns, or has turned, the level axes at the start of that, mean in body axes;
+    `case`: the same fixed to the case, of a turn about an axis that is not vertical, and `stops`:
+    those of the table.
     """
 
     position: str
@@ -63,6 +80,8 @@ class StaticForce:
     felt: bool = False
     turning: bool = False
     level: Array | None = None  # (2, 3)
+    case: Array | None = None  # (2, 3)
+    stops: Stops = NO_STOPS
 
 
 class Reference(NamedTuple):
@@ -224,10 +243,16 @@ def _drifting(
         position, stretch = statics[some[0]].position, statics[some[0]].stretch
         turning = any(statics[i].level is not None for i in some)
         tilts = names_of([position], (*TILTS, *OF_AXIS) if turning else TILTS)
+        stops = [stop_errors(statics[i], reference.gravity, about) for i in some]
+        stopped = tuple(dict.fromkeys(name for errors in stops for name in errors))
         sigma |= reference.sigma_of(tilts)
-        columns = np.r_[: len(prior) + len(tilts), -1]
-        own = rows[some][:, :, columns].reshape(-1, len(columns))
-        block = whitened(own, noise[some].ravel(), tilts)
+        sigma |= {name: statics[i].stops.sigma for i in some for name in stopped}
+        columns = len(prior) + len(tilts)
+        own = np.zeros((len(some), 3, columns + len(stopped) + 1))
+        own[:, :, :columns], own[:, :, -1] = rows[some][:, :, :columns], rows[some][:, :, -1]
+        for place, name in enumerate(stopped, columns):
+            own[:, :, place] = [errors.get(name, np.zeros(3)) for errors in stops]
+        block = whitened(own.reshape(-1, own.shape[2]), noise[some].ravel(), (*tilts, *stopped))
         block = replace(block, rows=compressed(block.rows))
         blocks.append((block, stretch or Stretch(f"rest {number}")))
         positions.append(position)
@@ -264,7 +289,7 @@ def linear_rows(
     small = np.linalg.norm(shown, axis=1) <= MAX_SHOWN * position_sigma
     own = small | np.array([static.position in free for static in statics])
     versed = np.where(own, 0.0, 1 - np.cos(np.linalg.norm(shown, axis=1)))
-    shown[~own] = 0.0
+    shown[~own | (np.linalg.norm(shown, axis=1) < MIN_SHOWN)] = 0.0
     forces: Array = gravity * Rotation.from_rotvec(shown).apply(ups)
     rows = np.zeros((len(statics), 3, s + len(TILTS) + len(OF_AXIS) + 1))
     for row in range(3):
@@ -284,13 +309,26 @@ def linear_rows(
     return rows
 
 
+def stop_errors(static: StaticForce, gravity: float, about: Triad) -> dict[Name, Array]:
+    """What the errors of the stops of a turn about a level axis change in a mean, (3,), m/s²/rad.
+
+    The further the case is turned, the other way turns what is up in it.
+    """
+    force = gravity * static.up
+    return {
+        (STOP, name): -about.matrix @ cross(axis, force) for name, axis in static.stops.axes.items()
+    }
+
+
 def tilt_axes(statics: Sequence[StaticForce]) -> Array:
-    """The directions of the four tilts, (n, 4, 3): of the last two none but in upright turns."""
-    case = all_level_axes(np.array([static.up for static in statics]))
-    level = case.copy()
-    for own, static in zip(level, statics, strict=True):
-        if static.level is not None:
-            own[:] = static.level
+    """The directions of the four tilts, (n, 4, 3): of the last two none but in turns."""
+    axes = all_level_axes(np.array([static.up for static in statics]))
+    case = np.array(
+        [own if s.case is None else s.case for own, s in zip(axes, statics, strict=True)]
+    )
+    level = np.array(
+        [own if s.level is None else s.level for own, s in zip(case, statics, strict=True)]
+    )
     return in_force(case, level)
 
 

@@ -1,4 +1,4 @@
-"""The tilt of a set position: two unknowns at rest, more while the table turns about the vertical.
+"""The tilt of a set position: two unknowns at rest, more while the table turns.
 
 An error of the IMU on the table is fixed to its case, so a turn does not change it in body axes. An
 error of the table's axis, as of the outer axis of a two-axis table, is fixed to the laboratory, so
@@ -8,9 +8,10 @@ is fixed to the laboratory has unknowns of its own, and in a turn by θ the acce
     t + (R(θ) − 1) l,
 
 with the sigma of the table for t and for l, independently: that holds where the tilt is wholly of
-the case, and where it is wholly of the axis. Gyros show the part that is fixed to the case, for it
-moves the axis of the turn there. By themselves they know it to the same sigma; beside the
-accelerometers it is t − l.
+the case, and where it is wholly of the axis. The directions are the level ones of the start; after
+part of a turn about another axis than the vertical those of the case are not level. Gyros show the
+part that is fixed to the case, for it moves the axis of the turn there. By themselves they know it
+to the same sigma; beside the accelerometers it is t − l.
 """
 
 from collections.abc import Sequence

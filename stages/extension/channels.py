@@ -178,6 +178,8 @@ class Channels:
             own = names_of([rest.position], TILTS if rest.level is None else (*TILTS, *OF_AXIS))
             for tilt, axis in zip(own, tilts, strict=False):
                 errors[tilt] = (triad.matrix @ cross(axis, force), campaign.position_sigma)
+            for stop, change in accelerometers.stop_errors(rest, gravity.number, triad).items():
+                errors[stop] = (change, rest.stops.sigma)
             residual = rest.mean - triad.matrix @ force - triad.bias
             parts = (force, traces[0], errors, float(motion.time[0]), rest.stretch or UNTIMED)
             means.append(Mean(name, residual, rest.sigma, *parts))
