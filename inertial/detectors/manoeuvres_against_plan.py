@@ -27,7 +27,8 @@ class ManoeuvreMissing(PlanDetector):
     """A planned rest or turn of which the log has nothing, and nothing explains why.
 
     Cause: it was not done, not recorded, or the plan has it in the wrong place. Nothing determines
-    what it alone would determine.
+    what it alone would determine. Where a tumble goes back nothing need move between two rests:
+    they are one, and nothing is lost.
     """
 
     name = "manoeuvre_missing"
@@ -36,7 +37,8 @@ class ManoeuvreMissing(PlanDetector):
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, name in enumerate(recorded.name):
             if not recorded.found[i] and name not in recorded.explained:
-                yield self.of(recorded, i, None, sensor=None)
+                severity = 1 if _one_rest_with(recorded, i) else self.severity
+                yield self.of(recorded, i, None, sensor=None, severity=severity)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
@@ -46,6 +48,19 @@ class ManoeuvreMissing(PlanDetector):
             _("It is left out; the others are used. {recorded}", recorded=_left(recorded, i)),
             _("Correct the plan, or record it."),
         )
+
+
+def _one_rest_with(recorded: Recorded, i: int) -> str:
+    """The rest that was found beside a missing one, in the same direction and log, or nothing."""
+    own = recorded.up[i]
+    if recorded.do[i] != "rest" or not np.isfinite(own).all():
+        return ""
+    for k in (i - 1, i + 1):
+        there = 0 <= k < len(recorded.name) and recorded.found[k] and recorded.do[k] == "rest"
+        alike = there and np.nan_to_num(recorded.up[k]) @ own > SAME_REST_COSINE
+        if alike and recorded.log[k] == recorded.log[i]:
+            return str(recorded.name[k])
+    return ""
 
 
 def _instead(recorded: Recorded, i: int) -> str:
@@ -105,11 +120,10 @@ def _left(recorded: Recorded, i: int) -> str:
             value=_("direction") if rest else _("axis"),
             names=", ".join(recorded.name[k] for k in nearest[:4]),
         )
-        beside = [k for k in (i - 1, i + 1) if k in nearest and along[k] > SAME_REST_COSINE]
-        if rest and beside and recorded.log[beside[0]] == recorded.log[i]:
+        if beside := _one_rest_with(recorded, i):
             sentence += " " + _(
                 "{name}, beside it in the plan, is one rest with it where nothing moved between.",
-                name=recorded.name[beside[0]],
+                name=beside,
             )
         return sentence
     axis = _axis(own)

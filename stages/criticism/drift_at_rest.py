@@ -3,8 +3,9 @@
 A bias instability goes on between the stretches, and there it would be named as effects, or leave a
 structure. A jump or a warm-up within a stretch looks like such a drift at rest, and would be hidden
 by it. So the effects that are named beside the drift are weighed against those without it and with
-a random walk that is estimated between the stretches, by evidence, one sensor after the other. What
-few manoeuvres carry is no drift, unless the others have it too: that is in all of them.
+a random walk that is estimated between the stretches, by evidence, one sensor after the other.
+Effects beside which a structure is left that the drift explains are no explanation. What few
+manoeuvres carry is no drift, unless the others have it too: that is in all of them.
 """
 
 from collections.abc import Callable, Sequence
@@ -41,9 +42,8 @@ def select_beside_drift(
         other, other_tested = select(without)
         odds = _log_evidence(other, level) - _log_evidence(selection, level)
         carried = carrying(other_tested, sensor)
-        if odds > MAX_LOG_ODDS or (
-            carried and not _drifts_without(carried, kept, sensor, other.fitted)
-        ):
+        explains = odds > MAX_LOG_ODDS and (not other_tested.of(sensor) or bool(tested.of(sensor)))
+        if explains or (carried and not _drifts_without(carried, kept, sensor, other.fitted)):
             selection, tested, kept = other, other_tested, without
         elif odds > -MAX_LOG_ODDS:
             selection = _with_alternatives(selection, other)

@@ -471,6 +471,18 @@ def test_what_the_log_has_instead_is_told():
     assert "seen in y-up" in finding["consequence"]
 
 
+def test_two_planned_rests_that_are_one_in_the_log_lose_nothing():
+    """As where a tumble goes back, and nothing need move before the first rest of the way back."""
+
+    def edit(text: str) -> str:
+        (line,) = [line for line in text.splitlines(keepends=True) if "id: z-up," in line]
+        return text.replace(line, line + line.replace("id: z-up,", "id: z-up-back,"))
+
+    (finding,) = found_in(segmented(edit=edit)).to_dict("records")
+    assert (finding["cause"], finding["severity"]) == ("manoeuvre_missing", 1)
+    assert "is one rest with it where nothing moved between" in finding["consequence"]
+
+
 @pytest.mark.slow
 def test_a_dead_gyro_does_not_hinder_the_others():
     logs = [f"{axis}-{way}.asc" for axis in "xyz" for way in ("up", "down", "forward", "backward")]
