@@ -19,10 +19,10 @@ from inertial.campaign.motions import (
     positions_of,
 )
 from inertial.campaign.records import Manoeuvre
-from inertial.campaign.static_positions import Blocks, StaticPosition, stops_of
+from inertial.campaign.static_positions import Blocks, StaticPosition, case_axes, stops_of
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
-from inertial.physics.motion import Motion, is_vertical, level_axes, mean_turned
+from inertial.physics.motion import Motion, level_axes, mean_turned
 from inertial.sensors import SENSORS
 from inertial.tables import ACCEL
 
@@ -145,7 +145,9 @@ def _turning(
     """
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
-    turned = (m.axis, motion.angle, motion.rate * seconds)
+    # In a ramp the mean angle of a block is not the middle of what it turns by.
+    angle = motion.angle - motion.acceleration * seconds**2 / 12
+    turned = (m.axis, angle, motion.rate * seconds)
     ups = mean_turned(m.up, *turned)
     _, off = between_blocks(motion.rate, seconds)
     starts = [start for piece in pairwise(edges) for start in _merged(off, *piece)]
@@ -153,14 +155,14 @@ def _turning(
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
     density = np.where(steady, levels[0], np.fmax(*levels))
     sigmas = density / np.sqrt(merged.seconds)[:, None]
-    case = np.array(level_axes(m.up))
-    level = np.stack([merged.mean(mean_turned(axis, *turned)) for axis in case], axis=1)
-    if is_vertical(m.up, m.axis):
+    axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes(m.up)]
+    level, case = np.stack(axes, axis=1), case_axes(m.up, m.axis)
+    if case is None:
         between = np.concatenate([read[:1], (read[1:] + read[:-1]) / 2, read[-1:]])
         change = between[[*starts[1:], len(read)]] - between[starts]
         sigmas = np.hypot(sigmas, early * change / merged.seconds[:, None])
-    angles = merged.mean(motion.angle[:, None])[:, 0] / (m.angle or np.inf)
-    means = zip(merged.mean(ups), merged.mean(read), sigmas, level, angles, strict=True)
+    shares = merged.mean(angle) / (m.angle or np.inf)
+    means = zip(merged.mean(ups), merged.mean(read), sigmas, level, shares, strict=True)
     rests = [
         StaticForce(
             m.position,

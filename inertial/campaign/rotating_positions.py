@@ -15,7 +15,7 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.interpolated_gaps import gaps_of, weights_of
 from inertial.campaign.rate_segments import refusal_of
 from inertial.campaign.records import Manoeuvre, Part
-from inertial.campaign.static_positions import Blocks, by_manoeuvre, stops_of, stretch_of
+from inertial.campaign.static_positions import Blocks, by_manoeuvre, case_axes, stops_of, stretch_of
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.physics.motion import is_vertical, level_axes, mean_turned
@@ -82,7 +82,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
                 felt=True,
                 turning=True,
                 level=np.tensordot(share, axes[indices], 1),
-                case=np.array(level_axes(m.up)),
+                case=case_axes(m.up, m.axis),
                 stops=stops_of(m, float(share @ middle[indices]) / m.angle),
             )
         )

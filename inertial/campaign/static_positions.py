@@ -157,7 +157,7 @@ class StaticPosition:
             sigma,
             stretch=stretch,
             level=self._level,
-            case=None if self._level is None else np.array(level_axes(self.up)),
+            case=None if self._level is None else case_axes(self.up, self.about),
             stops=stops_of(self.manoeuvre, 1.0 if self.part.phase == "rest-after" else 0.0),
         )
 
@@ -217,6 +217,11 @@ class StaticPosition:
         recorded = np.isfinite(self.means)
         samples, duration = recorded * self.counts[:, None], recorded * self.seconds[:, None]
         return np.cumsum([samples * np.nan_to_num(self.means), samples, duration], axis=1)
+
+
+def case_axes(up: Array, about: Array) -> Array | None:
+    """The level axes of the start of a turn about an axis that is not vertical, (2, 3)."""
+    return None if is_vertical(up, about) else np.array(level_axes(up))
 
 
 def stops_of(m: Manoeuvre, turned_share: float) -> Stops:

@@ -20,7 +20,7 @@ from inertial.arrays import Array
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
 from inertial.estimation.least_squares import Estimate, System
-from inertial.estimation.position_tilt import OF_AXIS, TILTS, in_force, names_of
+from inertial.estimation.position_tilt import AZIMUTH, OF_AXIS, TILTS, in_force, names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
 from inertial.estimation.scatter_and_random_walk import (
     Deviances,
@@ -67,7 +67,7 @@ class StaticForce:
     `sensitivities`: of the means to the parameters of effects, or with `felt` of the specific force
     that the sensors feel; `stretch`: of time; `turning`: not at rest, the table turns steadily;
     `level`: where it turns, or has turned, the level axes at the start of that, mean in body axes;
-    `case`: the same fixed to the case, of a turn about an axis that is not vertical, and `stops`:
+    `case`: the same fixed to the case, in a turn about an axis that is not vertical, and `stops`:
     those of the table.
     """
 
@@ -241,8 +241,7 @@ def _drifting(
     sigma: dict[Name, float] = {}
     for number, some in enumerate(same.values()):
         position, stretch = statics[some[0]].position, statics[some[0]].stretch
-        turning = any(statics[i].level is not None for i in some)
-        tilts = names_of([position], (*TILTS, *OF_AXIS) if turning else TILTS)
+        tilts = max((tilts_of(statics[i]) for i in some), key=len)
         stops = [stop_errors(statics[i], reference.gravity, about) for i in some]
         stopped = tuple(dict.fromkeys(name for errors in stops for name in errors))
         sigma |= reference.sigma_of(tilts)
@@ -277,7 +276,7 @@ def linear_rows(
     position_sigma: float = np.inf,
     free: frozenset[str] = frozenset(),
 ) -> Array:
-    """Coefficients of the s shared unknowns and of four tilts, and the observed, (n, 3, s + 5).
+    """Coefficients of the s shared unknowns and of five tilts, and the observed, (n, 3, s + 6).
 
     `position_sigma`: of the planned attitudes, rad, but of those that are `free`.
     """
@@ -291,7 +290,8 @@ def linear_rows(
     versed = np.where(own, 0.0, 1 - np.cos(np.linalg.norm(shown, axis=1)))
     shown[~own | (np.linalg.norm(shown, axis=1) < MIN_SHOWN)] = 0.0
     forces: Array = gravity * Rotation.from_rotvec(shown).apply(ups)
-    rows = np.zeros((len(statics), 3, s + len(TILTS) + len(OF_AXIS) + 1))
+    tilts = tilt_axes(statics)
+    rows = np.zeros((len(statics), 3, s + tilts.shape[1] + 1))
     for row in range(3):
         rows[:, row, 3 * row : 3 * row + 3] = forces
         rows[:, row, 9 + row] = 1.0
@@ -299,7 +299,6 @@ def linear_rows(
     rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
     felt = [static.felt for static in statics]
     rows[felt, :, UNKNOWNS + 1 : s] = about.matrix @ rows[felt, :, UNKNOWNS + 1 : s]
-    tilts = tilt_axes(statics)
     for i in range(tilts.shape[1]):
         rows[:, :, s + i] = cross(tilts[:, i], forces) @ about.matrix.T
     # M times gravity is in the columns of both, and the tilts are the whole ones.
@@ -320,8 +319,14 @@ def stop_errors(static: StaticForce, gravity: float, about: Triad) -> dict[Name,
     }
 
 
+def tilts_of(static: StaticForce) -> tuple[Name, ...]:
+    """The tilts of its position that a mean may show, the first of those of `tilt_axes`."""
+    kinds = TILTS if static.level is None else (*TILTS, *OF_AXIS)
+    return names_of([static.position], kinds if static.case is None else (*kinds, *AZIMUTH))
+
+
 def tilt_axes(statics: Sequence[StaticForce]) -> Array:
-    """The directions of the four tilts, (n, 4, 3): of the last two none but in turns."""
+    """The directions of the five tilts, (n, 5, 3): of the last three none but in turns."""
     axes = all_level_axes(np.array([static.up for static in statics]))
     case = np.array(
         [own if s.case is None else s.case for own, s in zip(axes, statics, strict=True)]
@@ -329,7 +334,8 @@ def tilt_axes(statics: Sequence[StaticForce]) -> Array:
     level = np.array(
         [own if s.level is None else s.level for own, s in zip(case, statics, strict=True)]
     )
-    return in_force(case, level)
+    azimuth = cross(case[:, 0], case[:, 1])
+    return np.concatenate([in_force(case, level), azimuth[:, None]], axis=1)
 
 
 def _since_switch_on(

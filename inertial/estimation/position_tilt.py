@@ -8,10 +8,12 @@ is fixed to the laboratory has unknowns of its own, and in a turn by θ the acce
     t + (R(θ) − 1) l,
 
 with the sigma of the table for t and for l, independently: that holds where the tilt is wholly of
-the case, and where it is wholly of the axis. The directions are the level ones of the start; after
-part of a turn about another axis than the vertical those of the case are not level. Gyros show the
-part that is fixed to the case, for it moves the axis of the turn there. By themselves they know it
-to the same sigma; beside the accelerometers it is t − l.
+the case, and where it is wholly of the axis. The directions are the level ones of the start. In a
+turn about another axis than the vertical those of the case do not stay level, and an azimuth a of
+the case about the vertical of the start, of which nothing is seen there, becomes a tilt.
+
+Gyros show the part that is fixed to the case, for it moves the axis of the turn there. By
+themselves they know it to the same sigma; beside the accelerometers it is t − l.
 """
 
 from collections.abc import Sequence
@@ -23,6 +25,7 @@ from inertial.estimation.elimination import Name
 
 TILTS = ("tilt 0", "tilt 1")  # t
 OF_AXIS = ("tilt of axis 0", "tilt of axis 1")  # l
+AZIMUTH = ("azimuth of case",)  # a
 OF_CASE = ("tilt of case 0", "tilt of case 1")  # t − l
 
 

@@ -17,13 +17,13 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.position_tilt import OF_AXIS, OF_CASE, TILTS
+from inertial.estimation.position_tilt import AZIMUTH, OF_AXIS, OF_CASE, TILTS
 from inertial.estimation.triad import UNKNOWNS
 
 STEP = 1e-4  # relative, of a variance: its square is lost, and nothing by rounding
 # The kinds of the errors and of the known quantities in the equations.
 ERRORS = {
-    "position": (*TILTS, *OF_AXIS, *OF_CASE),
+    "position": (*TILTS, *OF_AXIS, *AZIMUTH, *OF_CASE),
     "angle": ("angle", "encoder delay", "encoder sine", "encoder cosine"),
     "interpolation": ("gap angle",),
     "clock": ("clock",),

@@ -19,7 +19,6 @@ from inertial.estimation.gyroscope_equations import (
 )
 from inertial.estimation.gyroscope_observations import Position, RateSegment
 from inertial.estimation.least_squares import System
-from inertial.estimation.position_tilt import OF_AXIS, TILTS, names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, measured_covariance
 from inertial.physics.effect import Effect, Truth
 from inertial.physics.forward import Triad, signatures, truth_of
@@ -175,8 +174,7 @@ class Channels:
         ):
             force = gravity.number * rest.up
             errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
-            own = names_of([rest.position], TILTS if rest.level is None else (*TILTS, *OF_AXIS))
-            for tilt, axis in zip(own, tilts, strict=False):
+            for tilt, axis in zip(accelerometers.tilts_of(rest), tilts, strict=False):
                 errors[tilt] = (triad.matrix @ cross(axis, force), campaign.position_sigma)
             for stop, change in accelerometers.stop_errors(rest, gravity.number, triad).items():
                 errors[stop] = (change, rest.stops.sigma)
