@@ -19,10 +19,16 @@ from inertial.campaign.motions import (
     positions_of,
 )
 from inertial.campaign.records import Manoeuvre
-from inertial.campaign.static_positions import Blocks, StaticPosition, case_axes, stops_of
+from inertial.campaign.static_positions import (
+    FASTER_WAVES,
+    Blocks,
+    StaticPosition,
+    case_axes,
+    turn_errors,
+)
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
-from inertial.physics.motion import Motion, level_axes, mean_turned
+from inertial.physics.motion import Motion, cross, level_axes, mean_turned
 from inertial.sensors import SENSORS
 from inertial.tables import ACCEL
 
@@ -60,7 +66,8 @@ def campaign_of(data: CampaignData) -> Campaign:
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
             clock = data.clocks.get(recorded.plan.log)
             early = 0.0 if clock is None or clock.averaged else clock.step / np.sqrt(12)
-            parts = _turning(recorded.plan, recorded.blocks, motion, levels, edges, early)
+            walk = 0.0 if turn.course is not None else turn.angle_walk
+            parts = _turning(recorded.plan, recorded.blocks, motion, levels, edges, early, walk)
             stretches = _stretches(turn.stretch, [at for _, _, at in parts], drifts["accel"])
             static_forces += [
                 (m, replace(part, stretch=own), at)
@@ -134,6 +141,7 @@ def _turning(
     levels: Sequence[Array],
     edges: Sequence[int],
     early: float,
+    walk: float,
 ) -> list[tuple[str, StaticForce, Motion]]:
     """The accelerometers during a rotation in means of some blocks, none across the `edges`.
 
@@ -141,13 +149,16 @@ def _turning(
     the larger one: what shakes the rest after a turn may begin before the table is at rest.
     `early`: sigma of the time of a sample against that of the gyros, s. By it a mean is off in
     proportion to the change from its start to its end, of specific force that does not turn with
-    the table: that of a lever arm in a ramp.
+    the table: that of a lever arm in a ramp. `walk`: as in `turn_errors`.
     """
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
     # In a ramp the mean angle of a block is not the middle of what it turns by.
-    angle = motion.angle - motion.acceleration * seconds**2 / 12
-    turned = (m.axis, angle, motion.rate * seconds)
+    angle, swept = motion.angle - motion.acceleration * seconds**2 / 12, motion.rate * seconds
+    case = case_axes(m.up, m.axis)
+    if case is not None and walk and m.angle:  # the gyros divide the angle from stop to stop
+        angle *= m.angle / (motion.angle[-1] + swept[-1] / 2)
+    turned = (m.axis, angle, swept)
     ups = mean_turned(m.up, *turned)
     _, off = between_blocks(motion.rate, seconds)
     starts = [start for piece in pairwise(edges) for start in _merged(off, *piece)]
@@ -156,11 +167,14 @@ def _turning(
     density = np.where(steady, levels[0], np.fmax(*levels))
     sigmas = density / np.sqrt(merged.seconds)[:, None]
     axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes(m.up)]
-    level, case = np.stack(axes, axis=1), case_axes(m.up, m.axis)
+    level = np.stack(axes, axis=1)
     if case is None:
         between = np.concatenate([read[:1], (read[1:] + read[:-1]) / 2, read[-1:]])
         change = between[[*starts[1:], len(read)]] - between[starts]
         sigmas = np.hypot(sigmas, early * change / merged.seconds[:, None])
+    else:
+        faster = FASTER_WAVES * walk * cross(m.axis[None], merged.mean(read))
+        sigmas = np.hypot(sigmas, np.nan_to_num(faster))
     shares = merged.mean(angle) / (m.angle or np.inf)
     means = zip(merged.mean(ups), merged.mean(read), sigmas, level, shares, strict=True)
     rests = [
@@ -172,7 +186,7 @@ def _turning(
             turning=True,
             level=own,
             case=case,
-            stops=stops_of(m, float(share)),
+            turn_errors=turn_errors(m, float(share), walk),
         )
         for up, mean, sigma, own, share in means
     ]

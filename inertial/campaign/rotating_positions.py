@@ -15,11 +15,17 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.interpolated_gaps import gaps_of, weights_of
 from inertial.campaign.rate_segments import refusal_of
 from inertial.campaign.records import Manoeuvre, Part
-from inertial.campaign.static_positions import Blocks, by_manoeuvre, case_axes, stops_of, stretch_of
+from inertial.campaign.static_positions import (
+    Blocks,
+    by_manoeuvre,
+    case_axes,
+    stretch_of,
+    turn_errors,
+)
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.sensitivities import Sensitivities
 from inertial.physics.motion import is_vertical, level_axes, mean_turned
-from inertial.tables import ACCEL, AXES, STATIC_PHASES
+from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 
 LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU is mounted farther off
 # How far the vertical, or in an upright turn a level axis, may turn in the case within one mean.
@@ -41,17 +47,23 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
         part = moving[m.name]
         usable = performed[m.name].complete and not refusal_of(m, performed[m.name], part)
         if usable and m.name in quiet and bool(part.steady.any()):
-            density = data.noise.of(m.name, "steady", ACCEL)
+            density, of_gyros = (data.noise.of(m.name, "steady", own) for own in (ACCEL, GYRO))
+            walk = float(np.linalg.norm(np.nan_to_num(of_gyros) * m.axis))
             stretch = stretch_of(m, part.those(part.steady), data.shared_clock)
             forces += [
                 (Part(m.name, "steady"), replace(rest, stretch=stretch))
-                for rest in _steady(m, part, quiet[m.name], density)
+                for rest in _steady(m, part, quiet[m.name], density, walk)
             ]
     return forces
 
 
-def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[StaticForce]:
-    """Means of blocks of the steady part, over which the attitude is nearly constant."""
+def _steady(
+    m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array, walk: float
+) -> list[StaticForce]:
+    """Means of blocks of the steady part, over which the attitude is nearly constant.
+
+    `walk`: of the angle by the gyros, rad/√s.
+    """
     assert m.up is not None and m.angle is not None  # else it is left out
     readings, seconds = part.accel, part.seconds
     angle = _angles(m, part, quiet)
@@ -64,7 +76,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     rate = angle / seconds
     upright = is_vertical(m.up, m.axis)
-    turned = abs(float(angle[steady].sum()))
+    turned, total = abs(float(angle[steady].sum())), float(np.sqrt(seconds.sum()))
     means = turned / MAX_UPRIGHT if upright else turned * float(level) / MAX_TURN_IN_MEAN
     pieces = np.array_split(steady, max(1, int(np.ceil(means))))
     rests = []
@@ -83,7 +95,7 @@ def _steady(m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array) -> list[S
                 turning=True,
                 level=np.tensordot(share, axes[indices], 1),
                 case=case_axes(m.up, m.axis),
-                stops=stops_of(m, float(share @ middle[indices]) / m.angle),
+                turn_errors=turn_errors(m, float(share @ middle[indices]) / m.angle, walk * total),
             )
         )
     return rests

@@ -1,5 +1,6 @@
 """The static positions of a campaign: means of blocks, with their noise."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from itertools import pairwise
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Manoeuvre, Part, Performed
-from inertial.estimation.accelerometers import NO_STOPS, StaticForce, Stops
+from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import are_parts_of_turns, is_vertical, level_axes, turned
@@ -84,6 +85,8 @@ def _blocks(table: pd.DataFrame) -> Blocks:
 # --- Static positions of known attitude ---
 
 SQRT2 = float(np.sqrt(2))
+WAVES = 8  # of the error of the angle within a turn
+FASTER_WAVES = 0.11  # of the walk, rms of all waves that are faster: √Σ 1/(πk)², k > 8
 UNTIMED = Stretch("")
 NO_UP = _("which way is up is not known")
 NO_ATTITUDE = _("its attitude is not known, for the turn is not whole")
@@ -158,7 +161,9 @@ class StaticPosition:
             stretch=stretch,
             level=self._level,
             case=None if self._level is None else case_axes(self.up, self.about),
-            stops=stops_of(self.manoeuvre, 1.0 if self.part.phase == "rest-after" else 0.0),
+            turn_errors=turn_errors(
+                self.manoeuvre, 1.0 if self.part.phase == "rest-after" else 0.0
+            ),
         )
 
     def mean_of(self, values: Array) -> float:
@@ -224,16 +229,24 @@ def case_axes(up: Array, about: Array) -> Array | None:
     return None if is_vertical(up, about) else np.array(level_axes(up))
 
 
-def stops_of(m: Manoeuvre, turned_share: float) -> Stops:
-    """The stops of a turn about a level axis, where a share of it is behind.
+def turn_errors(m: Manoeuvre, share: float, walk: float = 0.0) -> Mapping[str, Array]:
+    """The errors of the angle where a share of a turn about an axis that is not vertical is behind.
 
-    The angle is that from one stop to the other, so each has half of its variance.
+    The table stops to the sigma of its angle, which is that from one stop to the other: each has
+    half of its variance. What is between is divided by the gyros, whose random walk has both ends
+    known: it is a Brownian bridge, given here by its slowest waves (Karhunen & Loève).
+
+    Parameters
+    ----------
+    walk : rad, sigma of the random walk of the gyros' angle over the whole turn
     """
-    if m.do != "turn" or m.up is None or not m.angle_sigma or is_vertical(m.up, m.axis):
-        return NO_STOPS
-    shares = {f"{m.name} before": 1 - turned_share, f"{m.name} after": turned_share}
-    axes = {name: share * m.axis for name, share in shares.items() if share}
-    return Stops(axes, m.angle_sigma / SQRT2)
+    if m.do != "turn" or m.up is None or is_vertical(m.up, m.axis):
+        return {}
+    stop = (m.angle_sigma or 0.0) / SQRT2
+    sizes = {"before": (1 - share) * stop, "after": share * stop}
+    for k in range(1, WAVES + 1) if walk else ():
+        sizes[f"wave {k}"] = walk * SQRT2 * np.sin(k * np.pi * share) / (k * np.pi)
+    return {f"{m.name} {name}": size * m.axis for name, size in sizes.items() if size}
 
 
 def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosition], list[Part]]:

@@ -10,7 +10,7 @@ what the cosine of that takes from g u follows from the reading.
 """
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -42,22 +42,8 @@ MAX_RANDOM_WALK = 2e-3  # m/s²/√s, 10 mg/√h: a hundred times that of the po
 MAX_SHOWN = 5.0  # sigma of a position that a tilt may be to be its own
 MIN_SHOWN = 1e-4  # rad; of a smaller tilt what is not linear is less than 0.005 µg
 FREE_TILT = 0.2  # rad, sigma of the tilt of a position of which nothing is known
-STOP = "angle"  # the kind of the error of a stop
+OF_ANGLE = "angle"  # the kind of the errors of turns
 SCATTER_BOUNDS = (1e-7, 1.0)  # m/s², between static positions beyond the noise
-
-
-class Stops(NamedTuple):
-    """Where a turn about a level axis begins and ends: the table stops there to its angle's sigma.
-
-    `axes`: by the name of each stop the axis of the turn, (3,), times the share of the error of the
-    stop that is in a mean; `sigma`: of the error, rad.
-    """
-
-    axes: Mapping[str, Array]
-    sigma: float
-
-
-NO_STOPS = Stops({}, 0.0)
 
 
 @dataclass(frozen=True)
@@ -67,8 +53,9 @@ class StaticForce:
     `sensitivities`: of the means to the parameters of effects, or with `felt` of the specific force
     that the sensors feel; `stretch`: of time; `turning`: not at rest, the table turns steadily;
     `level`: where it turns, or has turned, the level axes at the start of that, mean in body axes;
-    `case`: the same fixed to the case, in a turn about an axis that is not vertical, and `stops`:
-    those of the table.
+    `case`: the same fixed to the case, in a turn about an axis that is not vertical, and
+    `turn_errors`: by name an error of the angle of that, in units of its sigma, as a rotation of
+    the case, (3,), rad.
     """
 
     position: str
@@ -81,7 +68,7 @@ class StaticForce:
     turning: bool = False
     level: Array | None = None  # (2, 3)
     case: Array | None = None  # (2, 3)
-    stops: Stops = NO_STOPS
+    turn_errors: Mapping[str, Array] = field(default_factory=dict)
 
 
 class Reference(NamedTuple):
@@ -242,16 +229,15 @@ def _drifting(
     for number, some in enumerate(same.values()):
         position, stretch = statics[some[0]].position, statics[some[0]].stretch
         tilts = max((tilts_of(statics[i]) for i in some), key=len)
-        stops = [stop_errors(statics[i], reference.gravity, about) for i in some]
-        stopped = tuple(dict.fromkeys(name for errors in stops for name in errors))
-        sigma |= reference.sigma_of(tilts)
-        sigma |= {name: statics[i].stops.sigma for i in some for name in stopped}
+        errors = [errors_of_turn(statics[i], reference.gravity, about) for i in some]
+        of_turns = tuple(dict.fromkeys(name for each in errors for name in each))
+        sigma |= reference.sigma_of(tilts) | dict.fromkeys(of_turns, 1.0)
         columns = len(prior) + len(tilts)
-        own = np.zeros((len(some), 3, columns + len(stopped) + 1))
+        own = np.zeros((len(some), 3, columns + len(of_turns) + 1))
         own[:, :, :columns], own[:, :, -1] = rows[some][:, :, :columns], rows[some][:, :, -1]
-        for place, name in enumerate(stopped, columns):
-            own[:, :, place] = [errors.get(name, np.zeros(3)) for errors in stops]
-        block = whitened(own.reshape(-1, own.shape[2]), noise[some].ravel(), (*tilts, *stopped))
+        for place, name in enumerate(of_turns, columns):
+            own[:, :, place] = [each.get(name, np.zeros(3)) for each in errors]
+        block = whitened(own.reshape(-1, own.shape[2]), noise[some].ravel(), (*tilts, *of_turns))
         block = replace(block, rows=compressed(block.rows))
         blocks.append((block, stretch or Stretch(f"rest {number}")))
         positions.append(position)
@@ -308,14 +294,15 @@ def linear_rows(
     return rows
 
 
-def stop_errors(static: StaticForce, gravity: float, about: Triad) -> dict[Name, Array]:
-    """What the errors of the stops of a turn about a level axis change in a mean, (3,), m/s²/rad.
+def errors_of_turn(static: StaticForce, gravity: float, about: Triad) -> dict[Name, Array]:
+    """What the errors of the angle of a turn change in a mean, (3,), m/s², each by its sigma.
 
     The further the case is turned, the other way turns what is up in it.
     """
     force = gravity * static.up
     return {
-        (STOP, name): -about.matrix @ cross(axis, force) for name, axis in static.stops.axes.items()
+        (OF_ANGLE, name): -about.matrix @ cross(rotation, force)
+        for name, rotation in static.turn_errors.items()
     }
 
 

@@ -154,6 +154,12 @@ class RateSegment:
         """The middle of each block since the first began, (k,), s."""
         return self._cumulated(self.seconds, [gap.seconds for gap in self.gaps])
 
+    @property
+    def angle_walk(self) -> float:
+        """Sigma of the sum of the readings about the axis by their white noise, rad."""
+        variance = np.nan_to_num(self.density) ** 2 @ self.about**2
+        return float(np.sqrt(variance * self.seconds.sum()))
+
     def turned(self, angle: Array) -> Array:
         """The angle of the table at the middle of each block, (k,), from those of the blocks."""
         if self.course is not None:

@@ -176,8 +176,8 @@ class Channels:
             errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
             for tilt, axis in zip(accelerometers.tilts_of(rest), tilts, strict=False):
                 errors[tilt] = (triad.matrix @ cross(axis, force), campaign.position_sigma)
-            for stop, change in accelerometers.stop_errors(rest, gravity.number, triad).items():
-                errors[stop] = (change, rest.stops.sigma)
+            of_turn = accelerometers.errors_of_turn(rest, gravity.number, triad)
+            errors |= {error: (change, 1.0) for error, change in of_turn.items()}
             residual = rest.mean - triad.matrix @ force - triad.bias
             parts = (force, traces[0], errors, float(motion.time[0]), rest.stretch or UNTIMED)
             means.append(Mean(name, residual, rest.sigma, *parts))

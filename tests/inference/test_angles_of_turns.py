@@ -1,7 +1,9 @@
-"""Turns about a level axis stop to the sigma of the table's angle: so far off are the rests there.
+"""In a turn about a level axis the accelerometers feel every error of its angle.
 
 Readings are made here of six rests, and of whole turns about y, there and back, in means of 30°
-with a rest before and one behind.
+with a rest before and one behind. The table stops to the sigma of its angle, and between the stops
+the angle is known to the random walk of a gyro. Part of the tilt of a position is fixed to the
+laboratory, the other one to the case, with an azimuth of the axis of the turn in it.
 """
 
 from dataclasses import replace
@@ -10,12 +12,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from inertial.campaign.records import Manoeuvre
-from inertial.campaign.static_positions import stops_of
-from inertial.estimation.accelerometers import NO_STOPS, Reference, StaticForce, fit
+from inertial.campaign.static_positions import turn_errors
+from inertial.estimation.accelerometers import Reference, StaticForce, fit
 from inertial.physics.motion import level_axes
 
-GRAVITY, NOISE, ARC_SECOND = 9.8, 5e-6, np.radians(1 / 3600)
-ANGLE_SIGMA, POSITION_SIGMA = 10 * ARC_SECOND, 2 * ARC_SECOND
+GRAVITY, NOISE, ARC_SECOND = 9.8, 5e-5, np.radians(1 / 3600)
+ANGLE_SIGMA, WALK, POSITION_SIGMA = np.array([10, 5, 2]) * ARC_SECOND
 Z, Y = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
 UPS = [sign * axis for axis in np.eye(3) for sign in (1, -1)]
 DRAWS = 40
@@ -34,9 +36,10 @@ def readings(random: np.random.Generator) -> tuple[list[StaticForce], np.ndarray
     matrix, bias = np.eye(3) + random.normal(0, 1e-3, (3, 3)), random.normal(0, 0.01, 3)
     statics = []
 
-    def read(position, up, actual, stops=NO_STOPS, **turned):
+    def read(position, up, actual, errors=None, **turned):
         mean = GRAVITY * matrix @ actual + bias + random.normal(0, NOISE, 3)
-        statics.append(StaticForce(position, up, mean, np.full(3, NOISE), stops=stops, **turned))
+        known = {"turn_errors": errors or {}, **turned}
+        statics.append(StaticForce(position, up, mean, np.full(3, NOISE), **known))
 
     def tilt():
         return Rotation.from_rotvec(random.normal(0, POSITION_SIGMA, 3))
@@ -44,17 +47,27 @@ def readings(random: np.random.Generator) -> tuple[list[StaticForce], np.ndarray
     for number, up in enumerate(UPS):
         read(f"rest {number}", up, tilt().apply(up))
     for name, sign in (("there", 1), ("back", -1)):
-        m, up = turn(name, sign * 2 * np.pi), tilt().apply(Z)
+        m, whole, of_axis = turn(name, sign * 2 * np.pi), tilt(), tilt()
+        of_case = whole * of_axis.inv() * Rotation.from_rotvec(random.normal(0, POSITION_SIGMA) * Z)
         begun, ended = random.normal(0, ANGLE_SIGMA / np.sqrt(2), 2)
-        for place in [0.0, *(np.arange(12) + 0.5) / 12, 1.0]:
+        walked = np.cumsum([0.0, *random.normal(0, WALK / np.sqrt(24), 24)])
+        for half in [0, *range(1, 24, 2), 24]:
+            place = half / 24
             planned = sign * 2 * np.pi * place
             angle = planned + (1 - place) * begun + place * ended
+            angle += walked[half] - place * walked[-1]
             at, now = (Rotation.from_rotvec(-by * Y) for by in (planned, angle))
             case = np.array(level_axes(Z))
             turned = (
                 {"turning": True, "level": at.apply(case), "case": case} if 0 < place < 1 else {}
             )
-            read(name, at.apply(Z), now.apply(up), stops_of(m, place), **turned)
+            read(
+                name,
+                at.apply(Z),
+                of_case.apply(now.apply(of_axis.apply(Z))),
+                turn_errors(m, place, WALK),
+                **turned,
+            )
     return statics, np.append(matrix.ravel(), bias)
 
 
@@ -66,7 +79,7 @@ def test_the_truth_comes_back_within_its_sigma_and_nothing_is_left():
         fitted = fit(statics, reference)
         pulls.append((fitted.estimate.values[:12] - true) / fitted.estimate.sigma[:12])
         chances.append(fitted.p_value)
-        exact = [replace(static, stops=NO_STOPS) for static in statics]
+        exact = [replace(static, turn_errors={}) for static in statics]
         without.append(fit(exact, reference).p_value)
     assert 0.9 < np.sqrt(np.mean(np.square(pulls))) < 1.1
     assert np.median(chances) > 0.2 and np.mean(np.array(chances) < 0.01) < 0.1
