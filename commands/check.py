@@ -248,9 +248,8 @@ def _answers(each: ExplainedFindings) -> Iterator[tuple[str, str]]:
         yield _("What was done"), repair["sentence"]
         if repair["state"] == "applied":
             yield _("Valid if"), repair["condition"]
-    following = Counter(
-        in_words(other.cause) for other in each.consequences if other.id != each.cause.id
-    )
+    names = (in_words(other.cause) for other in each.consequences if other.id != each.cause.id)
+    following = Counter(name for name in names if name not in in_words(row["cause"]))
     yield _("Therefore"), ", ".join(f"{name} ({n})" for name, n in following.most_common())
     yield _("In the laboratory"), row["action"]
 

@@ -8,7 +8,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import plus_minus
 from inertial.text.parameters import sign_of
-from inertial.text.units import quantity
+from inertial.text.units import DEGREE, DEGREES, SECONDS_OF_ARC, quantity
 
 MIN_SIGMAS = 3.0  # from which a parameter is given in a sentence, if any reaches it
 
@@ -74,13 +74,16 @@ def effect_sentence(
 
 
 def _significant(parameters: Sequence[Estimated]) -> list[Estimated]:
+    """The sizes that are clear, or all, and the times: without one a size says nothing."""
     known = [p for p in parameters if p.value is not None and p.sigma]
-    clear = [p for p in known if abs(p.value or 0.0) > MIN_SIGMAS * (p.sigma or 0.0)]
-    return clear or known
+    sizes, times = [p for p in known if p.unit != "s"], [p for p in known if p.unit == "s"]
+    clear = [p for p in sizes if abs(p.value or 0.0) > MIN_SIGMAS * (p.sigma or 0.0)]
+    return (clear or sizes) + times
 
 
 def _number(parameter: Estimated) -> str:
+    size, sigma = parameter.value or 0.0, parameter.sigma or 0.0
     unit = quantity(parameter.name, parameter.unit).laboratory
-    sigma = unit.of(parameter.sigma or 0.0)
-    value = plus_minus(unit.of(parameter.value or 0.0), sigma)
+    unit = DEGREES if unit == SECONDS_OF_ARC and abs(size) > DEGREE else unit
+    value = plus_minus(size / unit.size, sigma / unit.size)
     return f"{sign_of(parameter.name)} = {value} {unit.name}"

@@ -31,8 +31,9 @@ NO_END = "（《“"  # what no line ends with
 
 
 def capital(text: str) -> str:
-    """A sentence with its first letter large."""
-    return text if CHINESE.search(text) else text[:1].upper() + text[1:]
+    """A sentence with its first letter large, but where it begins with the name of a file."""
+    of_file = "." in text.partition(" ")[0].rstrip(".:")
+    return text if of_file or CHINESE.search(text) else text[:1].upper() + text[1:]
 
 
 def typeset(text: str) -> str:

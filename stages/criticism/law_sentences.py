@@ -25,7 +25,7 @@ ACTION = _(
 )
 POWERS = {2: _("quadratic in {state}"), 3: _("cubic in {state}"), 4: _("quartic in {state}")}
 FORMS = {
-    "polynomial": _("a polynomial of degree {first} in {state}"),
+    "polynomial": _("a polynomial of degree {degree} in {state}"),
     "power": _("{state} to the power {first}, alike for both signs"),
     "odd_power": _("{state} to the power {first}, with its sign"),
     "harmonic": _("a sine of {state} with a period of {period}"),
@@ -77,6 +77,7 @@ def form_of(law: Law) -> str:
     return FORMS[law.family].format(
         state=state,
         first=significant(first, 3),
+        degree=f"{first:.0f}",
         unit=UNITS.get(law.state, "g"),
         period=of_time if law.state == "time" else f"{significant(period / DEGREE, 4)}°",
         times=", ".join(f"{HOUR * time:.0f}" for time in law.shape),

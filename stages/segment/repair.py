@@ -20,6 +20,7 @@ from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import Misread, Rescaled, Reversed, SpansOff, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
+from inertial.text.typography import capital
 from stages.segment.detection import Undone, in_order, misread_in, swapped_in
 from stages.segment.located import AS_NAMED, AS_PLANNED
 from stages.segment.recording_explanations import (
@@ -428,7 +429,7 @@ def _row(
         "fitting_after": after,
         "observations": total,
         "condition": condition,
-        "sentence": f"{condition[0].upper()}{condition[1:]}. {done}" if condition else done,
+        "sentence": f"{capital(condition)}. {done}" if condition else done,
     }
 
 
