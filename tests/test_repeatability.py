@@ -357,6 +357,7 @@ def test_power_cycles_of_the_laboratory_come_back():
         assert bias["value"] == pytest.approx(true, abs=4 * bias["sigma"])
 
 
+@pytest.mark.slow
 def test_power_cycles_are_simulated_and_are_no_finding():
     document = chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
     made = chain.in_memory_of(document, "diagnosis", chain.BESIDE)

@@ -170,13 +170,16 @@ def test_a_changed_setting_reruns_its_stage_and_what_follows(
             *("inertial/estimation/least_squares.py", {"segment", "noise", *ESTIMATION}),
             marks=pytest.mark.slow,
         ),
-        ("inertial/text/numbers.py", {"plan", "decode", *AFTER_DECODE}),
+        pytest.param(
+            *("inertial/text/numbers.py", {"plan", "decode", *AFTER_DECODE}),
+            marks=pytest.mark.slow,
+        ),
         pytest.param(
             *("inertial/text/cause_names.py", {"criticism", "extension", *DIAGNOSED}),
             marks=pytest.mark.slow,
         ),
         ("stages/report/report.css", {"report"}),
-        ("inertial/text/zh.po", {"report"}),
+        pytest.param("inertial/text/zh.po", {"report"}, marks=pytest.mark.slow),
         ("laboratory/counts.py", {"laboratory_demo", "plan", "decode", *AFTER_DECODE}),
     ],
 )

@@ -5,8 +5,7 @@ from campaigns import diagnosed
 from cases import CASES, Case
 from judge import judge, parameters_of
 
-# The same are in test_said_once.py; and what an angle does is in tests/effects.
-ELSEWHERE = ("gyros-clip-at-60", "impact-in-a-turn", "latitude-far-off")
+QUICK = ("the-demo", "clean-positions")  # the others with the slow tests
 MOST_SIGMA = 4.5  # of some 700 errors of parameters in all cases, one in 200 runs is larger
 
 
@@ -16,9 +15,9 @@ MOST_SIGMA = 4.5  # of some 700 errors of parameters in all cases, one in 200 ru
         pytest.param(
             case,
             id=case.name,
-            marks=() if n % 15 == 0 and case.name not in ELSEWHERE else pytest.mark.slow,
+            marks=() if case.name in QUICK else pytest.mark.slow,
         )
-        for n, case in enumerate(CASES)
+        for case in CASES
     ],
 )
 def test_the_right_causes_and_nothing_else(case: Case) -> None:
