@@ -113,6 +113,7 @@ def test_the_earths_rate_is_taken_out_of_the_angle(clean):
     assert (angle["in_sigmas_after"].abs() < 4).all()
 
 
+@pytest.mark.slow
 def test_a_hidden_g_sensitivity_is_taken_out(coupled):
     """A corrected rest reads the earth's rate, 7.64 °/h at Wuhan, for all its g-sensitivity.
 
@@ -152,6 +153,7 @@ def test_the_result_leaves_the_noise_over_in_every_channel(clean):
         assert (rest.abs() > 3).mean().max() < 0.02
 
 
+@pytest.mark.slow
 def test_what_the_result_has_wrong_is_left_over(coupled):
     """Without its g-sensitivity, 14 °/h under gravity, the x gyro is off by that with x up."""
     result = coupled["diagnosis/result"]
@@ -164,6 +166,7 @@ def test_what_the_result_has_wrong_is_left_over(coupled):
     assert abs(off[1]) < 0.5
 
 
+@pytest.mark.slow
 def test_static_positions_are_predicted_about_the_azimuth_of_the_result(coupled):
     """That of the joint estimate, which lacks the g-sensitivity, is off by tens of degrees."""
     table = coupled["compensation/residuals"]

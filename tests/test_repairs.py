@@ -208,6 +208,7 @@ def test_what_is_wrong_as_a_whole_is_set_right_and_named_once(edits, repair, cau
         assert row["fitting_before"] < row["fitting_after"] == row["observations"]
 
 
+@pytest.mark.slow
 def test_two_turns_the_other_way_may_be_two_in_the_other_order():
     """Within one log the first of them fits the place of the second: one alone seems lost."""
 

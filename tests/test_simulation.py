@@ -74,6 +74,7 @@ def lossy(tmp_path_factory) -> chain.Results:
     return chain.run(campaign, folder / "derived", "simulation", chain.BESIDE)
 
 
+@pytest.mark.slow
 def test_a_turn_with_a_gap_is_met_to_a_count_on_both_sides_of_it(lossy):
     simulated = lossy["simulation/simulated"]
     moving = simulated["phase"].isin(["spin-up", "steady", "spin-down"])
@@ -84,6 +85,7 @@ def test_a_turn_with_a_gap_is_met_to_a_count_on_both_sides_of_it(lossy):
         assert counts.abs().max() < 1.01, channel
 
 
+@pytest.mark.slow
 def test_what_is_masked_in_a_turn_is_not_compared(lossy):
     spikes = [1105, 2000, 2001, 3000]
     rows = [

@@ -57,6 +57,7 @@ def test_a_gap_that_touches_a_ramp_is_refused_by_name(stretches, words, tmp_path
     assert words in done["sentence"]
 
 
+@pytest.mark.slow
 def test_two_gaps_in_the_steady_part_are_both_bridged(tmp_path):
     results = recorded(tmp_path, "noise", faults=lose((1800, 300), (2600, 500)))
     done = of_z(results, "segment/performed")
