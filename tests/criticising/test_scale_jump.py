@@ -7,6 +7,7 @@ import chain
 import numpy as np
 import pytest
 
+DAY = 86_400.0  # s
 SECOND_DAY = 300.0  # s since the first sample: in the pause between the two days
 TRIADS = {"gyro": "gyro", "accel": "accelerometer"}
 JUMPS = {"gyro": [400.0, -250.0, 300.0], "accel": [150.0, 120.0, -200.0]}  # ppm
@@ -16,6 +17,7 @@ def two_days(**effects: Any) -> dict[str, Any]:
     """The short plan, once a day, each day in a log of its own."""
     document = chain.short(effects=effects, seed=6)
     document["handling"]["change_s"] = 5
+    document["start"]["pause_s"] = DAY
     document["receiver"] |= {"message": "columns", "line_end": "lf"}
     document["campaign"]["instrument"] = {"name": "simulated", "rate_hz": 100}
     plan = []

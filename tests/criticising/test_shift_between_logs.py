@@ -7,6 +7,7 @@ import chain
 import numpy as np
 import pytest
 
+TWO_HOURS = 7200.0  # s, after which stamps that go on need be of no common clock
 SHIFT = [300.0, -200.0, 250.0]  # arc seconds, about x, y and z
 
 
@@ -14,6 +15,7 @@ def rests_and_turns(**effects: Any) -> dict[str, Any]:
     """Six rests in one log, which ends after 150 s, and six turns in another."""
     document = chain.short(effects=effects, seed=4)
     document["handling"] |= {"still_s": 8, "change_s": 6}
+    document["start"]["pause_s"] = TWO_HOURS
     document["receiver"] |= {"message": "columns", "line_end": "lf"}
     document["campaign"]["instrument"] = {"name": "simulated", "rate_hz": 100}
     for one in document["campaign"]["plan"]:
