@@ -20,15 +20,15 @@ from inertial.campaign.motions import (
 )
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import (
-    FASTER_WAVES,
     Blocks,
     StaticPosition,
     case_axes,
+    of_faster_waves,
     turn_errors,
 )
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
-from inertial.physics.motion import Motion, cross, level_axes, mean_turned
+from inertial.physics.motion import Motion, level_axes, mean_turned
 from inertial.sensors import SENSORS
 from inertial.tables import ACCEL
 
@@ -172,9 +172,7 @@ def _turning(
         between = np.concatenate([read[:1], (read[1:] + read[:-1]) / 2, read[-1:]])
         change = between[[*starts[1:], len(read)]] - between[starts]
         sigmas = np.hypot(sigmas, early * change / merged.seconds[:, None])
-    else:
-        faster = FASTER_WAVES * walk * cross(m.axis[None], merged.mean(read))
-        sigmas = np.hypot(sigmas, np.nan_to_num(faster))
+    sigmas = np.hypot(sigmas, of_faster_waves(m, merged.mean(ups), walk))
     shares = merged.mean(angle) / (m.angle or np.inf)
     means = zip(merged.mean(ups), merged.mean(read), sigmas, level, shares, strict=True)
     rests = [

@@ -19,6 +19,7 @@ from inertial.campaign.static_positions import (
     Blocks,
     by_manoeuvre,
     case_axes,
+    of_faster_waves,
     stretch_of,
     turn_errors,
 )
@@ -49,6 +50,7 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
         if usable and m.name in quiet and bool(part.steady.any()):
             density, of_gyros = (data.noise.of(m.name, "steady", own) for own in (ACCEL, GYRO))
             walk = float(np.linalg.norm(np.nan_to_num(of_gyros) * m.axis))
+            walk *= float(np.sqrt(part.seconds.sum()))
             stretch = stretch_of(m, part.those(part.steady), data.shared_clock)
             forces += [
                 (Part(m.name, "steady"), replace(rest, stretch=stretch))
@@ -62,7 +64,7 @@ def _steady(
 ) -> list[StaticForce]:
     """Means of blocks of the steady part, over which the attitude is nearly constant.
 
-    `walk`: of the angle by the gyros, rad/√s.
+    `walk`: as in `turn_errors`.
     """
     assert m.up is not None and m.angle is not None  # else it is left out
     readings, seconds = part.accel, part.seconds
@@ -76,26 +78,27 @@ def _steady(
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     rate = angle / seconds
     upright = is_vertical(m.up, m.axis)
-    turned, total = abs(float(angle[steady].sum())), float(np.sqrt(seconds.sum()))
+    turned = abs(float(angle[steady].sum()))
     means = turned / MAX_UPRIGHT if upright else turned * float(level) / MAX_TURN_IN_MEAN
     pieces = np.array_split(steady, max(1, int(np.ceil(means))))
     rests = []
     for indices in (piece for piece in pieces if len(piece)):
         share = seconds[indices] / seconds[indices].sum()
         square = float(share @ rate[indices] ** 2)
+        up, noise = share @ ups[indices], density / np.sqrt(seconds[indices].sum())
         pull = square * (np.outer(m.axis, m.axis) - np.eye(3))  # ω × (ω × r) of r
         rests.append(
             StaticForce(
                 m.position,
-                share @ ups[indices],
+                up,
                 share @ readings[indices],
-                density / np.sqrt(seconds[indices].sum()),
+                np.hypot(noise, of_faster_waves(m, up, walk)),
                 sensitivities=Sensitivities(tuple(LEVER_ARM), pull),
                 felt=True,
                 turning=True,
                 level=np.tensordot(share, axes[indices], 1),
                 case=case_axes(m.up, m.axis),
-                turn_errors=turn_errors(m, float(share @ middle[indices]) / m.angle, walk * total),
+                turn_errors=turn_errors(m, float(share @ middle[indices]) / m.angle, walk),
             )
         )
     return rests

@@ -15,9 +15,10 @@ from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
-from inertial.physics.motion import are_parts_of_turns, is_vertical, level_axes, turned
+from inertial.physics.motion import are_parts_of_turns, cross, is_vertical, level_axes, turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 from inertial.text.messages import _
+from inertial.text.units import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
@@ -86,7 +87,7 @@ def _blocks(table: pd.DataFrame) -> Blocks:
 
 SQRT2 = float(np.sqrt(2))
 WAVES = 8  # of the error of the angle within a turn
-FASTER_WAVES = 0.11  # of the walk, rms of all waves that are faster: √Σ 1/(πk)², k > 8
+FASTER = float(np.sqrt(1 / 6 - np.sum(np.arange(1, WAVES + 1) ** -2.0) / np.pi**2))  # rms of others
 UNTIMED = Stretch("")
 NO_UP = _("which way is up is not known")
 NO_ATTITUDE = _("its attitude is not known, for the turn is not whole")
@@ -247,6 +248,16 @@ def turn_errors(m: Manoeuvre, share: float, walk: float = 0.0) -> Mapping[str, A
     for k in range(1, WAVES + 1) if walk else ():
         sizes[f"wave {k}"] = walk * SQRT2 * np.sin(k * np.pi * share) / (k * np.pi)
     return {f"{m.name} {name}": size * m.axis for name, size in sizes.items() if size}
+
+
+def of_faster_waves(m: Manoeuvre, ups: Array, walk: float) -> Array:
+    """Sigma of means of specific force by the waves that `turn_errors` leaves out, m/s², as `ups`.
+
+    `ups`: (…, 3), what is up for the case; `walk`: as there.
+    """
+    if m.up is None or is_vertical(m.up, m.axis):
+        return np.zeros_like(ups)
+    return np.abs(FASTER * walk * STANDARD_GRAVITY * cross(m.axis, ups))
 
 
 def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosition], list[Part]]:

@@ -1,5 +1,6 @@
 """The drift that the noise at rest shows goes on between the rests, and is no effect there."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import chain
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from inertial.estimation.triad import linear_names
+from stages.criticism import drift_at_rest
 
 CLEAR = ("found", "one_of_class")
 MOST = 4.0  # sigma, of the largest of nine errors
@@ -68,3 +70,32 @@ def test_a_jump_within_a_rest_is_seen_there_as_a_drift_and_stays_a_jump() -> Non
     assert (found["cause"], found["verdict"]) == ("gyro_bias_jump", "found")
     (at,) = results["criticism/effects"].query("parameter == 't0'").to_dict("records")
     assert at["value"] == pytest.approx(1000, abs=4 * at["sigma"])
+
+
+@pytest.mark.parametrize(("left", "kept"), [(("time",), True), ((), False)])
+def test_effects_that_leave_a_structure_replace_no_drift(monkeypatch, left, kept):
+    """Of a flicker of 30 µg in a clean campaign: a jump, a shift and "no noise", odds of e⁴."""
+
+    def chosen(log_evidence: float) -> Any:
+        evidence = SimpleNamespace(sensors=("accel",))
+        return SimpleNamespace(
+            log_evidence=log_evidence, effects=(), evidence=evidence, fitted=(), alternatives=()
+        )
+
+    def tested(structures: tuple[str, ...]) -> Any:
+        return SimpleNamespace(of=lambda sensor: structures)
+
+    monkeypatch.setattr(drift_at_rest, "carrying", lambda tested, sensor: ())
+    monkeypatch.setattr(drift_at_rest, "members_of", lambda selection: ())
+    monkeypatch.setattr(drift_at_rest, "replace", lambda selection, **changes: selection)
+    without = SimpleNamespace(name="without")
+    measured = SimpleNamespace(
+        name="with",
+        drifts={"gyro": False, "accel": True},
+        without_drift_at_rest=lambda sensors: without,
+    )
+    outcomes = {"with": (chosen(0.0), tested(())), "without": (chosen(4.0), tested(left))}
+    *_, campaign = drift_at_rest.select_beside_drift(
+        measured, lambda campaign: outcomes[campaign.name], 0.005
+    )
+    assert (campaign is measured) == kept
