@@ -36,6 +36,29 @@ def test_a_set_position_that_leans_turns_force_and_rate_alike():
     assert np.abs(moved.force - truth.force).max() > 1e-4
 
 
+def test_a_turn_that_goes_too_far_leaves_the_case_there_until_it_is_set_anew():
+    """Backward about y by 90° and δ: behind it, and in all of that position, δ is still there."""
+    stages = stretches(np.arange(6.0), np.ones(6), np.full(6, np.nan))
+    motion = replace(
+        stages,
+        about=np.tile([0.0, 1.0, 0.0], (6, 1)),
+        rate=np.array([0, -0.5, 0, 0.5, 0, 0]),
+        angle=np.array([0, -np.pi / 4, 0, 0, 0, 0]),
+        seconds=np.array([1, np.pi, 1, 1, 1, 1]),
+        visit=np.array([0, 1 + 1 / 3, 1 + 2 / 3, 2 + 1 / 3, 3, 4]),
+        position=np.array([0.0, 0, 0, 0, 1, 0]),
+    )
+    delta, force, rate = 3e-5, np.array([4.0, 1.0, 9.0]), np.array([3e-5, 4e-5, 5e-5])
+    truth = Truth(rate=np.tile(rate, (6, 1)), force=np.tile(force, (6, 1)))
+    moved = CATALOGUE["turn_angle_error"].fixed(1.0).moves(truth, motion, np.array([delta]))
+    over = delta * np.array([0, -0.5, -1, -1, 0, 0])  # of the case, about y, at the middle of each
+    back = Rotation.from_rotvec(np.outer(-over, [0, 1.0, 0]))
+    faster = -delta / np.pi * np.array([0, 1, 0, 0, 0, 0])  # δ more in the π seconds it takes
+    np.testing.assert_allclose(moved.force, back.apply(truth.force), atol=1e-8)
+    expected = back.apply(truth.rate) + np.outer(faster, [0, 1.0, 0])
+    np.testing.assert_allclose(moved.rate, expected, atol=1e-12)
+
+
 def test_readings_are_the_truth_through_m_and_the_bias():
     matrix = np.eye(3) + np.arange(9).reshape(3, 3) / 100
     gyro, accel = (

@@ -1,0 +1,42 @@
+"""A turn about a level axis in the laboratory: clean, and 200″ too far."""
+
+from typing import Any
+
+import chain
+import pytest
+
+FURTHER = 200.0  # arc seconds
+
+
+def document(**effects: Any) -> dict[str, Any]:
+    """The demo with two turns more, about y with z up."""
+    made = chain.demo(seed=5, effects=effects)
+    plan = made["campaign"]["plan"]
+    turn = next(m for m in plan if m["do"] == "turn")
+    for way, degrees in (("forward", 360), ("backward", -360)):
+        name = f"level-{way}"
+        own = {"id": name, "log": f"{name}.asc", "position": name}
+        plan.append(turn | own | {"up": "+z", "about": "+y", "degrees": degrees})
+    return made
+
+
+@pytest.mark.slow
+def test_nothing_is_named_in_clean_turns():
+    """A position that was off by 2.5″, by the table's own sigma of its angle."""
+    results = chain.in_memory_of(document(), "diagnosis", chain.BESIDE)
+    assert results["diagnosis/causes"].empty
+    assert set(results["diagnosis/verdict"]["verdict"]) == {"usable"}
+
+
+@pytest.mark.slow
+def test_one_that_goes_too_far_is_named_alone_and_takes_no_result():
+    """The accelerometers, which stood 200″ off behind it, had a shift of the mounting and jumps."""
+    error = {"turn": "level-forward", "further_arcsec": FURTHER}
+    results = chain.in_memory_of(document(turn_angle_error=error), "diagnosis", chain.BESIDE)
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert (cause["cause"], cause["manoeuvre"]) == ("turn_angle_error", "level-forward")
+    effects = results["criticism/effects"].query("effect == 'turn_angle_error'")
+    (delta,) = effects[effects["parameter"] == "delta"].to_dict("records")
+    further = FURTHER * 4.84814e-6
+    assert abs(delta["value"] - further) < 4 * delta["sigma"] < further / 10
+    assert not results["diagnosis/verdict"]["verdict"].eq("not_usable").any()
