@@ -1,13 +1,14 @@
 """White noise of every channel in every manoeuvre, and all terms of the noise at rest."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain, pairwise, product
 
 import numpy as np
 import pandas as pd
 
 from inertial import tables
-from inertial.arrays import Array, Integers
+from inertial.arrays import Array, Booleans, Integers
 from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
@@ -217,40 +218,76 @@ def rounding_levels(
 
     counts : (6,), the size of a count of each channel
 
-
     The mean of a manoeuvre is off by the same however long it is; so is the sigma that this level
-    gives it. Means that are alike are off by the same, so each of k of them has √k of it. The
-    variance of rounded readings depends on where the truth lies between two steps, so the noise is
-    that of the mean variance of all rests, but where a manoeuvre clearly shakes.
+    gives it. Means that are alike are off by the same, so each of k of them has √k of it.
+
+    The variance of rounded readings depends on where the truth lies between two steps: half-way it
+    is 1/4, with next to no noise. So the noise is that of the mean variance of all rests, and a
+    channel that may stand half-way in all of them has that of the quietest axis of its sensor. A
+    manoeuvre that clearly shakes has its own.
     """
     found: dict[Level, float] = {}
-    for place in np.flatnonzero(np.isfinite(counts)):
-        channel, step = tables.CHANNELS[place], float(counts[place])
-        sensor = channel.partition("_")[0]
-        own = {
-            key: one
-            for key, one in spectra.items()
-            if sensor not in one.carried and np.isfinite(one.squares[place])
-            if sensor in one.samples
+    for sensor, columns in COLUMNS.items():
+        means = {
+            place: _means_of(spectra, sensor, place, float(counts[place]))
+            for place in np.arange(6)[columns]
+            if np.isfinite(counts[place])
         }
-        if not own:
-            continue
-        count = np.array([one.samples[sensor] for one in own.values()])
-        seconds = np.array([sum(one.seconds[sensor]) for one in own.values()])
-        spread, mean = (
-            np.array([getattr(one, name)[place] for one in own.values()]) / count / step**power
-            for name, power in (("squares", 2), ("sums", 1))
-        )
-        coarse = spread < MAX_COARSE_VARIANCE
-        resting = coarse & np.array([phase == "rest" for _manoeuvre, phase in own])
-        shared = np.mean(spread, where=resting if resting.any() else coarse) if coarse.any() else 0
-        off = rounded_mean(noise_before_rounding(np.where(coarse, shared, spread)))
-        apart = np.abs(mean - mean[:, None])
-        alike = np.sum(np.cos(2 * np.pi * np.minimum(apart, MAX_ALIKE)), axis=1)
-        level = off * step * np.sqrt(alike * seconds)
-        kept = zip(own, off, level.tolist(), strict=True)
-        found |= {(*key, channel): size for key, one, size in kept if one > MIN_ROUNDED_MEAN}
+        known = {place: own for place, own in means.items() if own.keys}
+        noises = [own.noise_at_rest * counts[place] for place, own in known.items()]
+        for place, own in known.items():
+            noise = min(noises) / counts[place]
+            off = rounded_mean(np.where(own.coarse, noise, noise_before_rounding(own.spread)))
+            level = off * counts[place] * np.sqrt(own.alike * own.seconds)
+            found |= {
+                (*key, tables.CHANNELS[place]): size
+                for key, one, size in zip(own.keys, off, level.tolist(), strict=True)
+                if one > MIN_ROUNDED_MEAN
+            }
     return found
+
+
+@dataclass(frozen=True)
+class _Means:
+    """The means of one channel by manoeuvre and phase: `keys`, and (n,) of each, in steps.
+
+    spread: variance of the readings, steps²; coarse: whether that is little; alike: how many means
+    share their error; seconds: how long they are.
+    """
+
+    keys: Sequence[tuple[str, str]]
+    spread: Array
+    alike: Array
+    seconds: Array
+
+    @property
+    def coarse(self) -> Booleans:
+        return np.asarray(self.spread < MAX_COARSE_VARIANCE)
+
+    @property
+    def noise_at_rest(self) -> float:
+        """Steps, by the mean variance of the rests; infinite where no channel is coarse."""
+        resting = self.coarse & np.array([phase == "rest" for _manoeuvre, phase in self.keys])
+        of = resting if resting.any() else self.coarse
+        return float(noise_before_rounding(self.spread[of].mean())) if of.any() else np.inf
+
+
+def _means_of(
+    spectra: Mapping[tuple[str, str], Spectra], sensor: str, place: int, step: float
+) -> _Means:
+    own = {
+        key: one
+        for key, one in spectra.items()
+        if sensor not in one.carried and np.isfinite(one.squares[place])
+        if sensor in one.samples
+    }
+    count = np.array([one.samples[sensor] for one in own.values()])
+    spread = np.array([one.squares[place] for one in own.values()]) / count / step**2
+    mean = np.array([one.sums[place] for one in own.values()]) / count / step
+    apart = np.minimum(np.abs(mean - mean[:, None]), MAX_ALIKE)
+    alike = np.sum(np.cos(2 * np.pi * apart), axis=1)
+    seconds = np.array([sum(one.seconds[sensor]) for one in own.values()])
+    return _Means(list(own), spread, alike, seconds)
 
 
 STAGE = Stage(

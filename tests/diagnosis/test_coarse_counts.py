@@ -6,12 +6,12 @@ import chain
 import numpy as np
 import pytest
 from judge import parameters_of
+from scipy.stats import norm
 
+from inertial.sensors import CHANNELS
 from inertial.signal.scatter import noise_before_rounding, rounded_mean
 from stages.noise.spectra import Spectra
 from stages.noise.stage import rounding_levels
-
-pytestmark = pytest.mark.slow
 
 SEEDS = (1801, 1802, 1803)
 
@@ -50,6 +50,7 @@ def results(request):
     return [(one, chain.in_memory_of(one, "diagnosis", chain.BESIDE)) for one in documents]
 
 
+@pytest.mark.slow
 def test_they_are_the_only_cause_and_the_result_stays_usable(results):
     """Once effects of the gyros were "found" at 10 sigma, and of accelerometers beside them.
 
@@ -64,6 +65,7 @@ def test_they_are_the_only_cause_and_the_result_stays_usable(results):
         assert set(tables["diagnosis/verdict"]["verdict"]) == {"usable_within_limits"}
 
 
+@pytest.mark.slow
 def test_the_sigmas_hold_what_rounding_makes_the_means_uncertain_by(results):
     pulls = []
     for document, tables in results:
@@ -75,12 +77,14 @@ def test_the_sigmas_hold_what_rounding_makes_the_means_uncertain_by(results):
     assert np.max(np.abs(pulls)) < 4 and 0.2 < np.sqrt(np.mean(np.square(pulls))) < 1.3
 
 
+@pytest.mark.slow
 def test_counts_that_carry_lose_nothing():
     """A receiver of increments says so; what it rounds is in the next count."""
     levels = chain.in_memory_of(chain.short(), "noise")["noise/levels"]
     assert levels["rounding"].isna().all()
 
 
+@pytest.mark.slow
 def test_a_level_of_its_own_for_each_mean_that_rounding_reaches(results):
     _, tables = results[0]
     levels = tables["noise/levels"].dropna(subset="rounding")
@@ -100,3 +104,23 @@ def test_a_channel_that_is_masked_in_one_manoeuvre_has_its_levels_in_the_others(
     levels = rounding_levels(spectra, np.ones(6))
     assert {key[0] for key in levels if key[2] == "gyro_x"} == {"m1", "m2", "m3"}
     assert len(levels) == 23 and np.isfinite(list(levels.values())).all()
+
+
+@pytest.mark.parametrize("noise", [0.05, 0.1, 0.15, 0.2, 0.3])
+def test_means_that_all_stand_at_one_place_between_two_counts(noise):
+    """Half-way readings change with next to no noise: the errors were up to ten of their sigmas."""
+    random, steps, seconds, pulls = np.random.default_rng(7), np.arange(-5, 6), 20.0, []
+    for _ in range(300):
+        truth = random.uniform(-0.5, 0.5, 6)
+        edges = norm.cdf((np.append(steps - 0.5, 5.5) - truth[:, None]) / noise)
+        share = np.diff(edges)  # of the readings at each count
+        mean = share @ steps
+        own = Spectra()
+        own.samples = {"accel": 2000, "gyro": 2000}
+        own.seconds = {"accel": [seconds], "gyro": [seconds]}
+        own.sums, own.squares = 2000 * mean, 2000 * (share @ steps**2 - mean**2)
+        levels = rounding_levels({("m", "rest"): own}, np.ones(6))
+        sigma = [levels.get(("m", "rest", name), 1e-3) / np.sqrt(seconds) for name in CHANNELS]
+        pulls.append((mean - truth) / np.maximum(sigma, 1e-3))
+    assert 0.6 < np.sqrt(np.mean(np.square(pulls))) < 1.1
+    assert np.mean(np.abs(pulls) > 3) < 0.03
