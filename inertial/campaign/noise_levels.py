@@ -32,6 +32,7 @@ LEVEL_P_VALUE = 2.7e-3  # that any level of a channel differs so by chance: thre
 DRIFTS = ("bias_instability", "random_walk")  # terms of the noise
 MAX_P_VALUE = 1e-3  # of a drift that enters: of 12 that are absent, one in a campaign of a hundred
 LEVEL_COLUMNS = [column.name for column in tables.LEVELS.columns]
+MAX_STATED_RATIO = 1.5  # of a bias instability to the data sheet's, from which it is unexpected
 MIN_NOISE_RECORDING_S = 1800.0  # s, of a rest that is recorded for its noise
 OWN, COMMON = "own", "common"
 STATED, RESIDUALS = "stated", "residuals"  # of means without time
@@ -40,22 +41,26 @@ STATED, RESIDUALS = "stated", "residuals"  # of means without time
 def drift_of(terms: NoiseTerms | None, stated: float | None = None) -> dict[str, float]:
     """What of the terms of a channel enters the covariance, by name.
 
-    Of drifts that the data do not distinguish that is the likeliest. Where they show none, the bias
-    instability that the data sheet states, `stated`, as far as their upper limit leaves it open.
+    Of drifts that the data do not distinguish that is the likeliest. The bias instability that the
+    data sheet states, `stated`, goes on for longer than static stretches are: it stands for one
+    that they do not show, or show less of, as far as their upper limit leaves it open.
     """
+    instability, walk = DRIFTS
     if terms is None:
-        return {DRIFTS[0]: stated} if stated else {}
+        return {instability: stated} if stated else {}
     sizes = {name: float(getattr(terms.model, name)) for name in DRIFTS}
     certain = {name for name in DRIFTS if terms.terms[name].p_value < MAX_P_VALUE}
     shown = {name: size for name, size in sizes.items() if size > 0 and name in certain}
-    if shown or not stated:
+    if walk in shown or not stated:
         return shown
-    return {DRIFTS[0]: float(np.fmin(stated, terms.terms[DRIFTS[0]].upper))}
+    own = terms.terms[instability]
+    limit = own.interval[1] if own.detected else own.upper
+    return {instability: max(shown.get(instability, 0.0), float(np.fmin(stated, limit)))}
 
 
 def effective_levels(
     noise: pd.DataFrame,
-    drifts: Mapping[str, Mapping[str, float]] | None = None,
+    drifts: Mapping[str, Mapping[str, float | None]] | None = None,
     rounding: Mapping[tuple[str, str, str], float] | None = None,
 ) -> pd.DataFrame:
     """The table of effective levels, by the levels of all manoeuvres.
@@ -163,7 +168,9 @@ class NoiseLevels:
         rows = [self._rows.get((None, None, f"{sensor}_{axis}"), {}) for axis in tables.AXES]
         sizes = np.array([[row.get(term) or 0.0 for term in DRIFTS] for row in rows], np.float64)
         instability, walk = np.nan_to_num(sizes).T
-        return MeasuredDrift(instability, walk)
+        stated = np.array([row.get("data_sheet") or 0.0 for row in rows], np.float64)
+        expected = not walk.any() and bool(np.all(instability <= MAX_STATED_RATIO * stated))
+        return MeasuredDrift(instability, walk, expected=expected)
 
     def oscillates(self, manoeuvre: str, channels: Sequence[str]) -> bool:
         """Whether a channel oscillates in the steady part of a turn, and not at rest."""

@@ -56,12 +56,14 @@ class MeasuredDrift:
     """What the noise within static stretches says of the drift of each axis, (3,), 0 if nothing.
 
     `instability`: B, unit of the readings; `walk`: K, the same per √s; `switch_on`: by what the
-    bias differs from one switch-on to the next, (3,), unit of the readings, none: not yet known.
+    bias differs from one switch-on to the next, (3,), unit of the readings, none: not yet known;
+    `expected`: it is no more than the data sheet states.
     """
 
     instability: Array
     walk: Array
     switch_on: Array | None = None
+    expected: bool = False
 
     def __bool__(self) -> bool:
         return bool(self.instability.any() or self.walk.any())

@@ -80,7 +80,7 @@ NOISE_TERMS = Table(
 )
 LEVELS = Table(
     "levels",
-    4,
+    5,
     (
         Column("manoeuvre", TEXT, "", "as in noise; none: all that have no row", nullable=True),
         Column("phase", TEXT, "", "rest or steady; none as manoeuvre", nullable=True),
@@ -117,6 +117,13 @@ LEVELS = Table(
             DOUBLE,
             "rad/s/√s, m/s²/√s",
             "K of its bias by terms, or the likeliest; none: does not enter",
+            nullable=True,
+        ),
+        Column(
+            "data_sheet",
+            DOUBLE,
+            "rad/s, m/s²",
+            "B of the data sheet, of a common level",
             nullable=True,
         ),
     ),

@@ -5,7 +5,8 @@ structure. A jump or a warm-up within a stretch looks like such a drift at rest,
 by it. So the effects that are named beside the drift are weighed against those without it and with
 a random walk that is estimated between the stretches, by evidence, one sensor after the other.
 Effects beside which a structure is left that the drift explains are no explanation. What few
-manoeuvres carry is no drift, unless the others have it too: that is in all of them.
+manoeuvres carry is no drift, unless the others have it too: that is in all of them. A drift that is
+no more than the data sheet states is known beforehand, and is not weighed.
 """
 
 from collections.abc import Callable, Sequence
@@ -36,7 +37,8 @@ def select_beside_drift(
     kept = measured
     selection, tested = select(kept)
     for sensor in SENSORS:
-        if not measured.drifts[sensor] or not selection.evidence.sensors:
+        drift = measured.drifts[sensor]
+        if not drift or drift.expected or not selection.evidence.sensors:
             continue  # without equations nothing is likelier
         without = kept.without_drift_at_rest([sensor])
         other, other_tested = select(without)

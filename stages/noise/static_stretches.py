@@ -174,10 +174,11 @@ class SensorNoise:
 
     def drifts(
         self, sheet: Mapping[str, Mapping[str, float | None]]
-    ) -> Iterator[tuple[str, dict[str, float]]]:
+    ) -> Iterator[tuple[str, dict[str, float | None]]]:
         """What enters the covariance, by channel; `sheet`: see `term_rows`."""
         for channel, terms in zip(self.channels, self.terms, strict=True):
-            yield channel, drift_of(terms, sheet[channel].get("bias_instability"))
+            stated = sheet[channel].get("bias_instability")
+            yield channel, {**drift_of(terms, stated), "data_sheet": stated}
 
     def allan_rows(self) -> Iterator[Row]:
         """Rows of the table."""

@@ -1,5 +1,6 @@
 """The drift that the noise at rest shows goes on between the rests, and is no effect there."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -7,6 +8,7 @@ import chain
 import numpy as np
 import pytest
 
+from inertial.estimation.random_walk import NO_DRIFT
 from inertial.estimation.triad import linear_names
 from stages.criticism import drift_at_rest
 
@@ -72,8 +74,13 @@ def test_a_jump_within_a_rest_is_seen_there_as_a_drift_and_stays_a_jump() -> Non
     assert at["value"] == pytest.approx(1000, abs=4 * at["sigma"])
 
 
-@pytest.mark.parametrize(("left", "kept"), [(("time",), True), ((), False)])
-def test_effects_that_leave_a_structure_replace_no_drift(monkeypatch, left, kept):
+@pytest.mark.parametrize(
+    ("left", "expected", "kept"),
+    [(("time",), False, True), ((), False, False), ((), True, True)],
+)
+def test_no_drift_is_replaced_by_effects_that_leave_a_structure_or_if_it_is_expected(
+    monkeypatch, left, expected, kept
+):
     """Of a flicker of 30 µg in a clean campaign: a jump, a shift and "no noise", odds of e⁴."""
 
     def chosen(log_evidence: float) -> Any:
@@ -91,7 +98,7 @@ def test_effects_that_leave_a_structure_replace_no_drift(monkeypatch, left, kept
     without = SimpleNamespace(name="without")
     measured = SimpleNamespace(
         name="with",
-        drifts={"gyro": False, "accel": True},
+        drifts={"gyro": NO_DRIFT, "accel": replace(NO_DRIFT, walk=np.ones(3), expected=expected)},
         without_drift_at_rest=lambda sensors: without,
     )
     outcomes = {"with": (chosen(0.0), tested(())), "without": (chosen(4.0), tested(left))}

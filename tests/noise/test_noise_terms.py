@@ -9,6 +9,7 @@ from scipy.linalg import toeplitz
 from scipy.signal import butter, lfilter
 from scipy.stats import binom
 
+from inertial.campaign.noise_levels import drift_of
 from inertial.estimation.multiresolution import Powers, coefficient_variances, lowest_shapes
 from inertial.estimation.noise_model import TERMS, rate_autocovariance
 from inertial.estimation.noise_terms import NoiseTerms, noise_terms
@@ -221,3 +222,23 @@ def test_the_covariance_of_a_random_walk_of_the_rate():
     for lag in range(1, 5):
         variance = 2 * (gamma[0] - gamma[lag])
         assert variance == pytest.approx(walk**2 * interval * (lag - 1 / 3))
+
+
+def test_the_data_sheet_stands_for_what_short_stretches_leave_open_of_the_bias_instability():
+    """Of a flicker that is there the limit is above it, and of one that is not below the stated."""
+    random = np.random.default_rng(41)
+    shown = found(noise(SAMPLES, INTERVAL, random, white_noise=1e-4, bias_instability=1e-3))
+    white = found(noise(SAMPLES, INTERVAL, random, white_noise=1e-4))
+    own, none = (terms.terms["bias_instability"] for terms in (shown, white))
+    assert own.detected and not none.detected
+    for terms, stated, size in (
+        (shown, None, own.value),
+        (shown, 5e-4, own.value),
+        (shown, 1.0, own.interval[1]),
+        (white, None, None),
+        (white, 1.0, none.upper),
+        (white, none.upper / 2, none.upper / 2),
+        (None, 2.0, 2.0),
+        (None, None, None),
+    ):
+        assert drift_of(terms, stated) == ({} if size is None else {"bias_instability": size})
