@@ -30,7 +30,7 @@ def rows_of(table: pd.DataFrame) -> list[Row]:
 class Manoeuvre:
     """One manoeuvre of the plan; vectors (3,) in body axes, SI and radians, None where unknown.
 
-    `tumbled`: of a rest of a tumble, the angle since its start, along its axis, (3,).
+    Of a rest of a `tumble`: `tumble_axis` and `tumbled`, the angle since its start along it, (3,).
     """
 
     name: str
@@ -56,6 +56,8 @@ class Manoeuvre:
     temperature_sigma: float | None = None
     rate_sigma: float | None = None
     switch_on: int = 0
+    tumble: str | None = None
+    tumble_axis: Array | None = None
     tumbled: Array | None = None
 
     @property
@@ -99,8 +101,8 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
             *(row[key] for key in ("acceleration", "seconds", "recorded")),
             *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
             *(row[key] for key in ("temperature", "temperature_sigma", "rate_sigma")),
-            *(row[key] for key in ("switch_on",)),
-            *(_vector(row, stem) for stem in ("tumbled",)),
+            *(row[key] for key in ("switch_on", "tumble")),
+            *(_vector(row, stem) for stem in ("tumble_axis", "tumbled")),
         )
         for row in rows_of(table)
     ]

@@ -165,6 +165,7 @@ class StaticPosition:
             turn_errors=turn_errors(
                 self.manoeuvre, 1.0 if self.part.phase == "rest-after" else 0.0
             ),
+            tumble_tilts=tumble_tilts(self.manoeuvre),
         )
 
     def mean_of(self, values: Array) -> float:
@@ -228,6 +229,25 @@ class StaticPosition:
 def case_axes(up: Array, about: Array) -> Array | None:
     """The level axes of the start of a turn about an axis that is not vertical, (2, 3)."""
     return None if is_vertical(up, about) else np.array(level_axes(up))
+
+
+def tumble_tilts(m: Manoeuvre) -> Mapping[str, Array]:
+    """The tilts that all rests of a tumble share, by name as directions in body axes, (3,).
+
+    The axis is not level, which is fixed to the laboratory; the angles are off by the same; and the
+    case does not stand on the axis as it should, about two directions that are fixed to it.
+    """
+    if m.tumble is None or m.up is None or m.tumble_axis is None or m.tumbled is None:
+        return {}
+    axis = m.tumble_axis
+    start = turned(m.up, axis, -float(m.tumbled @ axis))
+    tilts = {
+        "lean of axis": np.cross(axis, m.up),
+        "angle": axis,
+        "case 0": start,
+        "case 1": np.cross(axis, start),
+    }
+    return {f"{m.tumble} {name}": direction for name, direction in tilts.items()}
 
 
 def turn_errors(m: Manoeuvre, share: float, walk: float = 0.0) -> Mapping[str, Array]:

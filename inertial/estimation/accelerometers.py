@@ -43,6 +43,7 @@ MAX_SHOWN = 5.0  # sigma of a position that a tilt may be to be its own
 MIN_SHOWN = 1e-4  # rad; of a smaller tilt what is not linear is less than 0.005 µg
 FREE_TILT = 0.2  # rad, sigma of the tilt of a position of which nothing is known
 OF_ANGLE = "angle"  # the kind of the errors of turns
+OF_TUMBLE = "tumble"  # the kind of the tilts that the rests of a tumble share
 SCATTER_BOUNDS = (1e-7, 1.0)  # m/s², between static positions beyond the noise
 
 
@@ -55,7 +56,7 @@ class StaticForce:
     `level`: where it turns, or has turned, the level axes at the start of that, mean in body axes;
     `case`: the same fixed to the case, in a turn about an axis that is not vertical, and
     `turn_errors`: by name an error of the angle of that, in units of its sigma, as a rotation of
-    the case, (3,), rad.
+    the case, (3,), rad; `tumble_tilts`: by name a direction of a tilt that it shares, (3,).
     """
 
     position: str
@@ -69,6 +70,7 @@ class StaticForce:
     level: Array | None = None  # (2, 3)
     case: Array | None = None  # (2, 3)
     turn_errors: Mapping[str, Array] = field(default_factory=dict)
+    tumble_tilts: Mapping[str, Array] = field(default_factory=dict)
 
 
 class Reference(NamedTuple):
@@ -84,13 +86,17 @@ class Reference(NamedTuple):
     axis_sigma: float | None = None
     free: frozenset[str] = frozenset()
 
-    def sigma_of(self, tilts: Sequence[Name]) -> dict[Name, float]:
-        """The sigma of each of these unknowns."""
-        axis = self.position_sigma if self.axis_sigma is None else self.axis_sigma
-        set_sigma = {
-            name: FREE_TILT if name in self.free else self.position_sigma for _, name in tilts
-        }
-        return {name: axis if name[0] in OF_AXIS else set_sigma[name[1]] for name in tilts}
+    def sigma_of(self, errors: Sequence[Name]) -> dict[Name, float]:
+        """The sigma of each of these unknowns: tilts, and errors of turns and tumbles."""
+        return {(kind, name): self._sigma_of(kind, name) for kind, name in errors}
+
+    def _sigma_of(self, kind: str, name: str) -> float:
+        if kind == OF_ANGLE:
+            return 1.0
+        if kind in OF_AXIS and self.axis_sigma is not None:
+            return self.axis_sigma
+        free = kind not in (*OF_AXIS, OF_TUMBLE) and name in self.free
+        return FREE_TILT if free else self.position_sigma
 
 
 def weighted(
@@ -229,15 +235,15 @@ def _drifting(
     for number, some in enumerate(same.values()):
         position, stretch = statics[some[0]].position, statics[some[0]].stretch
         tilts = max((tilts_of(statics[i]) for i in some), key=len)
-        errors = [errors_of_turn(statics[i], reference.gravity, about) for i in some]
-        of_turns = tuple(dict.fromkeys(name for each in errors for name in each))
-        sigma |= reference.sigma_of(tilts) | dict.fromkeys(of_turns, 1.0)
+        errors = [shared_errors(statics[i], reference.gravity, about) for i in some]
+        shared = tuple(dict.fromkeys(name for each in errors for name in each))
+        sigma |= reference.sigma_of((*tilts, *shared))
         columns = len(prior) + len(tilts)
-        own = np.zeros((len(some), 3, columns + len(of_turns) + 1))
+        own = np.zeros((len(some), 3, columns + len(shared) + 1))
         own[:, :, :columns], own[:, :, -1] = rows[some][:, :, :columns], rows[some][:, :, -1]
-        for place, name in enumerate(of_turns, columns):
+        for place, name in enumerate(shared, columns):
             own[:, :, place] = [each.get(name, np.zeros(3)) for each in errors]
-        block = whitened(own.reshape(-1, own.shape[2]), noise[some].ravel(), (*tilts, *of_turns))
+        block = whitened(own.reshape(-1, own.shape[2]), noise[some].ravel(), (*tilts, *shared))
         block = replace(block, rows=compressed(block.rows))
         blocks.append((block, stretch or Stretch(f"rest {number}")))
         positions.append(position)
@@ -294,15 +300,17 @@ def linear_rows(
     return rows
 
 
-def errors_of_turn(static: StaticForce, gravity: float, about: Triad) -> dict[Name, Array]:
-    """What the errors of the angle of a turn change in a mean, (3,), m/s², each by its sigma.
+def shared_errors(static: StaticForce, gravity: float, about: Triad) -> dict[Name, Array]:
+    """What errors that it shares change in a mean, (3,), m/s²: by the sigma of an angle, and per
 
-    The further the case is turned, the other way turns what is up in it.
+    rad of a tilt of a tumble. The further the case is turned, the other way turns what is up in it.
     """
     force = gravity * static.up
+    kinds = ((OF_ANGLE, static.turn_errors), (OF_TUMBLE, static.tumble_tilts))
     return {
-        (OF_ANGLE, name): -about.matrix @ cross(rotation, force)
-        for name, rotation in static.turn_errors.items()
+        (kind, name): -about.matrix @ cross(rotation, force)
+        for kind, errors in kinds
+        for name, rotation in errors.items()
     }
 
 

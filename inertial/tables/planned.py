@@ -144,7 +144,7 @@ INPUTS = Table(
 )
 MANOEUVRES = Table(
     "manoeuvres",
-    5,
+    6,
     (
         Column("manoeuvre", TEXT, "", "identifier, unique in the campaign"),
         Column("do", TEXT, "", "rest, turn or positions"),
@@ -155,6 +155,8 @@ MANOEUVRES = Table(
         *vector("up", "1", "unit vector that points up at the start"),
         *vector("mark", "1", "unit vector to the table's zero mark at the start"),
         *vector("about", "1", "unit vector of the axis of the turn"),
+        Column("tumble", TEXT, "", "the tumble that a rest is one of", nullable=True),
+        *vector("tumble_axis", "1", "unit vector of the axis of that tumble"),
         *vector("tumbled", "rad", "angle since the start of the tumble, about its axis"),
         Column(
             "angle", DOUBLE, "rad", "angle of the turn about `about`, right-hand rule", BODY, True

@@ -176,8 +176,9 @@ class Channels:
             errors: Errors = {("gravity", ""): (triad.matrix @ rest.up, gravity.scatter)}
             for tilt, axis in zip(accelerometers.tilts_of(rest), tilts, strict=False):
                 errors[tilt] = (triad.matrix @ cross(axis, force), campaign.position_sigma)
-            of_turn = accelerometers.errors_of_turn(rest, gravity.number, triad)
-            errors |= {error: (change, 1.0) for error, change in of_turn.items()}
+            shared = accelerometers.shared_errors(rest, gravity.number, triad)
+            sigma = campaign.reference.sigma_of(list(shared))
+            errors |= {error: (change, sigma[error]) for error, change in shared.items()}
             residual = rest.mean - triad.matrix @ force - triad.bias
             parts = (force, traces[0], errors, float(motion.time[0]), rest.stretch or UNTIMED)
             means.append(Mean(name, residual, rest.sigma, *parts))

@@ -1,6 +1,6 @@
 """The manoeuvres of a plan, every shorthand expanded: one row each, SI, body axes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import cos, isclose, radians
 from typing import Any
 
@@ -64,7 +64,8 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
         "rate": None,
         "rate_sigma": None,
         "acceleration": in_si(item.get("accel_deg_s2"), DEGREE),
-        **{f"tumbled_{axis}": None for axis in tables.AXES},
+        "tumble": None,
+        **_components({"tumble_axis": None, "tumbled": None}),
         **_temperature(file, key, item),
     }
     up, mark = _direction(file, [*key, "up"], item), _direction(file, [*key, "mark"], item)
@@ -140,7 +141,10 @@ def _direction(file: YamlFile, key: Key, item: dict[str, Any]) -> Array | None:
 
 
 def _vectors(up: Array | None, mark: Array | None, about: Array | None) -> Row:
-    vectors = {"up": up, "mark": mark, "about": about}
+    return _components({"up": up, "mark": mark, "about": about})
+
+
+def _components(vectors: Mapping[str, Array | None]) -> Row:
     return {
         f"{name}_{axis}": None if vector is None else float(vector[i])
         for name, vector in vectors.items()
@@ -272,6 +276,6 @@ def _tumble(
             marks = None if mark is None else turned(mark, about, angle)
             name = f"{item['id']}{way}-{number:02d}"
             position = f"{item['position']}-{number:02d}" if "position" in item else name
-            named = {"manoeuvre": name, "position": position, "do": "rest"}
-            tumbled = {f"tumbled_{axis}": angle * about[i] for i, axis in enumerate(tables.AXES)}
+            named = {"manoeuvre": name, "position": position, "do": "rest", "tumble": item["id"]}
+            tumbled = _components({"tumble_axis": about, "tumbled": angle * about})
             yield row | named | tumbled | _vectors(ups, marks, None)
