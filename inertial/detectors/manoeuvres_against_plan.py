@@ -27,8 +27,8 @@ class ManoeuvreMissing(PlanDetector):
     """A planned rest or turn of which the log has nothing, and nothing explains why.
 
     Cause: it was not done, not recorded, or the plan has it in the wrong place. Nothing determines
-    what it alone would determine. Where a tumble goes back nothing need move between two rests:
-    they are one, and nothing is lost.
+    what it alone would determine. Where nothing need move between two rests they are one, and
+    nothing is lost; where a tumble goes back that is as planned.
     """
 
     name = "manoeuvre_missing"
@@ -37,8 +37,11 @@ class ManoeuvreMissing(PlanDetector):
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, name in enumerate(recorded.name):
             if not recorded.found[i] and name not in recorded.explained:
-                severity = 1 if _one_rest_with(recorded, i) else self.severity
-                yield self.of(recorded, i, None, sensor=None, severity=severity)
+                beside = _one_rest_with(recorded, i)
+                if beside is None:
+                    yield self.of(recorded, i, None, sensor=None)
+                elif recorded.tumble[i] is None or recorded.tumble[i] != recorded.tumble[beside]:
+                    yield self.of(recorded, i, None, sensor=None, severity=1)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
@@ -50,17 +53,17 @@ class ManoeuvreMissing(PlanDetector):
         )
 
 
-def _one_rest_with(recorded: Recorded, i: int) -> str:
-    """The rest that was found beside a missing one, in the same direction and log, or nothing."""
+def _one_rest_with(recorded: Recorded, i: int) -> int | None:
+    """The rest that was found beside a missing one, in the same direction and log, if any."""
     own = recorded.up[i]
     if recorded.do[i] != "rest" or not np.isfinite(own).all():
-        return ""
+        return None
     for k in (i - 1, i + 1):
         there = 0 <= k < len(recorded.name) and recorded.found[k] and recorded.do[k] == "rest"
         alike = there and np.nan_to_num(recorded.up[k]) @ own > SAME_REST_COSINE
         if alike and recorded.log[k] == recorded.log[i]:
-            return str(recorded.name[k])
-    return ""
+            return k
+    return None
 
 
 def _instead(recorded: Recorded, i: int) -> str:
@@ -120,10 +123,11 @@ def _left(recorded: Recorded, i: int) -> str:
             value=_("direction") if rest else _("axis"),
             names=", ".join(recorded.name[k] for k in nearest[:4]),
         )
-        if beside := _one_rest_with(recorded, i):
+        beside = _one_rest_with(recorded, i)
+        if beside is not None:
             sentence += " " + _(
                 "{name}, beside it in the plan, is one rest with it where nothing moved between.",
-                name=beside,
+                name=recorded.name[beside],
             )
         return sentence
     axis = _axis(own)

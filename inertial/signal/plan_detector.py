@@ -128,7 +128,8 @@ class Recorded:
     """The m manoeuvres of a plan, and what was recorded of each, SI and radians, body axes.
 
     name, log, position, do: what the plan calls it, where it is recorded, in which position of the
-    table, and rest, turn or positions; steady: only its steady part is planned to be recorded.
+    table, and rest, turn or positions; tumble: which one a rest is of, none: of none; steady: only
+    its steady part is planned to be recorded.
     up, about: (m, 3), planned directions, NaN where none; angle, rate, seconds: (m,), planned, the
     first two signed about `about`, NaN where none; by an encoder, where one is used, in place of
     the stated_angle. angle_sigma, rate_sigma: of the table, rad, and relative (NaN: not stated).
@@ -161,6 +162,7 @@ class Recorded:
     name: Sequence[str]
     log: Sequence[str]
     position: Sequence[str]
+    tumble: Sequence[str | None]
     do: Sequence[str]
     steady: Booleans
     up: Array

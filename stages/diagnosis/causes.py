@@ -47,7 +47,7 @@ REPAIRED, MODELLED, CURVE, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
 APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were made with
 MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
 MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
-HARMLESS, SPOILS = 1, 3  # severity of a finding
+GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
 ENCODER_SCALE = "encoder_scale"
@@ -353,7 +353,7 @@ class Evidence:
             return cure, 0.0 if cure == NONE else None, None
         if cause.masked:
             return MASKED, None, None
-        if int(cause.row["severity"]) == HARMLESS:
+        if int(cause.row["severity"]) == GOOD_TO_KNOW:
             return NONE, 0.0, None
         incomplete = bool(done) and not any(each.complete or each.bridged for each in done)
         return LEFT_OUT if incomplete else NONE, None, None

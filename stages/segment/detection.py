@@ -101,6 +101,7 @@ def recorded_of(
         name=[m.name for m in plan],
         log=[m.log for m in plan],
         position=[m.position for m in plan],
+        tumble=[m.tumble for m in plan],
         do=[m.do for m in plan],
         steady=np.array([m.recorded == "steady" for m in plan], bool),
         up=_vectors([m.up for m in plan]),

@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import degrees
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import chain
@@ -13,6 +14,7 @@ import pandas as pd
 import pytest
 
 import laboratory
+from inertial.detectors.manoeuvres_against_plan import ManoeuvreMissing
 from inertial.signal.axis_permutations import PERMUTATIONS, Permutation, read_as_other_axes
 from inertial.signal.misread_axes import determinant
 
@@ -481,6 +483,23 @@ def test_two_planned_rests_that_are_one_in_the_log_lose_nothing():
     (finding,) = found_in(segmented(edit=edit)).to_dict("records")
     assert (finding["cause"], finding["severity"]) == ("manoeuvre_missing", 1)
     assert "is one rest with it where nothing moved between" in finding["consequence"]
+
+
+@pytest.mark.parametrize(("tumble", "severities"), [("about-x", []), (None, [1]), ("other", [1])])
+def test_where_a_tumble_goes_back_one_rest_is_what_is_planned(tumble, severities):
+    up = np.tile([0.0, 0.6, 0.8], (3, 1))
+    recorded = SimpleNamespace(
+        name=["07", "back-07", "turn"],
+        do=["rest", "rest", "turn"],
+        log=["one.csv"] * 3,
+        found=np.array([True, False, True]),
+        tumble=["about-x", tumble, None],
+        explained=(),
+        up=up,
+    )
+    detector = ManoeuvreMissing()
+    detector.of = lambda recorded, i, rest, **own: own["severity"]
+    assert list(detector.detect(recorded)) == severities
 
 
 @pytest.mark.slow
