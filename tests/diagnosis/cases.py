@@ -136,6 +136,7 @@ def one_attitude_each(**changes: Any) -> Document:
     The logs have no common clock, so nothing tells that they are of one run of the instrument.
     """
     document = chain.short(**changes)
+    document["start"]["pause_s"] = 86_400.0
     document["handling"]["still_s"] = 20
     document["receiver"] |= {"message": "columns", "line_end": "lf"}
     document["campaign"]["instrument"] = {"name": "simulated", "rate_hz": 100}
@@ -333,9 +334,10 @@ CASES: tuple[Case, ...] = (
         hidden={"receiver": {"rate_hz": 125}},
     ),
     Case(
-        "clock-fast",  # as scale factors common to three axes, which every calibration takes up
+        "clock-fast",  # or the table slow, which keeps its rate to 100 ppm
         short,
-        (),
+        (cause({"rate_off"}, "gyro"),),
+        gyro=LOST,
         hidden=effect(clock_scale={"fast_ppm": 1500}),
         known=False,
     ),
@@ -543,9 +545,9 @@ CASES: tuple[Case, ...] = (
         "tilt-of-the-table",
         rates,
         (cause({"table_tilt"}),),
-        accel=HARMLESS,
+        accel=LIMITED,
         gyro=HARMLESS,
-        hidden=effect(table_tilt={"north_arcsec": 0.955, "east_arcsec": 0.0}),  # SNR 9
+        hidden=effect(table_tilt={"north_arcsec": 8.0, "east_arcsec": 0.0}),  # SNR 14
     ),
     Case(
         "imu-turned-in-its-fixture",  # after three of six rests, before all turns
@@ -564,10 +566,9 @@ CASES: tuple[Case, ...] = (
         hidden=effect(accel_quadratic={"k2_micro_g_g2": [60.0, 0.0, 0.0]}),  # SNR 15
     ),
     Case(
-        "structure-outside-the-catalogue",
+        "swell-as-a-sensor-wanders",  # by half of a reading's scatter in a rest: in the sigmas
         short,
-        (cause({"unknown_structure", "accel_drift", "accel_random_walk"}, "accel"),),
-        accel=LIMITED | LOST,
+        (),
         hidden=fault({"oscillate": {"log": "all", "line": 1} | SWELL}),
     ),
     # ---- two at once
