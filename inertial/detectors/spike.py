@@ -40,6 +40,7 @@ MAX_OTHER_SPIKES = 4  # of them may be spikes as well
 FIFTH_LARGEST_SIGMA = 1.37  # sigma: the fifth largest of 24 Gaussian readings
 # Of that scatter, which comes from few readings, so that noise alone seldom raises it
 SIDE_SCATTER_SHARE = 0.75
+MIN_LEAP = 0.75  # of a spike, by which readings leap to it and back; half where a ramp turns back
 MIN_NEIGHBOUR_SHARE = 0.1  # of the largest within nine readings: what is less is not judged
 CAMPAIGN_READINGS = 1.2e6  # of a campaign like S0's, among which the largest is sought
 
@@ -59,10 +60,11 @@ class Spikes(Detector):
     Looked at is what is left of the readings without their running median over 9: nothing of a
     ramp, a step or a steady turn. It is measured by the scatter of the 1024 readings around, or of
     the 24 on either side where that is larger, and at least by a count: so an oscillation or
-    coarse counts are no spikes. A knock shakes several channels at once, and rings: it is none
-    either. Where the IMU is moved by hand, or rings, a spike must be a gross one of one reading; in
-    a log of which a tenth is so, everywhere. The first and the last reading are not judged, nor
-    those beside readings that are masked.
+    coarse counts are no spikes. Nor is the top of a change of position, to which nothing leaps. A
+    knock shakes several channels at once, and rings: it is none either. Where the IMU is moved by
+    hand, or rings, a spike must be a gross one of one reading; in a log of which a tenth is so,
+    everywhere. The first and the last reading are not judged, nor those beside readings that are
+    masked.
 
     Cause: a reading was spoilt on its way, or the clock of the IMU was set while it turned. It
     moves the mean of its block, and inflates the noise.
@@ -95,6 +97,8 @@ class Spikes(Detector):
                 first, last = int(channel.places[start]), int(channel.places[end - 1])
                 if handled[first] and end - start > 1:
                     continue  # a knock lasts
+                if not _leaps(channel, start, end):
+                    continue
                 loud = max(MIN_DEVIATION_SCATTER, MAX_FAINT_SHARE * scatters)
                 if not _shaken(channels, (first, last), i, loud, bool(handled[first])):
                     k = start + int(np.argmax(np.abs(channel.off[start:end])))
@@ -193,6 +197,17 @@ def _spikes(channel: Channel, handled: Booleans) -> Iterator[tuple[int, int, flo
         own = (far >= start) & (far < end)
         if own.any() and end - start <= MAX_SPIKE_READINGS:
             yield start, end, float((off[far] / scatter)[own].max())
+
+
+def _leaps(channel: Channel, start: int, end: int) -> bool:
+    """Whether readings leap to these from the one before, and back to the one after.
+
+    Where the rate rises and falls again at once, the highest is off the median of those around it
+    by twice of what it is off its neighbours.
+    """
+    edges = np.array([start, end - 1])
+    change = channel.change[[start, min(end, len(channel.change) - 1)]]
+    return bool(np.all(change >= MIN_LEAP * np.abs(channel.off[edges])))
 
 
 def _beside(readings: Array, far: Integers, spared: int) -> Array:
