@@ -402,7 +402,17 @@ class Campaign:
         columns = _prior_sigmas(effects, 1.0)
         drift = self.drifts["gyro"]
         made = gyroscopes.linearised(point, turns, steady, *known, columns, drift)
-        return made.with_statics(rests)
+        site = self.solution.site
+        changes = {
+            name: change
+            for effect in effects
+            for name, change in zip(
+                effect.columns,
+                effect.level_rate_changes(site.earth_up, site.earth_level).tolist(),
+                strict=True,
+            )
+        }
+        return replace(made.with_statics(rests), level_changes=changes)
 
     def _accelerometer(
         self,

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from inertial.arrays import Array
 from inertial.physics.effect import Effect, Parameter, Truth, known_earth, usually
 from inertial.physics.motion import Motion
@@ -21,6 +23,9 @@ class EarthRateOmitted(Effect):
     parameters = (Parameter("s", "1", 1.0, _("share of the earth's rate that is missing")),)
     sizes = usually(1.0)
     thinkable = 1.0
+
+    def level_rate_changes(self, up: float, level: float) -> Array:
+        return np.array([-level])
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         upward, level = known_earth(truth, motion)

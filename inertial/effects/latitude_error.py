@@ -14,7 +14,8 @@ class LatitudeError(TurnedEarthRate):
     """ω += Δφ (ω_e cosφ up − ω_e sinφ north): the upward part grows, the level part shrinks.
 
     Told from g-sensitivity, which also goes with up and down, by the level part alone, and that
-    only where the heading of the table is known. The campaign's own sigma of the latitude holds.
+    only where the heading of the table is known or the gyros tell it. The campaign's own sigma of
+    the latitude holds.
     """
 
     name = "latitude_error"
@@ -23,6 +24,10 @@ class LatitudeError(TurnedEarthRate):
     parameters = (Parameter("dphi", "rad", 0.02 * DEGREE, _("true latitude less the known one")),)
     sizes = usually(0.02 * DEGREE)
     thinkable = 1000.0
+
+    def level_rate_changes(self, up: float, level: float) -> Array:
+        along, across = self._shares
+        return np.array([along * level - across * up])
 
     def parts(self, truth: Truth, motion: Motion) -> tuple[Array, Array]:
         upward, level = known_earth(truth, motion)

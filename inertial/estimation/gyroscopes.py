@@ -1,7 +1,7 @@
 """The gyros from static positions and rate segments of a known angle, all nine elements of M."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -158,8 +158,9 @@ class LinearisedEquations:
     """The equations of rate segments, to which those of static positions are added.
 
     `blocks`: with the position and the stretch of each, None of a segment that no gyro senses;
-    `sigma`: of the errors; `effect_sigma`: prior sigmas of the parameters of effects; `measured`:
-    drift of the biases.
+    `sigma`: of the errors; `effect_sigma`: prior sigmas of the parameters of effects;
+    `level_changes`: of those that change it, what the size of the earth's horizontal rate changes
+    by per unit; `measured`: drift of the biases.
     """
 
     point: Linearisation
@@ -168,6 +169,7 @@ class LinearisedEquations:
     blocks: Sequence[tuple[str, EquationBlock, Stretch] | None]
     sigma: Mapping[Name, float]
     measured: MeasuredDrift = NO_DRIFT
+    level_changes: Mapping[str, float] = field(default_factory=dict)
 
     def with_statics(self, statics: Sequence[StaticRate]) -> "LinearisedEquations":
         """The same with the equations of static positions, before the others."""
@@ -188,7 +190,8 @@ class LinearisedEquations:
         """All equations. Unknowns: M by rows, bias, upward earth rate, effects."""
         prior, sigma = self._prior, dict(self.sigma)
         by_position: dict[str, list[tuple[EquationBlock, Stretch]]] = {}
-        constrained = size_constraint(self.point, self.earth, len(prior), sigma)
+        changes = [self.level_changes.get(name, 0.0) for name in self.effect_sigma]
+        constrained = size_constraint(self.point, self.earth, changes, sigma)
         for position, block, stretch in filter(None, self.blocks):
             by_position.setdefault(position, []).append((constrained(block), stretch))
         names = [("parameter", str(i)) for i in range(UNKNOWNS)]

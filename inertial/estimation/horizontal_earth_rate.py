@@ -1,6 +1,6 @@
 """The earth's rate on the table: mean over a stretch, and azimuth of its horizontal component."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +29,7 @@ from inertial.physics.motion import turned_all
 # and the right side is linear about its last value. The neglected term grows with (a − a₀)²/2, so
 # the constraint is applied only where the data determine the azimuth well, and a₀ is that of the
 # last result; else the components are those of a random direction, each with the size as its sigma.
+# Effects that change the size, as a wrong latitude, stand on the right side as well.
 
 MAX_AZIMUTH_SIGMA = 0.2  # rad: the neglected term is then a tenth of the sigma of the size
 CONSTRAINT_SIGMA = 1e-4  # relative, of the size
@@ -54,13 +55,14 @@ def constrained_positions(levels: Mapping[Name, float], size: float) -> frozense
 
 
 def size_constraint(
-    point: Linearisation, earth: Earth, shared: int, sigma: dict[Name, float]
+    point: Linearisation, earth: Earth, changes: Sequence[float], sigma: dict[Name, float]
 ) -> Callable[[EquationBlock], EquationBlock]:
     """Adds the constraint to the first block with the components, for each known azimuth.
 
-    `shared`: the number of shared unknowns; `sigma`: of the errors, where the components become
-    vague.
+    `changes`: of the size per unit of the parameters of effects, the last of the shared unknowns;
+    `sigma`: of the errors, where the components become vague.
     """
+    shared = UNKNOWNS + 1 + len(changes)
     pending = {
         name
         for name in point.azimuths
@@ -81,6 +83,7 @@ def size_constraint(
             row = np.zeros((1, block.rows.shape[1]))
             row[0, [shared + block.own.index(key) for key in keys]] = level / np.linalg.norm(level)
             row[0, UNKNOWNS] = up / size
+            row[0, UNKNOWNS + 1 : shared] = -np.asarray(changes)
             row[0, -1] = size + up / size * (up - earth.up)
             rows = np.vstack([block.rows, row / (CONSTRAINT_SIGMA * size)])
             # The azimuth is fitted, so there is one degree of freedom less.

@@ -201,6 +201,14 @@ class Effect(ABC):
         """
         return None
 
+    def level_rate_changes(self, up: float, level: float) -> Array:
+        """What the size of the earth's horizontal rate changes by per unit of each parameter.
+
+        Of a position whose azimuth the gyros tell themselves it is all that is known of it. up,
+        level: the upward and the horizontal rate that are taken as known, rad/s.
+        """
+        return np.zeros(len(self.parameters))
+
     def signature(self, motion: Motion) -> Reading | None:
         """Change of the readings per unit of each parameter, where it needs no forward model.
 
@@ -316,10 +324,15 @@ class TurnedEarthRate(Effect):
         if self.after is not None:
             before = self.after.moves(truth, motion, np.array([self.after.at or 0.0]))
         turning, onwards = self.parts(before, motion)
+        along, across = self._shares
+        return replace(truth, rate=truth.rate + values[0] * (across * onwards + along * turning))
+
+    @property
+    def _shares(self) -> tuple[float, float]:
+        """Of the part that turns and of that a quarter of a turn on, per unit of the angle."""
         about = self.at or 0.0
         along = -np.sin(about / 2) * np.sinc(about / 2 / np.pi)  # −(1 − cos ψ)/ψ
-        across = np.sinc(about / np.pi)  # sin ψ/ψ
-        return replace(truth, rate=truth.rate + values[0] * (across * onwards + along * turning))
+        return float(along), float(np.sinc(about / np.pi))  # sin ψ/ψ
 
     @property
     def key(self) -> tuple[object, ...]:

@@ -130,6 +130,15 @@ def there_and_back(**changes: Any) -> Document:
     return document
 
 
+def without_heading(**changes: Any) -> Document:
+    """The same, the azimuth of no position being stated."""
+    document = there_and_back(**changes)
+    document["campaign"]["table"]["heading_deg"] = None
+    for one in document["campaign"]["plan"]:
+        one.pop("mark", None)
+    return document
+
+
 def one_attitude_each(**changes: Any) -> Document:
     """Three turns about the vertical, each gyro in one attitude only, a log each.
 
@@ -271,6 +280,13 @@ CASES: tuple[Case, ...] = (
         (cause({"latitude_error"}, "gyro", alone=True),),
         gyro=CONDITIONAL | LIMITED,
         hidden=effect(latitude_error={"error_deg": 9.0}),
+    ),
+    Case(
+        "latitude-off-without-heading",  # what the gyros tell of the azimuth tells its size
+        without_heading,
+        (cause({"latitude_error"}, "gyro", alone=True),),
+        gyro=CONDITIONAL | LIMITED,
+        hidden=effect(latitude_error={"error_deg": 3.0}),
     ),
     Case(
         "heading-off",

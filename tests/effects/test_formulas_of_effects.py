@@ -59,6 +59,19 @@ def test_a_turn_that_goes_too_far_leaves_the_case_there_until_it_is_set_anew():
     np.testing.assert_allclose(moved.rate, expected, atol=1e-12)
 
 
+@pytest.mark.parametrize("off", [0.001, 0.1])
+def test_a_wrong_latitude_changes_the_size_of_the_horizontal_rate(off):
+    """ω_e cos(φ + Δφ), which a small angle has to its square, and a large one about itself."""
+    rate, latitude = 7.292115e-5, 0.8
+    up, level = rate * np.sin(latitude), rate * np.cos(latitude)
+    effect = CATALOGUE["latitude_error"].about(off)
+    (change,) = effect.level_rate_changes(up, level)
+    exact = rate * np.cos(latitude + off) - level
+    assert change * off == pytest.approx(exact, rel=1e-9 if off > 0.02 else off)
+    assert CATALOGUE["earth_rate_omitted"].level_rate_changes(up, level) == pytest.approx(-level)
+    assert not CATALOGUE["heading_error"].level_rate_changes(up, level).any()
+
+
 def test_readings_are_the_truth_through_m_and_the_bias():
     matrix = np.eye(3) + np.arange(9).reshape(3, 3) / 100
     gyro, accel = (
