@@ -129,6 +129,7 @@ def test_between_both_nothing_is_shown():
     assert decision(1.0, 0.1, 1.0, SIMPLE_ACCEPTANCE).risk == pytest.approx(0.5)
 
 
+@pytest.mark.slow
 def test_a_campaign_with_tolerances_is_assessed(tmp_path):
     """Biases of 5, −7 and 0 °/h against 1 °/h; their sigmas are 0.1 °/h."""
     document = chain.short()

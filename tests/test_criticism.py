@@ -86,10 +86,8 @@ def test_the_demo_names_what_is_hidden_in_it_and_nothing_else(demo_criticised):
     assert abs(ringing.loc["amplitude", "value"] - 0.01) < 3 * ringing.loc["amplitude", "sigma"]
 
 
-@pytest.mark.parametrize(
-    "seed",
-    [pytest.param(n, marks=() if n == 31 else pytest.mark.slow) for n in range(31, 41)],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(31, 41))
 def test_on_clean_data_nothing_is_named(criticised, seed):
     results = criticised("", seed)
     assert named(results) == set()

@@ -394,6 +394,7 @@ def readings_of(mount: dict[str, Any], sample: dict[str, Any], truth: Any) -> An
     return np.array(values)
 
 
+@pytest.mark.slow
 def test_by_the_equations_of_the_file_a_corrected_rest_reads_the_rate_of_the_earth(
     coupled: chain.Results,
 ) -> None:

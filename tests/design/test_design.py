@@ -66,6 +66,7 @@ def test_the_time_of_a_plan_is_that_of_its_parts():
     assert session_seconds(plan, table.pace) == pytest.approx(60 + 15 + 30 + 2 * (turn + 2 * 5))
 
 
+@pytest.mark.slow
 def test_a_designed_plan_is_better_and_a_campaign(imu, cube, sources, tmp_path, monkeypatch):
     """In S3's time the mean variance is less than S3's; the file is what the stage plan reads."""
     monkeypatch.setattr("commands.design.from_nothing.possible", lambda t, r: possible(t, r, **FEW))

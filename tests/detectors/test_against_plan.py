@@ -176,7 +176,7 @@ def test_an_imu_that_is_mounted_askew_raises_nothing(askew):
         pytest.param("x-up", "y-up", marks=pytest.mark.slow),
         ("z-forward", "z-backward"),
         pytest.param("x-forward", "y-forward", marks=pytest.mark.slow),
-        ("z-down", "y-backward"),
+        pytest.param("z-down", "y-backward", marks=pytest.mark.slow),
     ],
 )
 def test_logs_under_each_others_names_are_named_and_taken_for_what_they_hold(one, other):

@@ -5,7 +5,7 @@ from campaigns import diagnosed
 from cases import CASES, Case
 from judge import judge, parameters_of
 
-QUICK = ("the-demo", "clean-positions")  # the others with the slow tests
+QUICK = ("clean-positions",)  # the others with the slow tests; the demo in test_check too
 MOST_SIGMA = 4.5  # of some 700 errors of parameters in all cases, one in 200 runs is larger
 
 

@@ -49,6 +49,7 @@ def told(campaign, effect):
     return estimate, np.sqrt(np.diag(covariance)), float(total.right @ estimate)
 
 
+@pytest.mark.slow
 def test_it_is_found_with_its_size_or_its_opposite_is(campaign):
     """M takes half of a tilt from each of two opposite positions, so either may have it."""
     effect = CATALOGUE["table_position_error"]

@@ -17,7 +17,7 @@ from inertial.estimation.accelerometers import Reference, StaticForce, fit
 
 GRAVITY, NOISE, POSITION_SIGMA = 9.8, 5e-5, np.radians(5 / 3600)
 STEPS = [*range(8), *range(7, -1, -1)]
-DRAWS = 40
+DRAWS = 24
 
 
 def rest(name: str, up: np.ndarray, axis: np.ndarray, angle: float) -> Manoeuvre:
