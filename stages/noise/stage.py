@@ -190,6 +190,7 @@ Level = tuple[str, str, str]  # manoeuvre, phase, channel
 MAX_COARSE_VARIANCE = 0.5  # steps²: rounding alone makes up to a quarter
 MIN_ROUNDED_MEAN = 1e-3  # steps
 MAX_ALIKE = 0.25  # steps between means whose errors have anything in common
+DEAD = 1e-6  # steps, by which the means of a channel differ that reads the same in all
 
 
 def count_sizes(changes: Array, readings: Array) -> Array:
@@ -234,9 +235,10 @@ def rounding_levels(
             if np.isfinite(counts[place])
         }
         known = {place: own for place, own in means.items() if own.keys}
-        noises = [own.noise_at_rest * counts[place] for place, own in known.items()]
+        noises = {place: own.noise_at_rest * counts[place] for place, own in known.items()}
+        alive = [noises[place] for place, own in known.items() if not own.dead]
         for place, own in known.items():
-            noise = min(noises) / counts[place]
+            noise = min(alive or noises.values()) / counts[place]
             off = rounded_mean(np.where(own.coarse, noise, noise_before_rounding(own.spread)))
             level = off * counts[place] * np.sqrt(own.alike * own.seconds)
             found |= {
@@ -251,14 +253,25 @@ def rounding_levels(
 class _Means:
     """The means of one channel by manoeuvre and phase: `keys`, and (n,) of each, in steps.
 
-    spread: variance of the readings, steps²; coarse: whether that is little; alike: how many means
-    share their error; seconds: how long they are.
+    mean, spread: of the readings, steps and steps²; coarse: whether the latter is little; seconds:
+    how long they are.
     """
 
     keys: Sequence[tuple[str, str]]
+    mean: Array
     spread: Array
-    alike: Array
     seconds: Array
+
+    @property
+    def alike(self) -> Array:
+        """How many means share their error."""
+        apart = np.minimum(np.abs(self.mean - self.mean[:, None]), MAX_ALIKE)
+        return np.asarray(np.sum(np.cos(2 * np.pi * apart), axis=1))
+
+    @property
+    def dead(self) -> bool:
+        """Whether it reads the same in all manoeuvres, and so says nothing of other axes."""
+        return not self.spread.any() and bool(np.ptp(self.mean) < DEAD)
 
     @property
     def coarse(self) -> Booleans:
@@ -284,10 +297,8 @@ def _means_of(
     count = np.array([one.samples[sensor] for one in own.values()])
     spread = np.array([one.squares[place] for one in own.values()]) / count / step**2
     mean = np.array([one.sums[place] for one in own.values()]) / count / step
-    apart = np.minimum(np.abs(mean - mean[:, None]), MAX_ALIKE)
-    alike = np.sum(np.cos(2 * np.pi * apart), axis=1)
     seconds = np.array([sum(one.seconds[sensor]) for one in own.values()])
-    return _Means(list(own), spread, alike, seconds)
+    return _Means(list(own), mean, spread, seconds)
 
 
 STAGE = Stage(

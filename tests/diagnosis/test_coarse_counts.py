@@ -106,6 +106,18 @@ def test_a_channel_that_is_masked_in_one_manoeuvre_has_its_levels_in_the_others(
     assert len(levels) == 23 and np.isfinite(list(levels.values())).all()
 
 
+def test_an_axis_that_reads_nothing_says_nothing_of_the_others():
+    random, spectra = np.random.default_rng(8), {}
+    for number in range(4):
+        readings = np.rint(random.normal(random.uniform(size=6), 0.4, (1000, 6)))
+        readings[:, 5] = 0.0
+        spectra[f"m{number}", "rest"] = Spectra()
+        spectra[f"m{number}", "rest"].add(readings, 100.0, (0.5, 5.0))
+    levels = rounding_levels(spectra, np.ones(6))
+    gyro = [size for (_, _, channel), size in levels.items() if channel in ("gyro_x", "gyro_y")]
+    assert max(gyro) < 3 * rounded_mean(0.4) * np.sqrt(40)
+
+
 @pytest.mark.parametrize("noise", [0.05, 0.15, 0.3])
 def test_means_that_all_stand_at_one_place_between_two_counts(noise):
     """Half-way readings change with next to no noise: the errors were up to ten of their sigmas."""
