@@ -171,8 +171,10 @@ def test_what_this_plan_cannot_see_is_said_with_the_reason(demo_criticised):
 
 def test_why_an_effect_is_not_named_is_true(demo_criticised):
     told = demo_criticised["criticism/scores"].set_index("effect")["sentence"]
-    # The g-sensitivity that is named does what a wrong latitude would do; by itself it is seen.
-    assert "beside the named effects" in told["latitude_error"]
+    # The g-sensitivity that is named does what the other hemisphere would do; by itself it is seen.
+    # A wrong latitude changes the horizontal rate, too, whose size the gyros show.
+    assert "beside the named effects" in told["latitude_sign"]
+    assert "not significant" in told["latitude_error"]
     # One rate alone: the scale factor does the same.
     assert "cannot be separated here from the parameters" in told["gyro_scale_cubic"]
     assert "scale factors of the accelerometers" in told["gravity_error"]
