@@ -34,8 +34,8 @@ HIDDEN = {
     ),
     "lever_arm": ({"arm_m": [0, 0.016, 0]}, {"r_y": 0.016}),
     "table_tilt": (
-        {"north_arcsec": 7, "east_arcsec": 0},
-        {"north": np.radians(7 / 3600), "east": 0.0},
+        {"north_arcsec": 9, "east_arcsec": 0},
+        {"north": np.radians(9 / 3600), "east": 0.0},
     ),
     "table_wobble": ({"east_arcsec": 0, "north_arcsec": 5}, {}),
 }
