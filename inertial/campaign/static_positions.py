@@ -242,10 +242,10 @@ def tumble_tilts(m: Manoeuvre) -> Mapping[str, Array]:
     axis = m.tumble_axis
     start = turned(m.up, axis, -float(m.tumbled @ axis))
     tilts = {
-        "lean of axis": np.cross(axis, m.up),
+        "lean of axis": cross(axis, m.up),
         "angle": axis,
         "case 0": start,
-        "case 1": np.cross(axis, start),
+        "case 1": cross(axis, start),
     }
     return {f"{m.tumble} {name}": direction for name, direction in tilts.items()}
 

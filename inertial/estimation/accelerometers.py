@@ -301,9 +301,10 @@ def linear_rows(
 
 
 def shared_errors(static: StaticForce, gravity: float, about: Triad) -> dict[Name, Array]:
-    """What errors that it shares change in a mean, (3,), m/s²: by the sigma of an angle, and per
+    """What errors that it shares with other means change in it, (3,), m/s².
 
-    rad of a tilt of a tumble. The further the case is turned, the other way turns what is up in it.
+    That of an angle by its sigma, that of a tilt of a tumble per rad. The further the case is
+    turned, the other way turns what is up in it.
     """
     force = gravity * static.up
     kinds = ((OF_ANGLE, static.turn_errors), (OF_TUMBLE, static.tumble_tilts))

@@ -10,8 +10,8 @@ from scipy.stats import norm
 
 from inertial.sensors import CHANNELS
 from inertial.signal.scatter import noise_before_rounding, rounded_mean
+from stages.noise.rounding import rounding_levels
 from stages.noise.spectra import Spectra
-from stages.noise.stage import rounding_levels
 
 SEEDS = (1801, 1802, 1803)
 
