@@ -89,7 +89,7 @@ _KIND = {
     for name in names
 }
 # What a recording shows of its circumstances: no fault; whether it matters follows from the model.
-CIRCUMSTANCES = ("temperature_drift", "rests_divided")
+CIRCUMSTANCES = ("temperature_drift", "rests_divided", "turning_point_once")
 MAX_WALK_P = 0.005  # as of all names together, of a random walk that is a cause and no mere noise
 ANOTHER_IMU = "another_imu"
 PER_RUN = ("accel_bias_per_log", "gyro_bias_per_log")

@@ -21,6 +21,7 @@ from inertial.detectors.manoeuvres_against_plan import (
     ManoeuvreSwapped,
     RestsDivided,
     ShortRest,
+    TurningPointOnce,
     WrongSpans,
 )
 from inertial.detectors.misread_axes_and_signs import (
@@ -129,5 +130,6 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     PositionNotKept(),
     FixtureCreep(),
     RestsDivided(),
+    TurningPointOnce(),
     TemperatureMisstated(),
 )

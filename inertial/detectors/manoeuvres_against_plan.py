@@ -15,7 +15,7 @@ from inertial.signal.plan_detector import (
     confirming,
     rivals_in_words,
 )
-from inertial.text.messages import _
+from inertial.text.messages import _, plural
 from inertial.text.numbers import counted, fixed, significant
 from inertial.text.parameters import AXES
 
@@ -37,10 +37,9 @@ class ManoeuvreMissing(PlanDetector):
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         for i, name in enumerate(recorded.name):
             if not recorded.found[i] and name not in recorded.explained:
-                beside = _one_rest_with(recorded, i)
-                if beside is None:
+                if _one_rest_with(recorded, i) is None:
                     yield self.of(recorded, i, None, sensor=None)
-                elif recorded.tumble[i] is None or recorded.tumble[i] != recorded.tumble[beside]:
+                elif not _turning_point(recorded, i):
                     yield self.of(recorded, i, None, sensor=None, severity=1)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
@@ -64,6 +63,13 @@ def _one_rest_with(recorded: Recorded, i: int) -> int | None:
         if alike and recorded.log[k] == recorded.log[i]:
             return k
     return None
+
+
+def _turning_point(recorded: Recorded, i: int) -> bool:
+    """Whether it is not found since its tumble goes back there, and nothing moved between."""
+    beside = None if recorded.found[i] else _one_rest_with(recorded, i)
+    of_one = beside is not None and recorded.tumble[i] == recorded.tumble[beside]
+    return of_one and recorded.tumble[i] is not None
 
 
 def _instead(recorded: Recorded, i: int) -> str:
@@ -328,6 +334,38 @@ class ShortRest(PlanDetector):
                 times=times,
             ),
             _("It is used with the sigma that it has. Record it whole."),
+        )
+
+
+class TurningPointOnce(PlanDetector):
+    """Where a tumble goes back, one rest is recorded of the two that the plan has there.
+
+    Cause: nothing need move between the last rest of the way there and the first of the way back.
+    It is no fault: what was recorded is used, as the rest of the way there.
+    """
+
+    name = "turning_point_once"
+    source = "eight rests of a tumble and back, recorded as fifteen"
+    unit = "rests"
+    severity = 1
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        once = [name for i, name in enumerate(recorded.name) if _turning_point(recorded, i)]
+        if once:
+            yield Deviation(None, "", float(len(once)), count=len(once), facts=once)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        return Description(
+            plural(
+                "Where a tumble goes back, the plan has two rests of which one was recorded: "
+                "{names} is the rest before it.",
+                "Where tumbles go back, the plan has two rests of which one was recorded: "
+                "{names} are the rests before them.",
+                deviation.count,
+                names=", ".join(deviation.facts),
+            ),
+            _("Nothing is lost."),
+            _("Nothing need be done."),
         )
 
 

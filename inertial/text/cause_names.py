@@ -110,6 +110,7 @@ NAMES = {
     "manoeuvre_swapped": _("exchanged manoeuvres"),
     "rate_off": _("another sample rate"),
     "rests_divided": _("rests that only the plan divides"),
+    "turning_point_once": _("turning point of a tumble recorded once"),
     "sign_flip": _("reversed sign"),
     "size_effect": _("size effect of the accelerometers"),
     "status_invalid": _("invalid status"),
