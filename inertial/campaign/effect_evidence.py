@@ -8,7 +8,8 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.campaign.shared_tilts import shared_tilts
-from inertial.estimation.least_squares import EffectInformation, System
+from inertial.estimation.effect_information import EffectInformation
+from inertial.estimation.least_squares import System
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE, EffectInformation
 from inertial.estimation.probability import chi2_isf, f_isf
 
 Powers = Mapping[str, Sequence[int]]  # by function the columns of degree 1, 2, 3

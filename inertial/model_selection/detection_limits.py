@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.estimation.least_squares import MIN_INFORMATION_SHARE
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 
 DETECTION_SIGMAS = 5.0  # size that a campaign detects

@@ -8,7 +8,7 @@ from operator import add
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE, EffectInformation
 from inertial.estimation.probability import chi2_sf, f_sf
 from inertial.estimation.scatter_and_random_walk import MIN_CONSISTENT_P_VALUE
 

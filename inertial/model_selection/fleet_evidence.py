@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array, Integers
+from inertial.estimation.effect_information import whitening
 from inertial.estimation.fleet_components import LEVELS, Sharing
-from inertial.estimation.least_squares import whitening
 from inertial.model_selection.scan import MIN_EIGENVALUE
 
 EVERY = -1  # for the group of a hypothesis: each group of its level has a size of its own

@@ -16,7 +16,7 @@ from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dpstrf
 
 from inertial.arrays import Array, Integers
-from inertial.estimation.least_squares import MIN_INFORMATION_SHARE, EffectInformation
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE, EffectInformation
 from inertial.estimation.probability import f_sf
 from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.null_simulation import DRAWS, share_of_level

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.cause import Cause
 from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.scan import Candidates

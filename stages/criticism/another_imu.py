@@ -8,7 +8,7 @@ from inertial.arrays import Array
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.explanations import ANOTHER_IMU
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.cause import FOUND
 from inertial.physics.drift import without_clock
 from inertial.physics.effect import Effect, Parameter, Reading, Truth

@@ -1,22 +1,18 @@
-"""Rows of the effects that are selected from block means, and of those sought elsewhere."""
+"""Rows of the effects that are selected from block means, and of what they leave."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 
-from inertial.arrays import Array
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.campaign.external_reliability import Moved, most_moved
-from inertial.effects import CATALOGUE, KNOWN, LAWS, TEMPERATURE_MODELS
-from inertial.estimation.least_squares import whitening
-from inertial.estimation.random_walk import MeasuredDrift
+from inertial.effects import KNOWN, LAWS, TEMPERATURE_MODELS
+from inertial.estimation.effect_information import whitening
 from inertial.model_selection.cause import (
     FOUND,
     LAW,
     ONE_OF_CLASS,
-    UNKNOWN_STRUCTURE,
     Cause,
     EffectTest,
 )
@@ -27,73 +23,24 @@ from inertial.physics.effect import Effect
 from inertial.physics.setting_in import SettingIn
 from inertial.physics.site import EARTH_RATE
 from inertial.sensors import PLURAL, UNITS
-from inertial.tables import AXES
-from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import plus_minus, significant
-from inertial.text.units import quantity
 from stages.criticism import block_sentences as sentences
 from stages.criticism.another_imu import another_imu
-from stages.criticism.bias_drift import Walk, drift_name, per_log_name
+from stages.criticism.bias_drift import drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
-from stages.criticism.finding_rows import Row, TableRow, finding_id, member_rows, parameter_row
+from stages.criticism.finding_rows import TableRow, finding_id, member_rows, parameter_row
 from stages.criticism.jump_not_testable import jumps_not_testable
 from stages.criticism.law_sentences import law_action
 from stages.criticism.selection import Selection
 from stages.criticism.shared_asymmetry import ASYMMETRY, shared_asymmetry
-from stages.criticism.unsteady_rests import Unsteady
 from stages.criticism.without_law import WithoutLaw
 
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
-WALK = "gyro_random_walk"
 MIN_KNOWN_SHARE = 1e-3  # of its information that a combination keeps beside all else, to be known
 MAX_SCATTERED = 2  # manoeuvres of a run, each with a bias of its own by their scatter
-WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
-# Effects by the beginning of their names that change the readings of a sensor though not its own.
-SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
 MIN_EXCESS = 1.2  # of chi-squared per degree; the uncertainty of the noise level explains less
 
-NOT_TESTED = _("Not detected; section “Noise” states the upper limit (K).")
-NO_FLICKER = _("The noise at rest does not show it.")
-FLICKER = _("The noise at rest shows {sizes} in the order of the axes, which the sigmas allow for.")
-OF_QUALITY = _("Sought in the quality of the samples: findings “{finding}”.")
-WALK_SCORE = _(
-    "The biases of the gyros follow a random walk of {size}, which the sigmas allow for."
-)
-WALK_OR = _(
-    "The biases of the {sensors} change as by a random walk of {size}. It may also "
-    "be {others}: this campaign cannot distinguish them."
-)
-WALK_ALONE = _(
-    "The biases of the {sensors} change as by a random walk of {size}. Any other "
-    "change without a law would look much the same."
-)
-WALK_AT_REST = _(
-    "The biases of the {sensors} change as by a random walk of {sizes} in the order of the axes: "
-    "their noise within single static stretches shows it, and the differences between the "
-    "stretches no more than that."
-)
-UNSTEADY = _(
-    "At rest the readings of the {sensors} wander by {wander} in {seconds:.0f} s, while they "
-    "scatter by {scatter} from one to the next. That is no drift of a sensor: something moves the "
-    "IMU slowly, or it oscillates faster than the log follows, and the sampling folds that to a "
-    "slow change."
-)
-UNSTEADY_CONSEQUENCE = _(
-    "The sigmas of all parameters allow for it as a random walk, and are large by it."
-)
-STEADY = _(
-    "Look at the readings of a rest. Sample faster than what oscillates, or filter before "
-    "sampling; and see to what the IMU stands on."
-)
-WALK_CONSEQUENCE = _(
-    "The sigmas of all parameters allow for it; the biases are those at the middle of the campaign."
-)
-REPEAT = _(
-    "Record the positions once more, in another order, to distinguish a random walk from others."
-)
-SHORTEN = _("A shorter campaign, or rotations forth and back, reduce its influence.")
 UNEXPLAINED = _(
     "The residuals of the {sensors} are {ratio:.1f} times as large as noise, and no "
     "effect of the catalogue explains it."
@@ -379,153 +326,6 @@ class BlockResults:
 def _tested(test: EffectTest, number: float) -> float | None:
     """A number of a test; None where the effect was not tested, for no reading depends on it."""
     return number if test.degrees else None
-
-
-def other_scores(walk: Walk | None, measured: MeasuredDrift, mount: str) -> Iterator[TableRow]:
-    """Effects sought in the noise, then in the quality of samples.
-
-    `walk`, `measured`: of the gyros, between stretches, if any, and by the noise at rest.
-    """
-    walks = {WALK: WALK_SCORE.format(size=_walk_size("gyro", walk))} if walk else {}
-    if walk is None and measured.walk.any():
-        walks = {WALK: WALK_SCORE.format(size=_sizes(measured.walk, WALK_UNITS["gyro"]))}
-    shown = measured.instability.any()
-    flicker = FLICKER.format(sizes=_sizes(measured.instability, "rad/s")) if shown else NO_FLICKER
-    others = [effect for effect in CATALOGUE.values() if effect.sought_in in ("noise", "quality")]
-    for effect in sorted(others, key=lambda effect: effect.sought_in):  # noise comes before quality
-        named = effect.name in walks
-        if effect.sought_in == "quality":
-            sentence = OF_QUALITY.format(finding=in_words(effect.finding))
-        else:
-            sentence = {"gyro_flicker": flicker, **walks}.get(effect.name, NOT_TESTED)
-        yield (
-            "scores",
-            {
-                "mount": mount,
-                "effect": effect.name,
-                "cause": effect.cause,
-                "sought_in": effect.sought_in,
-                "finding": finding_id(effect.name, mount) if named else None,
-                "statistic": None,
-                "degrees": None,
-                "p_value": None,
-                "named": named,
-                "verdict": UNKNOWN_STRUCTURE if named else "",
-                "snr": None,
-                "scan_value": None,
-                "scan_unit": None,
-                "sentence": sentence,
-            },
-        )
-
-
-def random_walk_rows(
-    sensor: str, walk: Walk, alternatives: Sequence[str], lawless: WithoutLaw, mount: str
-) -> Iterator[TableRow]:
-    """The random walk of a sensor, `gyro` or `accel`, and the effects that may be it as well.
-
-    With these it is one of a class. Without them it is never certain: other changes without a law,
-    such as telegraph noise, look much the same; nor where something else of the sensor follows
-    no law.
-    """
-    cause = f"{sensor}_random_walk"
-    identifier = finding_id(cause, mount)
-    others = [name for name in alternatives if name.startswith((sensor, *SHARED_EFFECTS[sensor]))]
-    certain = bool(others) and not (sensor in lawless.structured or lawless.members[sensor])
-    if lawless.owner[sensor] == cause:
-        others = list(dict.fromkeys([*others, *lawless.members[sensor]]))
-    sentence = (WALK_OR if others else WALK_ALONE).format(
-        sensors=PLURAL[sensor],
-        size=_walk_size(sensor, walk),
-        others=_(" or ").join(in_words(name) for name in others),
-    )
-    unit = WALK_UNITS[sensor]
-    finding = _walk_finding(sensor, mount, walk.size, walk.p_value, sentence)
-    finding["action"] = REPEAT if others else SHORTEN
-    finding["verdict"] = ONE_OF_CLASS if certain else UNKNOWN_STRUCTURE
-    yield "findings", finding
-    yield from member_rows(identifier, mount, [cause, *others])
-    sigma = walk.sigma if np.isfinite(walk.sigma) else None
-    size = Estimated("K", unit, _("random walk of the biases"), walk.size, sigma)
-    yield parameter_row(mount, cause, size, identifier, identifier)
-    row: Row = {"mount": mount, "sensor": sensor, "value": walk.size, "sigma": sigma, "unit": unit}
-    yield "random_walks", {**row, "finding": identifier}
-
-
-def walk_at_rest_rows(
-    sensor: str, sizes: Array, unsteady: Unsteady | None, lawless: WithoutLaw, mount: str
-) -> Iterator[TableRow]:
-    """The random walk that the noise at rest shows, where the stretches differ by no more.
-
-    `sizes`: K of the three axes. That of the equations is beyond it, and 0. Where it stands for a
-    structure of the residuals, the p-value is that of the structure.
-    """
-    cause, unit = f"{sensor}_random_walk", WALK_UNITS[sensor]
-    identifier = finding_id(cause, mount)
-    size = float(np.max(sizes))  # of the worst axis
-    sentence = WALK_AT_REST.format(sensors=PLURAL[sensor], sizes=_sizes(sizes, unit))
-    finding = _walk_finding(sensor, mount, size, lawless.structured.get(sensor), sentence)
-    yield "findings", finding | ({} if unsteady is None else _too_fast(sensor, unsteady))
-    others = lawless.members[sensor] if lawless.owner[sensor] == cause else ()
-    yield from member_rows(identifier, mount, list(dict.fromkeys([cause, *others])))
-    for axis, value in zip(AXES, sizes.tolist(), strict=True):
-        meaning = _("random walk of the bias of {axis}, at rest", axis=axis)
-        yield parameter_row(
-            mount, cause, Estimated(f"K_{axis}", unit, meaning, value), identifier, identifier
-        )
-    row: Row = {"mount": mount, "sensor": sensor, "value": 0.0, "sigma": None, "unit": unit}
-    yield "random_walks", {**row, "finding": identifier}
-
-
-def _too_fast(sensor: str, found: Unsteady) -> dict[str, Any]:
-    """What differs in the finding of a random walk that is none of a sensor."""
-    unit = quantity("bias", UNITS[sensor]).laboratory
-    wander, scatter = (
-        f"{significant(size / unit.size, 2)} {unit.name}" for size in (found.wander, found.scatter)
-    )
-    words = {"wander": wander, "seconds": found.seconds, "scatter": scatter}
-    return {
-        "severity": 2,
-        "sentence": UNSTEADY.format(sensors=PLURAL[sensor], **words),
-        "consequence": UNSTEADY_CONSEQUENCE,
-        "action": STEADY,
-    }
-
-
-def _walk_finding(
-    sensor: str, mount: str, size: float, p_value: float | None, sentence: str
-) -> dict[str, Any]:
-    """The finding of a random walk, of which no more is certain; `size`: K."""
-    cause = f"{sensor}_random_walk"
-    return {
-        "id": finding_id(cause, mount),
-        "mount": mount,
-        "cause": cause,
-        "sensor": sensor,
-        "count": 1,
-        "size": size,
-        "unit": WALK_UNITS[sensor],
-        "p_value": p_value,
-        "severity": 1,
-        "sentence": sentence,
-        "consequence": WALK_CONSEQUENCE,
-        "action": SHORTEN,
-        "verdict": UNKNOWN_STRUCTURE,
-    }
-
-
-def _sizes(sizes: Array, si: str) -> str:
-    """The sizes of three axes with their unit."""
-    unit = quantity("", si).laboratory
-    return f"{', '.join(significant(size / unit.size, 2) for size in sizes.tolist())} {unit.name}"
-
-
-def _walk_size(sensor: str, walk: Walk) -> str:
-    unit = quantity("", WALK_UNITS[sensor]).laboratory
-    value, sigma = walk.size / unit.size, walk.sigma / unit.size
-    if not np.isfinite(sigma):
-        return f"{significant(value, 2)} {unit.name}"
-    return f"{plus_minus(value, sigma)} {unit.name}"
 
 
 def unexplained_rows(

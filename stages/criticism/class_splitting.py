@@ -11,7 +11,7 @@ import pandas as pd
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
 from inertial.campaign.records import Manoeuvre, Performed
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.splitting import MIN_SEPARATION, split
 from inertial.physics.effect import Effect
 from inertial.tables import GYRO, STATIC_PHASES

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.effects import CATALOGUE
-from inertial.estimation.least_squares import MIN_INFORMATION_SHARE as MIN_SHARE
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE as MIN_SHARE
 from stages.criticism.finding_rows import TableRow
 from stages.criticism.selection import Selection
 

@@ -16,14 +16,7 @@ from inertial.sensors import SENSORS
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from stages.criticism.bias_drift import random_walks_with_sigmas
-from stages.criticism.block_results import (
-    NAMED,
-    BlockResults,
-    other_scores,
-    random_walk_rows,
-    unexplained_rows,
-    walk_at_rest_rows,
-)
+from stages.criticism.block_results import NAMED, BlockResults, unexplained_rows
 from stages.criticism.class_splitting import ExtendedCampaigns, ExtendedPlan, extended_plans
 from stages.criticism.declared import DECLARED
 from stages.criticism.drift_at_rest import select_beside_drift
@@ -32,6 +25,7 @@ from stages.criticism.law_selection import with_laws
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
 from stages.criticism.pooled_evidence import pooled_evidence_rows
+from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
 from stages.criticism.selection import Selection
 from stages.criticism.set_position_scatter import select_beside_scatter

@@ -13,7 +13,7 @@ from scipy.special import logsumexp
 
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.effect_classes import log_evidence
 from inertial.physics.effect import Effect
 from stages.extension.named_effects import Member, NamedClass

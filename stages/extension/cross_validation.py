@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import EffectInformation, whitening
+from inertial.estimation.effect_information import EffectInformation, whitening
 from inertial.sensors import SENSORS
 from stages.extension.models import Models, SensorEvidence
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
-from inertial.estimation.least_squares import EffectInformation, System
+from inertial.estimation.effect_information import EffectInformation
+from inertial.estimation.least_squares import System
 from inertial.estimation.periodic_in_time import without_line
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.sensors import SENSORS

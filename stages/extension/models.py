@@ -9,12 +9,8 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.effect_evidence import MIN_OBSERVABLE_SIGMAS
 from inertial.campaign.equations import Campaign
-from inertial.estimation.least_squares import (
-    MIN_INFORMATION_SHARE,
-    EffectInformation,
-    Estimate,
-    System,
-)
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE, EffectInformation
+from inertial.estimation.least_squares import Estimate, System
 from inertial.physics.effect import Effect
 
 PRIOR_SIGMA = 1e4  # of an effect's parameters, in their typical sizes

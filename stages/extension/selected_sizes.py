@@ -16,7 +16,8 @@ from operator import add
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import EffectInformation, Estimate, System, whitening
+from inertial.estimation.effect_information import EffectInformation, whitening
+from inertial.estimation.least_squares import Estimate, System
 from inertial.model_selection.size_after_selection import corrected, regressed
 from stages.extension.models import SensorEvidence
 from stages.extension.named_effects import NamedClass

@@ -16,7 +16,7 @@ from inertial.effects.temperature_model import (
     TemperatureModel,
     polynomials,
 )
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.estimation.temperature import (
     Columns,
     SensorEquations,

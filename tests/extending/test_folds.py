@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.least_squares import EffectInformation, System
+from inertial.estimation.effect_information import EffectInformation
+from inertial.estimation.least_squares import System
 from stages.extension.cross_validation import (
     MIN_TRAINING_SHARE,
     CrossValidation,

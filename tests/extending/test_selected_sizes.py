@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.least_squares import EffectInformation, Estimate
+from inertial.estimation.effect_information import EffectInformation
+from inertial.estimation.least_squares import Estimate
 from inertial.model_selection.size_after_selection import selected
 from inertial.physics.effect import Effect, Parameter
 from stages.extension.models import SensorEvidence

@@ -17,7 +17,7 @@ from hidden_named_sizes import FIRST, MATE, SCANNED, Counts, Truth, counted, sum
 from hidden_sizes import Reference, code, reference
 from hidden_ways import POSITIVE, WAYS, Array
 
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.evidence import Evidence
 from inertial.model_selection.naming import causes
 from inertial.model_selection.scan import MIN_EIGENVALUE

@@ -33,7 +33,7 @@ from hidden_scores import (
 from hidden_sizes import Reference
 from scipy.stats import ncx2
 
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.cause import Cause
 from inertial.model_selection.evidence import Evidence, searched_effect
 

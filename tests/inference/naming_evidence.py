@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
 from inertial.model_selection.scan import Candidates
 from inertial.model_selection.structure_tests import TESTS, Conditions, ScoreEquations

@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import chi2
 from textbook_power import power_limit
 
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection import naming
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE, NamedCauses
 from inertial.model_selection.evidence import Evidence, searched_effect

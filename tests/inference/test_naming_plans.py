@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.detection_limits import (
     ABSORBED,
     NOT_EXCITED,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.scatter_tests import named_share, residual_columns, scatter_tests
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from inertial.estimation.least_squares import EffectInformation
+from inertial.estimation.effect_information import EffectInformation
 
 EFFECTS, ERRORS = 5, 4
 SIGMA = np.array([0.3, 0.5, 1.0, 2.0])  # of the errors

@@ -25,8 +25,8 @@ from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.estimation import gyroscopes
+from inertial.estimation.effect_information import EffectInformation
 from inertial.estimation.gyroscope_observations import StaticRate
-from inertial.estimation.least_squares import EffectInformation
 from inertial.estimation.random_walk import NO_DRIFT
 from inertial.tables.code import code_of, hash_of
 from laboratory import Recording

@@ -1,0 +1,166 @@
+"""Normal equations of effects alone, all other unknowns eliminated.
+
+On them rest the statistics of every effect, or set of effects: how much of chi-squared it explains,
+its values with their covariance, and the same beside others.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inertial.arrays import Array, Booleans
+
+MIN_INFORMATION_SHARE = 1e-8  # of the information of a column on its own: what is less is rounding
+MIN_SPANNED_SHARE = 1 - 1e-6  # of a column within the combinations that the data determine
+
+
+@dataclass(frozen=True)
+class EffectInformation:
+    """Normal equations F β = b of the effects alone, so that β ~ (F⁻¹ b, F⁻¹).
+
+    `names`: (k,); `information`: F, (k, k); `right`: b, (k,); `chi_squared` on `degrees` of
+    freedom: without the effects. Those of independent equations add up.
+    """
+
+    names: tuple[str, ...]
+    information: Array
+    right: Array
+    chi_squared: float
+    degrees: int
+
+    def __add__(self, other: "EffectInformation") -> "EffectInformation":
+        if self.names != other.names:
+            raise ValueError("the equations are not about the same effects")
+        return EffectInformation(
+            self.names,
+            self.information + other.information,
+            self.right + other.right,
+            self.chi_squared + other.chi_squared,
+            self.degrees + other.degrees,
+        )
+
+    def of(self, names: Sequence[str]) -> "EffectInformation":
+        """The same for some of the effects, the others being zero."""
+        place = {name: i for i, name in enumerate(self.names)}
+        some = [place[name] for name in names]
+        information = self.information[np.ix_(some, some)]
+        return replace(self, names=tuple(names), information=information, right=self.right[some])
+
+    def drop(self, chosen: Sequence[int]) -> tuple[float, int]:
+        """Decrease of chi-squared by the chosen columns, and its degrees of freedom."""
+        values, directions, _ = self._modes(chosen)
+        along = directions.T @ self.right[list(chosen)]
+        return float(np.sum(along**2 / values)), len(values)
+
+    def given(self, fitted: Sequence[int]) -> "EffectInformation":
+        """The same with some columns fitted as well, on which no information remains."""
+        own = list(fitted)
+        values, directions, _ = self._modes(own)
+        white = directions / np.sqrt(values)
+        across = self.information[:, own] @ white
+        drop, used = self.drop(own)
+        information = self.information - across @ across.T
+        right = self.right - across @ (white.T @ self.right[own])
+        information[own], information[:, own], right[own] = 0.0, 0.0, 0.0
+        return replace(
+            self,
+            information=information,
+            right=right,
+            chi_squared=self.chi_squared - drop,
+            degrees=self.degrees - used,
+        )
+
+    def eliminated(self, prior: Array) -> "EffectInformation":
+        """The same without the last columns, errors with the information `prior` each, (t,)."""
+        k = len(self.names) - len(prior)
+        own = self.information[k:, k:] + np.diag(prior)
+        across = np.linalg.solve(own, np.column_stack([self.information[k:, :k], self.right[k:]]))
+        drop = self.information[:k, k:] @ across
+        return replace(
+            self,
+            names=self.names[:k],
+            information=self.information[:k, :k] - drop[:, :-1],
+            right=self.right[:k] - drop[:, -1],
+            chi_squared=self.chi_squared - float(self.right[k:] @ across[:, -1]),
+        )
+
+    def by_others(self, matrix: Array, names: Sequence[str]) -> "EffectInformation":
+        """The same with the last columns, errors, as a function of others, (t, u), by name."""
+        k = len(self.names) - len(matrix)
+        change = np.zeros((len(self.names), k + len(names)))
+        change[:k, :k], change[k:, k:] = np.eye(k), matrix
+        return replace(
+            self,
+            names=(*self.names[:k], *names),
+            information=change.T @ self.information @ change,
+            right=change.T @ self.right,
+        )
+
+    def deviance_as_errors(self, prior: Array) -> float:
+        """−2 log of the likelihood with these as errors less that without; see `eliminated`."""
+        with_prior = self.information + np.diag(prior)
+        log_det = np.linalg.slogdet(with_prior)[1] - np.sum(np.log(prior))
+        return float(log_det - self.right @ np.linalg.solve(with_prior, self.right))
+
+    def following(self, other: "EffectInformation", prior: Array) -> "EffectInformation":
+        """What these equations add to those of another sensor that has the same errors.
+
+        The errors δ are the last columns. The others say δ ~ (S⁻¹ b − S⁻¹ F β, S⁻¹) for effects β,
+        with S their information on δ and its `prior`, (t,). About that these equations have
+        columns and residuals of their own, and what remains of δ is eliminated from them; so the
+        information of both adds up as that of independent equations.
+        """
+        k = len(self.names) - len(prior)
+        of_errors = other.information[k:, k:] + np.diag(prior)
+        other_right = np.column_stack([other.information[k:, :k], other.right[k:]])
+        known = np.linalg.solve(of_errors, other_right)
+        change, centre = known[:, :-1], known[:, -1]
+        own, mixed = self.information[k:, k:], self.information[:k, k:]
+        turned = mixed - change.T @ own
+        information = self.information.copy()
+        information[:k, :k] += change.T @ own @ change - mixed @ change - change.T @ mixed.T
+        information[:k, k:], information[k:, :k] = turned, turned.T
+        information[k:, k:] += other.information[k:, k:]
+        right = np.append(
+            self.right[:k] - change.T @ self.right[k:] - turned @ centre,
+            self.right[k:] - own @ centre,
+        )
+        chi_squared = self.chi_squared + float(centre @ (own @ centre - 2 * self.right[k:]))
+        return replace(
+            self, information=information, right=right, chi_squared=chi_squared
+        ).eliminated(prior)
+
+    def estimate(self, chosen: Sequence[int]) -> tuple[Array, Array]:
+        """Values and covariance of the chosen columns; NaN for unobservable ones."""
+        values, directions, unobservable = self._modes(chosen)
+        covariance = (directions / values) @ directions.T
+        beta = covariance @ self.right[list(chosen)]
+        hidden = unobservable[:, None] | unobservable[None, :]
+        return np.where(unobservable, np.nan, beta), np.where(hidden, np.nan, covariance)
+
+    def _modes(self, chosen: Sequence[int]) -> tuple[Array, Array, Booleans]:
+        """The observable combinations of the chosen columns.
+
+        Returns
+        -------
+        their information (m,), the combinations (k, m), and which columns they do not span (k,)
+        """
+        block = self.information[np.ix_(chosen, chosen)]
+        size = np.sqrt(np.maximum(np.diag(block), np.finfo(float).tiny))
+        values, vectors = np.linalg.eigh(block / np.outer(size, size))
+        observable = values > MIN_INFORMATION_SHARE
+        spanned = np.sum(vectors[:, observable] ** 2, axis=1)
+        directions = vectors[:, observable] / size[:, None]
+        return values[observable], directions, spanned < MIN_SPANNED_SHARE
+
+
+def whitening(information: Array, least: float = MIN_INFORMATION_SHARE) -> Array:
+    """Combinations W (k, m) of the parameters of unit information, Wᵀ F W = 1.
+
+    `least`: of the information scaled to unit diagonal, below which one is not observable.
+    """
+    size = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
+    values, vectors = np.linalg.eigh(information / np.outer(size, size))
+    observable = values > least
+    return np.asarray(vectors[:, observable] / np.sqrt(values[observable]) / size[:, None])
