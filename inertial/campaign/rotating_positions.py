@@ -30,7 +30,7 @@ from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 
 LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU is mounted farther off
 # How far the vertical, or in an upright turn a level axis, may turn in the case within one mean.
-MAX_TURN_IN_MEAN, MAX_UPRIGHT = np.radians(5), np.radians(60)
+MAX_TURN_IN_MEAN, MAX_UPRIGHT = np.radians(10), np.radians(60)
 
 
 def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:

@@ -41,6 +41,7 @@ BIAS = 9  # column of the first of the three biases
 MAX_RANDOM_WALK = 2e-3  # m/s²/√s, 10 mg/√h: a hundred times that of the poorest sensors
 MAX_SHOWN = 5.0  # sigma of a position that a tilt may be to be its own
 MIN_SHOWN = 1e-4  # rad; of a smaller tilt what is not linear is less than 0.005 µg
+MIN_SPANNED = 0.05  # rms component along a direction of planned attitudes that have it
 FREE_TILT = 0.2  # rad, sigma of the tilt of a position of which nothing is known
 OF_ANGLE = "angle"  # the kind of the errors of turns
 OF_TUMBLE = "tumble"  # the kind of the tilts that the rests of a tumble share
@@ -282,10 +283,11 @@ def linear_rows(
     versed = np.where(own, 0.0, 1 - np.cos(np.linalg.norm(shown, axis=1)))
     shown[~own | (np.linalg.norm(shown, axis=1) < MIN_SHOWN)] = 0.0
     forces: Array = gravity * Rotation.from_rotvec(shown).apply(ups)
+    of_matrix = gravity * ups + (forces - gravity * ups) @ _spanned(ups)
     tilts = tilt_axes(statics)
     rows = np.zeros((len(statics), 3, s + tilts.shape[1] + 1))
     for row in range(3):
-        rows[:, row, 3 * row : 3 * row + 3] = forces
+        rows[:, row, 3 * row : 3 * row + 3] = of_matrix
         rows[:, row, 9 + row] = 1.0
     rows[:, :, UNKNOWNS] = forces @ about.matrix.T / gravity
     rows[:, :, UNKNOWNS + 1 : s] = [static.sensitivities.of(effects) for static in statics]
@@ -294,7 +296,7 @@ def linear_rows(
     for i in range(tilts.shape[1]):
         rows[:, :, s + i] = cross(tilts[:, i], forces) @ about.matrix.T
     # M times gravity is in the columns of both, and the tilts are the whole ones.
-    changed = forces * (1 + versed)[:, None] + cross(shown, forces)
+    changed = of_matrix + forces * versed[:, None] + cross(shown, forces)
     rows[:, :, -1] = means + changed @ about.matrix.T
     rows[:, :, -1] -= rows[:, :, :s] @ prior
     return rows
@@ -380,6 +382,17 @@ def _shown_tilts(statics: Sequence[StaticForce], ups: Array, about: Triad, means
         if static.turning:
             tilts[i] = np.mean(at_rest.get(static.position, [np.zeros(3)]), axis=0)
     return np.asarray(tilts)
+
+
+def _spanned(ups: Array) -> Array:
+    """The projection, (3, 3), onto the directions that planned attitudes have, (n, 3).
+
+    Along any other a sensor feels but the tilts that its own reading shows, which is
+    what it reads by any scale factor; those determine none.
+    """
+    values, vectors = np.linalg.eigh(ups.T @ ups / len(ups))
+    spanned = vectors[:, values > MIN_SPANNED**2]
+    return np.asarray(spanned @ spanned.T)
 
 
 def triad_of(estimate: Estimate) -> Triad:

@@ -58,3 +58,20 @@ def test_a_position_off_by_degrees_is_told_with_its_angle(degrees):
     tilts[3] = 0.0
     statics, _true = readings(random, ups, tilts)
     assert far_off(statics, reference, None, NO_DRIFT) == []
+
+
+@pytest.mark.parametrize("degrees", [1 / 60, 1.0])
+def test_tilts_along_an_axis_that_no_rest_has_up_determine_no_scale_factor(degrees):
+    # y is level in all rests: what it reads of gravity is a tilt, by any scale factor of it.
+    never = np.array([not np.any(up[1]) for up in UPS])
+    ups = np.tile(UPS[never], (3, 1))
+    sigma = np.radians(degrees)
+    for seed in range(5):
+        random = np.random.default_rng(seed)
+        statics, true = readings(random, ups, random.normal(0, sigma, (len(ups), 3)))
+        found = fit(statics, Reference(GRAVITY, 1e-3, sigma)).estimate
+        of_y = np.zeros((3, 3), bool)
+        of_y[:, 1] = True
+        np.testing.assert_array_equal(found.determined[:9].reshape(3, 3), ~of_y)
+        pulls = (found.values[:12] - true) / found.sigma[:12]
+        assert np.abs(pulls[[0, 2, 6, 8, 9, 11]]).max() < 4

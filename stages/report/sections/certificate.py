@@ -15,8 +15,6 @@ from inertial.text.statements import (
     IN_FULL_ONLY,
     NOT_STATED,
     REALISES,
-    RULES,
-    STATEMENTS,
     THIS_ITEM_ONLY,
     TRACEABILITY,
 )
@@ -42,21 +40,20 @@ from stages.report.outline import (
     table_row,
 )
 from stages.report.results import (
-    KIND_IN_A_SENTENCE,
     RESULT_TABLES,
     Estimate,
     final_results,
-    kind_of,
     quantity_of,
     symbol,
     withheld,
 )
 from stages.report.sections import basis
 from stages.report.sections.axes_of_case import axes_of_case
+from stages.report.sections.conformity import conformity
 from stages.report.sections.findings import causes, spoils
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, SENSORS, term, with_mount
+from stages.report.words import SENSORS, term, with_mount
 
 ITEMS = {  # of the left and of the right column, each with the items that it joins
     _("Laboratory"): ("laboratory.name", "laboratory.address", "laboratory.accreditation"),
@@ -83,7 +80,6 @@ GUESSES = _(
 # Of the errors of the table those on which the results rest, by their sources in the budget.
 TABLE_ERRORS = {"position": "position", "turn_angle": "angle"}
 MIN_UNCORRECTED = 0.1  # σ of a parameter, from which a cause that is not corrected is stated
-MIN_RISK = 1e-4  # of a false statement; of a smaller one only that is said
 
 
 def certificate_number(tables: Tables) -> str:
@@ -149,7 +145,7 @@ def parts(tables: Tables) -> Iterator[Part]:
         if effects := [row for result in own for row in result.effects]:
             yield _effects(effects)
     yield from _not_for_use(tables)
-    yield from _conformity(tables)
+    yield from conformity(tables)
     yield Sentences(tuple(_statements(tables, earlier)))
     if _certifies(tables):
         yield Signatures(
@@ -447,65 +443,6 @@ def _change(row: Record | None, earlier: Mapping[str, Record]) -> str:
 
 
 # ---- Statements.
-
-
-def _conformity(tables: Tables) -> Iterator[Part]:
-    """A row for each sensor and kind, by its worst parameter; or that nothing is assessed."""
-    yield Heading(_("Conformity"))
-    rows = tables.rows("conformity")
-    if not rows:
-        yield Paragraph(_("Not assessed: no tolerances are stated."))
-        return
-    groups: dict[tuple[str, str, str], list[Record]] = {}
-    for row in rows:
-        groups.setdefault((row["mount"], row["sensor"], kind_of(row["quantity"])), []).append(row)
-    yield Table(
-        _("Decision rule: {rule}.", rule=RULES[rows[0]["decision_rule"]]),
-        (
-            *columns("text", _("Parameters"), _("Statement")),
-            Column(_("limit ±"), "number"),
-            Column(_("unit"), "unit"),
-            Column(_("probability of a false statement, by U"), "number"),
-        ),
-        [_assessed(key, groups[key]) for key in sorted(groups, key=_in_order)],
-    )
-
-
-def _in_order(key: tuple[str, str, str]) -> tuple[str, str, int]:
-    return key[0], key[1], list(KIND_IN_A_SENTENCE).index(key[2])
-
-
-def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
-    mount, sensor, kind = key
-    unit = quantity_of({"parameter": rows[0]["quantity"], "unit": rows[0]["unit"]}).shown
-    each: dict[str, list[str]] = {}
-    for row in rows:
-        each.setdefault(row["statement"], []).append(symbol(row["quantity"]))
-    said = [
-        STATEMENTS[one] if len(each) == 1 else f"{STATEMENTS[one]}: {', '.join(each[one])}"
-        for one in STATEMENTS
-        if one in each
-    ]
-    risks = [row["risk"] for row in rows if row["risk"] is not None]
-    name = f"{capital(SENSOR[sensor])}, {KIND_IN_A_SENTENCE[kind]}" + (
-        f" ({mount})" if mount else ""
-    )
-    tone = "" if set(each) == {"conforms"} else "poor" if "does_not_conform" in each else "fair"
-    return table_row(
-        name,
-        capital("; ".join(said)),
-        numbers.significant(unit.of(rows[0]["limit"]), 3),
-        unit.name,
-        _risk(max(risks)) if risks else "—",
-        tone=tone,  # type: ignore[arg-type]
-    )
-
-
-def _risk(risk: float) -> str:
-    """In per cent; far out in the tails U is not known to be that of a Gaussian."""
-    if risk < MIN_RISK:
-        return f"< {numbers.significant(100 * MIN_RISK, 1)} %"
-    return f"{numbers.significant(100 * risk, 2)} %"
 
 
 def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
