@@ -120,7 +120,7 @@ CASES = [
         cause.partition(",")[0],
         fault,
         id=f"{cause}-{number}",
-        marks=pytest.mark.slow if number == 1 else (),  # of middle size
+        marks=pytest.mark.slow if number < 2 else (),
     )
     for cause, faults in HIDDEN.items()
     for number, fault in enumerate(faults)

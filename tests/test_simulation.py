@@ -13,8 +13,8 @@ COUNTS = {"accel": 0.05 / 2**15 / 0.01, "gyro": 0.1 / (3600 * 256) / 0.01}  # m/
 
 @pytest.fixture(scope="module")
 def quiet(tmp_path_factory) -> chain.Results:
-    """The demo campaign without noise, tilts, effects and faults."""
-    document = chain.demo(noise={name: 0 for name in chain.demo()["noise"]})
+    """A short campaign without noise, tilts, effects and faults."""
+    document = chain.short(noise={name: 0 for name in chain.demo()["noise"]})
     document["campaign"]["table"]["position_sigma_arcsec"] = 0
     folder = tmp_path_factory.mktemp("quiet")
     campaign = chain.simulate(document, folder / "quiet")
