@@ -30,21 +30,13 @@ def jumps_not_testable(selection: Selection, mount: str) -> Iterator[TableRow]:
         for cause in selection.named.causes
         if cause.verdict in (FOUND, ONE_OF_CLASS)
     }
-    searched = {one.name: one for one in selection.searched}
     labels = selection.evidence.labels
     for sensor, other in zip(SENSORS, SENSORS[::-1], strict=True):
         changes = {f"{sensor}_{what}": f"{other}_{what}" for what in CHANGES}
         if not named.keys().isdisjoint(changes.values()) or other not in labels:
             continue
-        degrees = [
-            [
-                selection.evidence.total.drop(searched[name].candidates[named[own]])[1]
-                for name in (own, same)
-            ]
-            for own, same in changes.items()
-            if own in named
-        ]
-        if any(of_other < of_own for of_own, of_other in degrees):
+        changed = [(own, named[own], same) for own, same in changes.items() if own in named]
+        if any(_hidden(selection, *each) for each in changed):
             yield (
                 "findings",
                 {
@@ -61,3 +53,20 @@ def jumps_not_testable(selection: Selection, mount: str) -> Iterator[TableRow]:
                     "verdict": FOUND,
                 },
             )
+
+
+def _hidden(selection: Selection, own: str, value: int, same: str) -> bool:
+    """Whether fewer parameters of the other sensor's change are observable than of this one."""
+    searched = {one.name: one.candidates for one in selection.searched}
+    places = searched[own][value], searched[same][_same_time(selection, own, value, same)]
+    of_own, of_other = (selection.evidence.total.drop(place)[1] for place in places)
+    return of_other < of_own
+
+
+def _same_time(selection: Selection, own: str, value: int, same: str) -> int:
+    """The candidate of the other's change that is nearest in time; a change by logs has one."""
+    if own not in selection.families:
+        return value
+    at = selection.effect(own, value).at or 0.0
+    times = [one.at or 0.0 for one in selection.families[same]]
+    return min(range(len(times)), key=lambda i: abs(times[i] - at))

@@ -1,11 +1,16 @@
 """A jump of the gyros' bias between two logs, in which the accelerometers may have jumped too."""
 
 from collections.abc import Mapping
+from types import SimpleNamespace
 from typing import Any
 
 import chain
+import numpy as np
 import pandas as pd
 import pytest
+
+from inertial.estimation.effect_information import EffectInformation
+from stages.criticism.jump_not_testable import jumps_not_testable
 
 JUMP = {"size_deg_h": [40.0, -30.0, 50.0], "at_s": 210.0}
 
@@ -51,3 +56,30 @@ def test_where_both_logs_hold_an_axis_up_and_down_it_is_known_that_they_did_not(
     last = ["z-down", "x-backward", "y-backward", "z-backward"]
     verdicts, causes = judged(dict.fromkeys(first, "one.csv") | dict.fromkeys(last, "two.csv"), "+")
     assert "jump_not_testable" not in causes and verdicts["verdict"]["accel"] == "usable"
+
+
+@pytest.mark.parametrize(("informative", "found"), [(7.0, []), (0.0, ["gyro"])])
+def test_it_is_asked_of_the_others_jump_at_the_same_time(informative, found) -> None:
+    """A scan that was refined about its maximum has more times than that of the other sensor."""
+    times = {"accel_bias_jump": [10.0, 20.0, 25.0, 30.0], "gyro_bias_jump": [10.0, 20.0, 30.0]}
+    columns = [f"{name} {at}" for name, own in times.items() for at in own]
+    information = np.ones(len(columns))
+    information[-1] = informative  # of the gyros' jump at 30 s
+    selection = SimpleNamespace(
+        named=SimpleNamespace(
+            causes=[SimpleNamespace(effect="accel_bias_jump", value=3, verdict="found")]
+        ),
+        families={name: [SimpleNamespace(at=at) for at in own] for name, own in times.items()},
+        effect=lambda name, value: SimpleNamespace(at=times[name][value]),
+        searched=[
+            SimpleNamespace(name="accel_bias_jump", candidates=((0,), (1,), (2,), (3,))),
+            SimpleNamespace(name="gyro_bias_jump", candidates=((4,), (5,), (6,))),
+        ],
+        evidence=SimpleNamespace(
+            labels=("gyro", "accel"),
+            total=EffectInformation(
+                tuple(columns), np.diag(information), np.zeros(len(columns)), 0.0, 9
+            ),
+        ),
+    )
+    assert [row["sensor"] for _table, row in jumps_not_testable(selection, "")] == found
