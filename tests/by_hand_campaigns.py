@@ -46,14 +46,24 @@ def session(seed: int, **changes: Any) -> dict[str, Any]:
 
 
 def by_hand(
-    document: Mapping[str, Any], folder: Path, until: str = "compensation"
+    document: Mapping[str, Any],
+    folder: Path,
+    until: str = "compensation",
+    instability_deg_h: float | None = None,
 ) -> chain.Results:
-    """The session recorded and run, of which the campaign file states no attitude."""
+    """The session recorded and run, of which the campaign file states no attitude.
+
+    `instability_deg_h`: the bias instability that the data sheet of the gyros states.
+    """
     campaign = chain.simulate(document, folder / "campaign")
     yaml, path = YAML(), campaign / "campaign.yaml"
     stated = yaml.load(path)
     stated["plan"] = [{"id": "by-hand", "do": "positions", "seconds": 2, "log": LOG}]
     stated["table"] = {"name": "by hand", "position_sigma_arcsec": 3600}
+    if instability_deg_h is not None:
+        instrument = yaml.load(chain.ROOT / "data/instruments.yaml")[stated["instrument"]]
+        instrument["gyro"]["bias_instability_deg_h"] = instability_deg_h
+        stated["instrument"] = instrument
     yaml.dump(stated, path)
     return chain.run(campaign, folder / "derived", until)
 

@@ -11,6 +11,7 @@ import pytest
 from inertial.estimation.triad import linear_names
 
 CLEAN = range(20)
+FLICKER = 40.0  # °/h, B of the gyros
 # Sizes of a consumer IMU, as data sheets and the table of the design study have them.
 HIDDEN = {
     "gyro_g_sensitivity": {"matrix_deg_h_g": [[60, 0, 0], [-100, 0, 0], [0, 0, 80]]},
@@ -73,6 +74,16 @@ def test_the_sigmas_of_a_clean_session_are_honest(clean):
         # The 240 are not independent: P is symmetric, and all share the directions.
         assert np.sqrt(np.mean(every**2)) == pytest.approx(1, abs=0.2)
         assert np.abs(every).max() < 4.5
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(5))
+def test_a_bias_instability_that_the_data_sheet_states_is_no_cause(seed, tmp_path):
+    """It was a random walk or a jump in every third session. Stated is the Allan deviation."""
+    flicker = {"gyro_flicker": {"instability_deg_h": FLICKER}}
+    document = sessions.session(seed, effects=flicker)
+    results = sessions.by_hand(document, tmp_path, "diagnosis", 0.664 * FLICKER)
+    assert results["diagnosis/causes"].empty
 
 
 @pytest.mark.slow

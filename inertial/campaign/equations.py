@@ -38,10 +38,10 @@ from inertial.sensors import SENSORS
 from inertial.text.messages import _
 
 PRIOR_SIZE = 10.0  # prior sigma of an effect, in its typical sizes
-NOT_SIMULATED = _("Nothing is simulated, for the joint estimate determines no sensor wholly.")
+NOT_SIMULATED = _("Nothing is simulated, for no sensor has all of its biases determined.")
 NO_GYROS = _(
-    "it changes no reading of the accelerometers, and the gyros are not simulated, for the joint "
-    "estimate does not determine all of their parameters"
+    "it changes no reading of the accelerometers, and the gyros are not simulated, for not all of "
+    "their biases are determined"
 )
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
 NOTHING_SHARED: Mapping[str, Sequence[Name]] = {}

@@ -165,12 +165,24 @@ class NoiseLevels:
 
     def drift(self, sensor: str) -> MeasuredDrift:
         """The drift of the biases of a sensor, `gyro` or `accel`, by the noise at rest."""
-        rows = [self._rows.get((None, None, f"{sensor}_{axis}"), {}) for axis in tables.AXES]
+        rows = self._of_axes(sensor)
         sizes = np.array([[row.get(term) or 0.0 for term in DRIFTS] for row in rows], np.float64)
         instability, walk = np.nan_to_num(sizes).T
-        stated = np.array([row.get("data_sheet") or 0.0 for row in rows], np.float64)
+        stated = self._stated(sensor)
         expected = not walk.any() and bool(np.all(instability <= MAX_STATED_RATIO * stated))
         return MeasuredDrift(instability, walk, expected=expected)
+
+    def stated_drift(self, sensor: str) -> MeasuredDrift:
+        """The same by the data sheet alone: by hand what drifts at rest is the support as well."""
+        return MeasuredDrift(self._stated(sensor), np.zeros(len(tables.AXES)), expected=True)
+
+    def _of_axes(self, sensor: str) -> list[Row]:
+        return [self._rows.get((None, None, f"{sensor}_{axis}"), {}) for axis in tables.AXES]
+
+    def _stated(self, sensor: str) -> Array:
+        """The bias instability of each axis that the data sheet states, else 0, (3,)."""
+        stated = [row.get("data_sheet") or 0.0 for row in self._of_axes(sensor)]
+        return np.nan_to_num(np.array(stated, np.float64))
 
     def oscillates(self, manoeuvre: str, channels: Sequence[str]) -> bool:
         """Whether a channel oscillates in the steady part of a turn, and not at rest."""

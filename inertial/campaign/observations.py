@@ -27,7 +27,7 @@ from inertial.campaign.static_positions import (
     turn_errors,
 )
 from inertial.estimation.accelerometers import StaticForce
-from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
+from inertial.estimation.random_walk import MeasuredDrift, Stretch
 from inertial.physics.motion import Motion, level_axes, mean_turned
 from inertial.sensors import SENSORS
 from inertial.tables import ACCEL
@@ -49,7 +49,8 @@ def campaign_of(data: CampaignData) -> Campaign:
         statics = _in_pieces(statics)
     motions, solution = CampaignMotions(data), data.result
     handled = data.by_hand is not None  # there the support drifts, not only the bias
-    drifts = {sensor: NO_DRIFT if handled else data.drift(sensor) for sensor in SENSORS}
+    known = data.noise.stated_drift if handled else data.drift
+    drifts = {sensor: known(sensor) for sensor in SENSORS}
     static_motions = [motions.at_rest(position) for position in inputs.static_positions]
     turns: list[Motion] = []
     static_forces: list[tuple[str, StaticForce, Motion]] = []

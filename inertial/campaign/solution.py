@@ -23,7 +23,7 @@ from inertial.text.parameters import BIAS, FREE, JOINT
 class Solution:
     """M and bias of both triads, the site, and the parameters of the positions.
 
-    A triad that is not wholly determined is None. `random_walks`: of the biases of gyros and
+    A triad whose bias is not determined is None. `random_walks`: of the biases of gyros and
     accelerometers, rad/s/√s and m/s²/√s. `free`: the sensors, gyro or accel, whose triad is that of
     static positions of unknown attitude. `switch_ons`: by sensor, by what the biases differ between
     switch-ons, (3,), rad/s or m/s²; `deviations`: by sensor and switch-on, the bias after it less
@@ -134,15 +134,15 @@ def solution_of(
     up, level = _earth_rate(known, gyro, mount)
     tilts = accelerometer.position_parameters(mount, "tilt", np.inf)
     levels = gyro.position_parameters(mount, "horizontal", level / 3)
-    triads = {
-        "accel": triad_of(accelerometer.parameters, mount),
-        "gyro": triad_of(gyro.parameters, mount),
-    }
+    triads: dict[str, Triad | None] = {}
     free: set[str] = set()
     for sensor, tables in (("accel", accelerometer), ("gyro", gyro)):
-        if triads[sensor] is None and (sensor == "accel" or "accel" in free):
-            triads[sensor] = free_triad_of(tables.parameters, mount)
-            free |= {sensor} if triads[sensor] is not None else set()
+        triads[sensor] = triad_of(tables.parameters, mount)
+        if not _whole(tables.parameters, mount) and (sensor == "accel" or "accel" in free):
+            by_hand = triad_of(tables.parameters, mount, FREE)
+            if by_hand is not None:
+                triads[sensor] = by_hand
+                free |= {sensor}
     return Solution(
         triads["gyro"],
         triads["accel"],
@@ -191,26 +191,19 @@ def scatter_by_mount(fit: pd.DataFrame) -> dict[str, float]:
     return {r["mount"]: r["scatter"] or 0.0 for r in rows_of(fit) if r["method"] == JOINT}
 
 
-def triad_of(parameters: pd.DataFrame, mount: str = "") -> Triad | None:
-    """M and bias of the joint result; none where they are not wholly determined."""
+def _whole(parameters: pd.DataFrame, mount: str) -> bool:
+    """Whether the joint fit determines all twelve parameters."""
     values = {row["parameter"]: row["value"] for row in joint_rows(parameters, mount)}
-    return _triad(values) if all(values.get(n) is not None for n in linear_names()) else None
+    return all(values.get(name) is not None for name in linear_names())
 
 
-def free_triad_of(parameters: pd.DataFrame, mount: str) -> Triad | None:
-    """The same of static positions of unknown attitude; M is that of ideal sensors where not known.
+def triad_of(parameters: pd.DataFrame, mount: str = "", method: str = JOINT) -> Triad | None:
+    """M and bias of a method; M is that of ideal sensors where it is not determined.
 
-    None where a bias is not determined.
+    There no reading of the campaign depends on it. None where a bias is not determined.
     """
-    values = {row["parameter"]: row["value"] for row in joint_rows(parameters, mount, FREE)}
+    values = {row["parameter"]: row["value"] for row in joint_rows(parameters, mount, method)}
     if any(values.get(name) is None for name in BIAS):
         return None
-    return _triad({name: values.get(name) or 0.0 for name in linear_names()})
-
-
-def _triad(values: Mapping[str, float]) -> Triad:
-    names = linear_names()
-    errors = np.array([values[name] for name in names[:-3]], dtype=np.float64).reshape(3, 3)
-    bias = np.array([values[name] for name in BIAS], dtype=np.float64)
-    assert len(bias) == len(AXES)
-    return Triad(np.eye(3) + errors, bias)
+    known = [values.get(name) or 0.0 for name in linear_names()]
+    return Triad(np.eye(3) + np.reshape(known[:-3], (3, 3)), np.array(known[-3:]))

@@ -279,7 +279,11 @@ class Extension:
         """The rows of a fit, and of the likeliest how far its parameters move."""
         sensor, mount = solution.sensor, self.data.mount
         yield "covariance", solution.covariance_rows()
-        yield from (("parameters", row) for row in (*solution.rows, *solution.constants))
+        lacking = {row["parameter"]: row for row in self._joint_of(sensor) if row["value"] is None}
+        for row in (*solution.rows, *solution.constants):
+            of_plan = row["value"] is None and row["parameter"] in lacking
+            reason = lacking[row["parameter"]]["reason"] if of_plan else row["reason"]
+            yield "parameters", {**row, "reason": reason}
         between = switch_on_columns(self.switch_ons.get(sensor))
         scatter = self.scatters.get(sensor, 0.0)
         yield "fit", solution.fit_row(self.data.noise.degrees, scatter) | between
