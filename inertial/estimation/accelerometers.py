@@ -387,8 +387,8 @@ def _shown_tilts(statics: Sequence[StaticForce], ups: Array, about: Triad, means
 def _spanned(ups: Array) -> Array:
     """The projection, (3, 3), onto the directions that planned attitudes have, (n, 3).
 
-    Along any other a sensor feels but the tilts that its own reading shows, which is
-    what it reads by any scale factor; those determine none.
+    Along any other direction a sensor feels nothing but tilts, which are those that its own
+    reading shows by whatever scale factor: they determine none.
     """
     values, vectors = np.linalg.eigh(ups.T @ ups / len(ups))
     spanned = vectors[:, values > MIN_SPANNED**2]
