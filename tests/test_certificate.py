@@ -19,7 +19,8 @@ from stages.diagnosis.conformity import (
     decision,
 )
 from stages.plan.certificate import Statements
-from stages.report.sections.certificate import SECTION, _risk
+from stages.report.sections.certificate import SECTION
+from stages.report.sections.conformity import _risk
 from tests.report.synthetic import campaign, section_on
 
 CAMPAIGN = """
