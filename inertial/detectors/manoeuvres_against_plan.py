@@ -357,10 +357,10 @@ class TurningPointOnce(PlanDetector):
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         return Description(
             plural(
-                "Where a tumble goes back, the plan has two rests of which one was recorded: "
-                "{names} is the rest before it.",
-                "Where tumbles go back, the plan has two rests of which one was recorded: "
-                "{names} are the rests before them.",
+                "{names} is not missing: where a tumble goes back, the plan has two rests in one "
+                "attitude, and the log has them as one.",
+                "{names} are not missing: where a tumble goes back, the plan has two rests in one "
+                "attitude, and the log has them as one.",
                 deviation.count,
                 names=", ".join(deviation.facts),
             ),
