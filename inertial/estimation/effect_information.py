@@ -147,7 +147,7 @@ class EffectInformation:
         their information (m,), the combinations (k, m), and which columns they do not span (k,)
         """
         block = self.information[np.ix_(chosen, chosen)]
-        size = np.sqrt(np.maximum(np.diag(block), np.finfo(float).tiny))
+        size = _sizes(block)
         values, vectors = np.linalg.eigh(block / np.outer(size, size))
         observable = values > MIN_INFORMATION_SHARE
         spanned = np.sum(vectors[:, observable] ** 2, axis=1)
@@ -160,7 +160,13 @@ def whitening(information: Array, least: float = MIN_INFORMATION_SHARE) -> Array
 
     `least`: of the information scaled to unit diagonal, below which one is not observable.
     """
-    size = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
+    size = _sizes(information)
     values, vectors = np.linalg.eigh(information / np.outer(size, size))
     observable = values > least
     return np.asarray(vectors[:, observable] / np.sqrt(values[observable]) / size[:, None])
+
+
+def _sizes(information: Array) -> Array:
+    """The roots of the diagonal, (k,), infinite where there is none: no combination has such."""
+    own = np.diag(information)
+    return np.sqrt(np.where(own > 0, own, np.inf))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from inertial.estimation.effect_information import EffectInformation, whitening
 from inertial.estimation.least_squares import solve
 from inertial.estimation.scatter_and_random_walk import with_scatter
 
@@ -80,3 +81,22 @@ def test_scatter_is_found_where_there_is_some_and_only_there():
     assert 0.7 < pulls.std() < 1.35
     silent = [scattered(0.0, seed) for seed in range(100)]
     assert sum(one.scatter > 0 for one in silent) <= 4  # 1 % is the bar
+
+
+def test_columns_without_information_are_in_no_combination():
+    """A root of 10⁻³⁰⁸ was their size, which made biases of 10¹⁴⁴ µg of the rounding."""
+    random = np.random.default_rng(3)
+    rows = random.standard_normal((60, 24)) @ np.diag(np.logspace(-3, 3, 24))
+    information = np.zeros((40, 40))
+    seen = np.sort(random.choice(40, 24, replace=False))
+    information[np.ix_(seen, seen)] = rows.T @ rows
+    unseen = np.setdiff1d(np.arange(40), seen)
+    combinations = whitening(information)
+    assert combinations.shape == (40, 24) and not combinations[unseen].any()
+    np.testing.assert_allclose(combinations.T @ information @ combinations, np.eye(24), atol=1e-6)
+    effects = EffectInformation(
+        tuple(map(str, range(40))), information, information @ np.ones(40), 0.0, 9
+    )
+    values, covariance = effects.estimate(range(40))
+    np.testing.assert_allclose(values[seen], 1, rtol=1e-6)
+    assert np.isnan(values[unseen]).all() and np.isnan(covariance[unseen]).all()
