@@ -33,17 +33,22 @@ DRIFTS = ("bias_instability", "random_walk")  # terms of the noise
 MAX_P_VALUE = 1e-3  # of a drift that enters: of 12 that are absent, one in a campaign of a hundred
 LEVEL_COLUMNS = [column.name for column in tables.LEVELS.columns]
 MAX_STATED_RATIO = 1.5  # of a bias instability to the data sheet's, from which it is unexpected
+LOWEST = float(np.sqrt(2 * np.log(2) / np.pi))  # Allan deviation of a bias instability of 1
 MIN_NOISE_RECORDING_S = 1800.0  # s, of a rest that is recorded for its noise
 OWN, COMMON = "own", "common"
 STATED, RESIDUALS = "stated", "residuals"  # of means without time
 
 
-def drift_of(terms: NoiseTerms | None, stated: float | None = None) -> dict[str, float]:
+def drift_of(
+    terms: NoiseTerms | None, stated: float | None = None, seconds: float = np.inf
+) -> dict[str, float]:
     """What of the terms of a channel enters the covariance, by name.
 
     Of drifts that the data do not distinguish that is the likeliest. The bias instability that the
     data sheet states, `stated`, goes on for longer than static stretches are: it stands for one
-    that they do not show, or show less of, as far as their upper limit leaves it open.
+    that they do not show, or show less of, as far as their upper limit leaves it open; and for a
+    random walk that they do not tell from it and that over half the longest of them, `seconds`, is
+    no larger.
     """
     instability, walk = DRIFTS
     if terms is None:
@@ -51,8 +56,12 @@ def drift_of(terms: NoiseTerms | None, stated: float | None = None) -> dict[str,
     sizes = {name: float(getattr(terms.model, name)) for name in DRIFTS}
     certain = {name for name in DRIFTS if terms.terms[name].p_value < MAX_P_VALUE}
     shown = {name: size for name, size in sizes.items() if size > 0 and name in certain}
-    if walk in shown or not stated:
+    if not stated:
         return shown
+    if walk in shown:
+        larger = shown[walk] * np.sqrt(seconds / 6) > MAX_STATED_RATIO * LOWEST * stated
+        alike = instability in terms.terms[walk].alternatives
+        return shown if larger or not alike else {instability: stated}
     own = terms.terms[instability]
     limit = own.interval[1] if own.detected else own.upper
     return {instability: max(shown.get(instability, 0.0), float(np.fmin(stated, limit)))}

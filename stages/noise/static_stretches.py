@@ -178,7 +178,7 @@ class SensorNoise:
         """What enters the covariance, by channel; `sheet`: see `term_rows`."""
         for channel, terms in zip(self.channels, self.terms, strict=True):
             stated = sheet[channel].get("bias_instability")
-            yield channel, {**drift_of(terms, stated), "data_sheet": stated}
+            yield channel, {**drift_of(terms, stated, self.seconds), "data_sheet": stated}
 
     def allan_rows(self) -> Iterator[Row]:
         """Rows of the table."""

@@ -1,5 +1,7 @@
 """The terms of simulated noise: found with sigma, limited where absent, told apart if possible."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from noise_draws import INTERVAL, outcome
@@ -242,3 +244,26 @@ def test_the_data_sheet_stands_for_what_short_stretches_leave_open_of_the_bias_i
         (None, None, None),
     ):
         assert drift_of(terms, stated) == ({} if size is None else {"bias_instability": size})
+
+
+@pytest.mark.parametrize(
+    ("alternatives", "seconds", "stated", "entering"),
+    [
+        (("bias_instability",), 60.0, 4.4e-4, {"bias_instability": 4.4e-4}),
+        (("bias_instability",), 60.0, 0.5e-4, {"random_walk": 5.4e-5}),  # it is larger
+        (("bias_instability",), 6000.0, 4.4e-4, {"random_walk": 5.4e-5}),  # and over so long
+        ((), 60.0, 4.4e-4, {"random_walk": 5.4e-5}),  # the data tell it
+        (("bias_instability",), 60.0, None, {"random_walk": 5.4e-5}),
+    ],
+)
+def test_a_walk_that_may_as_well_be_the_data_sheets_bias_instability_is_that(
+    alternatives, seconds, stated, entering
+):
+    """K √(τ/3) over half a stretch of 60 s is 1.7e-4 m/s², and 0.664 B is 2.9e-4 m/s²."""
+    absent = SimpleNamespace(p_value=0.4, detected=False, upper=2e-4)
+    walk = SimpleNamespace(p_value=1e-4, detected=False, alternatives=alternatives)
+    terms = SimpleNamespace(
+        model=SimpleNamespace(bias_instability=0.0, random_walk=5.4e-5),
+        terms={"bias_instability": absent, "random_walk": walk},
+    )
+    assert drift_of(terms, stated, seconds) == entering
