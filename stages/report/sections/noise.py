@@ -71,7 +71,8 @@ SECTION = outline.Section(
         "with −½, bias instability is flat, a random walk of the bias rises with +½, a ramp with "
         "+1. Every σ of this report rests on white noise as each manoeuvre has it, on bias "
         "instability and random walk where they are certain (p < 0.1 %), and on the rounding of "
-        "counts that are coarse beside it; the data sheet, dashed, is used nowhere."
+        "counts that are coarse beside it; of the data sheet, dashed, the bias instability is used "
+        "as far as the rests leave it open, and nothing else."
     ),
     ("allan", "spectra", "noise_terms", "levels", "sensors", "segments"),
     parts,
