@@ -21,6 +21,7 @@ import pandas as pd
 from inertial import tables
 from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Row, rows_of
+from inertial.estimation.noise_model import FLOOR_VARIANCE
 from inertial.estimation.noise_terms import NoiseTerms
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import MeasuredDrift
@@ -33,7 +34,6 @@ DRIFTS = ("bias_instability", "random_walk")  # terms of the noise
 MAX_P_VALUE = 1e-3  # of a drift that enters: of 12 that are absent, one in a campaign of a hundred
 LEVEL_COLUMNS = [column.name for column in tables.LEVELS.columns]
 MAX_STATED_RATIO = 1.5  # of a bias instability to the data sheet's, from which it is unexpected
-LOWEST = float(np.sqrt(2 * np.log(2) / np.pi))  # Allan deviation of a bias instability of 1
 MIN_NOISE_RECORDING_S = 1800.0  # s, of a rest that is recorded for its noise
 OWN, COMMON = "own", "common"
 STATED, RESIDUALS = "stated", "residuals"  # of means without time
@@ -59,7 +59,8 @@ def drift_of(
     if not stated:
         return shown
     if walk in shown:
-        larger = shown[walk] * np.sqrt(seconds / 6) > MAX_STATED_RATIO * LOWEST * stated
+        lowest = stated * np.sqrt(FLOOR_VARIANCE)  # Allan deviation
+        larger = shown[walk] * np.sqrt(seconds / 6) > MAX_STATED_RATIO * lowest
         alike = instability in terms.terms[walk].alternatives
         return shown if larger or not alike else {instability: stated}
     own = terms.terms[instability]

@@ -1,4 +1,4 @@
-"""Manoeuvres that are not as planned: missing, exchanged, or a rest of which little is recorded."""
+"""Manoeuvres that are not as planned: missing, exchanged, joined to one, or of little record."""
 
 from collections.abc import Iterator
 

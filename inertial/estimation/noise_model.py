@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike
 
 from inertial.arrays import Array
 
+FLOOR_VARIANCE = 2 * float(np.log(2)) / np.pi  # Allan variance of a bias instability of 1
 STOCHASTIC = ("quantisation", "white_noise", "bias_instability", "random_walk")
 TERMS = (*STOCHASTIC, "ramp")
 FOLDS = 20  # aliases on each side of a density that are summed, the rest is integrated
@@ -66,7 +67,7 @@ class NoiseModel:
 def allan_shapes(tau: Array) -> Array:
     """Allan variances of the stochastic terms with coefficients of 1, (4, …); tau in s."""
     one = np.ones_like(tau)
-    return np.stack([3 / tau**2, 1 / tau, 2 * np.log(2) / np.pi * one, tau / 3])
+    return np.stack([3 / tau**2, 1 / tau, FLOOR_VARIANCE * one, tau / 3])
 
 
 def density_shapes(frequency: Array, interval: float) -> Array:

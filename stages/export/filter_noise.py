@@ -25,12 +25,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import log, pi, sqrt
+from math import sqrt
 
 import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.records import Row
+from inertial.estimation.noise_model import FLOOR_VARIANCE
 from inertial.physics.effect import Reading, Truth
 from inertial.physics.motion import stretches
 from inertial.tables import AXES
@@ -38,7 +39,6 @@ from inertial.text.parameters import SENSOR_OF
 from stages.export.calibration import PARAMETERS, Triad, Use
 
 G = 9.80665  # m/s², by definition
-FLICKER = 2 * log(2) / pi  # Allan variance of a bias instability of 1 (IEEE Std 952)
 INSTANT = 1e-6  # s, duration of a probe
 
 
@@ -92,7 +92,7 @@ def _of_channel(
     limit = terms.get("random_walk", {}).get("upper") if walk is None else None
     measured = walk if walk is not None else limit
     density = row["density"]
-    drift = 3 * FLICKER * detected.get("bias_instability", 0.0) ** 2 / use.seconds
+    drift = 3 * FLOOR_VARIANCE * detected.get("bias_instability", 0.0) ** 2 / use.seconds
     drift += 3 * detected.get("ramp", 0.0) ** 2 * use.seconds / 4
     own_density = None if moving is None else sqrt(moving * use.moving)
     own_walk = None if constant is None else sqrt(3 * constant / use.seconds)

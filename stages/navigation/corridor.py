@@ -17,6 +17,7 @@ from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, measurement_of
 from inertial.campaign.records import Row
+from inertial.estimation.noise_model import FLOOR_VARIANCE
 from inertial.physics.error_growth import (
     ATTITUDE,
     POSITION,
@@ -33,7 +34,6 @@ from inertial.text.parameters import BIAS, PARTS
 Source = tuple[str, str]  # family and source, as in the table of shares
 
 QUANTITIES = {"attitude": ATTITUDE, "velocity": VELOCITY, "position": POSITION}
-FLICKER = 2 * np.log(2) / np.pi  # Allan variance of a bias instability of 1 (IEEE Std 952)
 NOT_PARAMETERS = ("noise", "earth_rate", "table")  # families
 DRIFT, AZIMUTH, ANGLE = ("noise", "drift"), ("earth_rate", "azimuth"), ("table", "angle")
 WHITE = ("noise", "white_noise")
@@ -241,7 +241,7 @@ def corridor(
         np.concatenate([getattr(d, name) for d in drifts]) for name in ("instability", "walk")
     )
     longest = max(after) * stretch.step
-    walk = _corrected(result.measurement, walks**2 + 3 * FLICKER * instability**2 / longest)
+    walk = _corrected(result.measurement, walks**2 + 3 * FLOOR_VARIANCE * instability**2 / longest)
     none = np.zeros((6, 6))
     noise = {WHITE: growth.of_noise(stretch.attitude, white, none, after)}
     if walk.any():

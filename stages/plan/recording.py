@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from inertial import tables
+from inertial.estimation.noise_model import FLOOR_VARIANCE
 from inertial.formats.columns import vectornav_lines
 from inertial.sensors import FILE_KEYS
 from inertial.tables.yaml_file import Key, YamlFile
@@ -24,8 +25,8 @@ from stages.plan.sampling import MeanSigmas, StatedRate, each, refuse_without_ti
 
 KEY = "encoder"
 MICRO_G = 1e-6 * STANDARD_GRAVITY
-# Allan deviation of a bias instability of 1 (IEEE Std 952): data sheets state the lowest point.
-LOWEST = float(np.sqrt(2 * np.log(2) / np.pi))
+# Of the Allan deviation of a bias instability of 1: data sheets state the lowest point.
+LOWEST = float(np.sqrt(FLOOR_VARIANCE))
 
 
 def encoder(file: YamlFile) -> dict[str, Any] | None:
