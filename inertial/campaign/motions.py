@@ -14,6 +14,7 @@ from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
+from inertial.signal.rests_and_motions import bridged
 from inertial.tables import ACCEL
 from inertial.text.messages import _
 
@@ -152,7 +153,7 @@ def in_samples(
     assert solution.gyro is not None and m.angle is not None  # else it is not simulated
     passed = np.round(np.diff(time, prepend=time[0] - step) / step)  # samples, 0 where one repeats
     counts, lost = np.minimum(passed, 1.0), np.maximum(passed - 1.0, 0.0)
-    increments = _filled(increments) * counts[:, None]
+    increments = bridged(increments) * counts[:, None]
     ends = step * np.cumsum(passed)
 
     def so_far(angle: Array) -> Array:
@@ -196,18 +197,6 @@ def in_samples(
         np.full(len(time), step),
     )
     return motion, how
-
-
-def _filled(values: Array) -> Array:
-    """Values (n, 3) with NaN interpolated linearly between their neighbours."""
-    place = np.arange(len(values))
-    known = np.isfinite(values)
-    return np.column_stack(
-        [
-            np.interp(place, place[finite], column[finite]) if finite.any() else column
-            for column, finite in zip(values.T, known.T, strict=True)
-        ]
-    )
 
 
 # --- The stretches of a campaign, with time, temperature and vibration ---

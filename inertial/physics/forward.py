@@ -34,6 +34,9 @@ class Triad:
     bias: Array
 
 
+UNKNOWN_TRIAD = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # that is not determined
+
+
 def truth_of(motion: Motion, site: Site) -> Truth:
     """Truth from the motion of the table, gravity and the earth's rate; (n, 3) each."""
     earth = site.earth_up * motion.up + site.earth_level * np.nan_to_num(motion.north)

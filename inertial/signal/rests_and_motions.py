@@ -65,7 +65,7 @@ def moving(rates: Array, forces: Array, level: Array, threshold: float) -> Boole
     """
     recorded = ~np.isnan(rates).all(axis=0)
     if recorded.any():
-        away = np.column_stack([_filled(rates[:, i]) - level[i] for i in np.flatnonzero(recorded)])
+        away = (bridged(rates) - level)[:, recorded]  # clipped, it moves on
         return np.asarray(np.linalg.norm(away, axis=1) > threshold)
     forces = np.nan_to_num(forces)
     k = len(forces)
@@ -77,10 +77,13 @@ def moving(rates: Array, forces: Array, level: Array, threshold: float) -> Boole
     return np.asarray(np.linalg.norm(spread, axis=1) > max(usual, MIN_FORCE_CHANGE))
 
 
-def _filled(values: Array) -> Array:
-    """A channel with what is masked of it between its neighbours: clipped, it moves on."""
-    there = np.flatnonzero(np.isfinite(values))
-    return np.interp(np.arange(len(values)), there, values[there])
+def bridged(values: Array) -> Array:
+    """Values (n, m) with straight lines between neighbours where one is NaN, unless all are."""
+    place, filled = np.arange(len(values)), values.copy()
+    for i, there in enumerate(np.isfinite(values).T):
+        if there.any():
+            filled[:, i] = np.interp(place, place[there], values[there, i])
+    return filled
 
 
 def stretches(moves: Booleans, bin_seconds: float, forces: Array | None = None) -> list[BinStretch]:

@@ -9,8 +9,10 @@ import pandas as pd
 
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.masked_samples import Columns, Repairs, pieces
+from inertial.campaign.log_lines import RecordRange
+from inertial.campaign.masked_samples import Columns, Repairs
 from inertial.campaign.records import Manoeuvre, Part, rows_of
+from inertial.campaign.sample_stretches import columns_in
 from inertial.tables import CHANNELS, STATIC_PHASES
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
@@ -120,40 +122,12 @@ def readings(
     """The readings of each window as recorded and compensated, one window in memory at a time."""
     if not wanted:
         return
-    columns = ["record", *CHANNELS]
-    raw = _read(samples, wanted, [*columns, "time", "temperature"], repairs)
-    corrected = _read(compensated, wanted, columns, None)
-    for (window, before), (same, after) in zip(raw, corrected, strict=True):
-        assert window is same  # both tables have the same records in the same order
-        yield _on_grid(window, before, after)
-
-
-def _read(
-    stream: Stream, wanted: Sequence[Window], columns: list[str], repairs: Repairs | None
-) -> Iterator[tuple[Window, Columns]]:
-    waiting = {id(window): window for window in wanted}
-    parts: dict[int, list[Columns]] = {}
-    for log, piece in pieces(stream, columns, repairs):
-        record = piece["record"]
-        done = [k for k in parts if waiting[k].log != log or waiting[k].after <= record[0]]
-        for key in sorted(done, key=lambda key: _end(waiting[key])):
-            yield waiting.pop(key), _joined(parts.pop(key))
-        for key, window in waiting.items():
-            if window.log == log and record[0] < window.after and record[-1] >= window.first:
-                inside = (record >= window.first) & (record < window.after)
-                own = {name: values[inside] for name, values in piece.items()}
-                parts.setdefault(key, []).append(own)
-    for key in sorted(parts, key=lambda key: _end(waiting[key])):
-        yield waiting[key], _joined(parts[key])
-
-
-def _end(window: Window) -> tuple[int, int]:
-    """By which windows of a log are in an order that does not depend on how it is read."""
-    return window.after, window.first
-
-
-def _joined(parts: Sequence[Columns]) -> Columns:
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    stretches = {k: RecordRange(own.log, own.first, own.after) for k, own in enumerate(wanted)}
+    raw = columns_in(samples, stretches, [*CHANNELS, "time", "temperature"], repairs)
+    corrected = columns_in(compensated, stretches, CHANNELS)
+    for (k, before), (same, after) in zip(raw, corrected, strict=True):
+        assert k == same  # both tables have the same records in the same order
+        yield _on_grid(wanted[k], before, after)
 
 
 def _on_grid(window: Window, before: Columns, after: Columns) -> Readings:

@@ -9,7 +9,7 @@ from inertial.arrays import Array, Booleans, Integers
 from inertial.campaign.masked_samples import Batch, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.sums import MeansOver
-from inertial.signal.rests_and_motions import MAX_KNOCK_TILT
+from inertial.signal.rests_and_motions import MAX_KNOCK_TILT, bridged
 
 BIN_S = 0.1  # s, of the short means in which motion is sought
 MIN_PAUSE_S = 1.0  # s without a record, in which an IMU may be set anew
@@ -221,22 +221,11 @@ class Bins:
             yield Binned(
                 window,
                 edges,
-                _straight(own.mean[part, 3:]),
+                # A turn stays one where a stretch is masked; no angle is made of these rates.
+                bridged(own.mean[part, 3:]),
                 own.mean[part, :3],
                 own.count[part] * self._clocks[window.log].step if len(first) else np.array([]),
                 own.first[part],
                 own.last[part],
                 self._censoring.censored_between(window.log, edges) if len(first) else None,
             )
-
-
-def _straight(rates: Array) -> Array:
-    """The rates of bins, (k, 3), and straight lines over the bins in which a gyro is masked.
-
-    So a turn stays one where a stretch of it is masked; no angle is made of these rates.
-    """
-    place, filled = np.arange(len(rates)), rates.copy()
-    for i, there in enumerate(np.isfinite(rates).T):
-        if there.any():
-            filled[:, i] = np.interp(place, place[there], rates[there, i])
-    return filled

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from inertial import tables
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
-from inertial.campaign.masked_samples import Repairs, inside, pieces
+from inertial.campaign.masked_samples import Columns, Repairs, inside
 from inertial.campaign.motions import at_rest, in_samples
 from inertial.campaign.records import Manoeuvre, Performed, Row, rows_of
+from inertial.campaign.sample_stretches import columns_in, records_of
 from inertial.campaign.solution import Solution
 from inertial.physics.effect import Reading
-from inertial.physics.forward import Triad, predict
+from inertial.physics.forward import UNKNOWN_TRIAD, predict
 from inertial.physics.motion import Motion
 from inertial.tables import GYRO
 from inertial.tables.parquet import Stream
@@ -25,7 +26,6 @@ from inertial.tables.stage import Pieces, Stage
 from stages.simulation.declared import DECLARED
 
 OF_CHANNELS = ("predicted", "residual")
-NOTHING = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # of a triad that is not determined
 
 
 def simulation(
@@ -44,9 +44,11 @@ def simulation(
             yield "fidelity", rows
         if data.result.gyro is None:
             continue
-        whole = [m for m in data.plan if _whole(m, data.performed[m.name])]
-        for m, parts in _samples_of(samples, repairs, segments, whole):
-            part, how = _turn(data, m, parts, segments)
+        whole = {m.name: m for m in data.plan if _whole(m, data.performed[m.name])}
+        stretches = {name: records_of(m, segments) for name, m in whole.items()}
+        for name, read in columns_in(samples, stretches, ["time", *tables.CHANNELS], repairs):
+            m = whole[name]
+            part, how = _turn(data, m, read, segments)
             yield "simulated", _frame([part])
             yield "fidelity", list(_fidelity(part, data, how, data.clocks[m.log].step))
 
@@ -109,52 +111,28 @@ def _rests(data: CampaignData) -> Iterator[tuple[Simulated, float]]:
 
 
 def _predicted(motion: Motion, solution: Solution) -> Reading:
-    gyro, accelerometer = solution.gyro or NOTHING, solution.accelerometer or NOTHING
+    gyro, accelerometer = solution.gyro or UNKNOWN_TRIAD, solution.accelerometer or UNKNOWN_TRIAD
     return predict(motion, solution.site, gyro, accelerometer)
 
 
-def _samples_of(
-    samples: Stream, repairs: Repairs, segments: pd.DataFrame, whole: list[Manoeuvre]
-) -> Iterator[tuple[Manoeuvre, dict[str, NDArray[Any]]]]:
-    """The samples of each of these turns, from the rest before it to the rest after it."""
-    spans = {
-        str(name): (int(rows["from_record"].min()), int(rows["to_record"].max()))
-        for name, rows in segments.groupby("manoeuvre")
-    }
-    columns = ["record", "time", *tables.CHANNELS]
-    waiting = {m.name: [] for m in whole}  # type: dict[str, list[dict[str, NDArray[Any]]]]
-    for log, piece in pieces(samples, columns, repairs):
-        for m in whole:
-            if m.log != log:
-                continue
-            first, after = spans[m.name]
-            inside = (piece["record"] >= first) & (piece["record"] < after)
-            if inside.any():
-                waiting[m.name].append({c: piece[c][inside] for c in columns})
-            if piece["record"][-1] >= after - 1 and waiting[m.name]:
-                parts = waiting.pop(m.name)
-                waiting[m.name] = []
-                yield m, {c: np.concatenate([part[c] for part in parts]) for c in columns}
-
-
 def _turn(
-    data: CampaignData, m: Manoeuvre, parts: dict[str, NDArray[Any]], segments: pd.DataFrame
+    data: CampaignData, m: Manoeuvre, read: Columns, segments: pd.DataFrame
 ) -> tuple[Simulated, str]:
     """A turn sample by sample; what is in none of its blocks is masked, and not compared."""
-    record, step = parts["record"], data.clocks[m.log].step
+    record, step = read["record"], data.clocks[m.log].step
     blocks = data.blocks[data.blocks["manoeuvre"] == m.name]
     phase = np.full(len(record), "rest", dtype=object)
     for row in rows_of(segments[segments["manoeuvre"] == m.name]):
         phase[(record >= row["from_record"]) & (record < row["to_record"])] = row["phase"]
-    readings = np.column_stack([parts[channel] for channel in tables.CHANNELS])
+    readings = np.column_stack([read[channel] for channel in tables.CHANNELS])
     edges = [blocks[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
     readings[~inside(record, *edges)] = np.nan
     increments = readings[:, len(GYRO) :] * step
     steady = phase == "steady"
-    motion, how = in_samples(data, m, increments, step, steady, parts["time"])
+    motion, how = in_samples(data, m, increments, step, steady, read["time"])
     predicted = _predicted(motion, data.result.since(m.switch_on))
     both = np.hstack([predicted.accel, predicted.gyro])
-    return Simulated(m.name, m.log, phase, record, parts["time"], both, readings), how
+    return Simulated(m.name, m.log, phase, record, read["time"], both, readings), how
 
 
 def _frame(parts: Sequence[Simulated]) -> pd.DataFrame:

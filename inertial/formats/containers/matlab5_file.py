@@ -17,16 +17,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.io import loadmat, whosmat
 
-from inertial.formats.columns.column_values import NumberValues
-from inertial.formats.containers.container import BATCH_ROWS, Batch, Table
-from inertial.formats.containers.matrices import MAX_DEPTH, MatrixColumn, columns_of, samples_of
+from inertial.formats.containers.container import Table
+from inertial.formats.containers.matrices import (
+    MAX_DEPTH,
+    Matrices,
+    MatrixColumn,
+    batches,
+    columns_of,
+)
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
 _INTEGERS = {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)}
 _NUMBERS = {"double", "single", "logical"} | _INTEGERS
-
-Matrices = dict[str, NDArray[Any]]
 
 
 @contextmanager
@@ -43,7 +46,7 @@ def opened(path: Path, layout: Mapping[str, Any]) -> Iterator[Table]:
     required = list(_texts_in(layout))
     variables = _variables(path)
     columns: list[MatrixColumn] = []
-    fields: Matrices = {}
+    fields: dict[str, NDArray[Any]] = {}
     for name, shape, kind in variables:
         if kind in _NUMBERS:
             columns += columns_of(name, shape)
@@ -52,7 +55,11 @@ def opened(path: Path, layout: Mapping[str, Any]) -> Iterator[Table]:
             fields |= inside
             for field, matrix in inside.items():
                 columns += columns_of(field, matrix.shape)
-    yield Table([column.name for column in columns], partial(_batches, path, columns, fields))
+
+    def load(names: set[str]) -> Matrices:
+        return fields | _load(path, sorted(names - set(fields)))
+
+    yield Table([column.name for column in columns], partial(batches, path, columns, load))
 
 
 def _variables(path: Path) -> list[tuple[str, tuple[int, ...], str]]:
@@ -69,25 +76,10 @@ def _variables(path: Path) -> list[tuple[str, tuple[int, ...], str]]:
         ) from error
 
 
-def _batches(
-    path: Path, columns: Sequence[MatrixColumn], fields: Matrices, indices: Sequence[int]
-) -> Iterator[Batch]:
-    required = {index: columns[index] for index in indices}
-    samples = samples_of(path, required)
-    variables = {column.matrix for column in required.values()} - set(fields)
-    matrices = fields | (_load(path, sorted(variables)) if variables else {})
-    values = {
-        index: matrices[column.matrix][column.where(slice(None))]
-        for index, column in required.items()
-    }
-    for first in range(0, samples, BATCH_ROWS):
-        some = slice(first, first + BATCH_ROWS)
-        count = min(BATCH_ROWS, samples - first)
-        yield Batch(count, {index: NumberValues(values[index][some]) for index in indices})
-
-
-def _load(path: Path, variables: list[str]) -> Matrices:
+def _load(path: Path, variables: list[str]) -> dict[str, NDArray[Any]]:
     """The variables of these names; what is wrong with one is an error, not a warning."""
+    if not variables:
+        return {}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         loaded = loadmat(str(path), appendmat=False, variable_names=variables)

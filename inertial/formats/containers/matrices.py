@@ -6,12 +6,20 @@ are counted from 1: `gyro.1`, `gyro.2`, `gyro.3`. A field of a 1×1 structure st
 `imu.time`, `imu.gyro.3`. Columns go by number in the order of these names.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from inertial.formats.columns.column_values import NumberValues
+from inertial.formats.containers.container import BATCH_ROWS, Batch
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
+
+Matrices = Mapping[str, NDArray[Any]]
 
 MAX_COLUMNS = 1000  # a wider matrix is not one of samples
 MAX_DEPTH = 4  # structures within structures
@@ -67,3 +75,23 @@ def samples_of(path: Path, columns: Mapping[int, MatrixColumn]) -> int:
             _("name columns that were recorded together"),
         )
     return next(iter(lengths), 0)
+
+
+def batches(
+    path: Path,
+    columns: Sequence[MatrixColumn],
+    load: Callable[[set[str]], Matrices],
+    indices: Sequence[int],
+) -> Iterator[Batch]:
+    """The required columns some samples at a time; `load` gives the matrices of these names."""
+    required = {index: columns[index] for index in indices}
+    samples = samples_of(path, required)
+    matrices = load({column.matrix for column in required.values()})
+    for first in range(0, samples, BATCH_ROWS):
+        count = min(BATCH_ROWS, samples - first)
+        some = slice(first, first + count)
+        values = {
+            index: NumberValues(np.asarray(matrices[column.matrix][column.where(some)]))
+            for index, column in required.items()
+        }
+        yield Batch(count, values)

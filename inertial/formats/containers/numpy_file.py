@@ -8,7 +8,7 @@ object is loaded.
 Source: https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -19,9 +19,8 @@ import numpy as np
 from numpy.lib import format as numpy_format
 from numpy.typing import NDArray
 
-from inertial.formats.columns.column_values import NumberValues
-from inertial.formats.containers.container import BATCH_ROWS, Batch, Table
-from inertial.formats.containers.matrices import MAX_DEPTH, MatrixColumn, columns_of, samples_of
+from inertial.formats.containers.container import Table
+from inertial.formats.containers.matrices import MAX_DEPTH, Matrices, batches, columns_of
 from inertial.formats.file_type import FileType, file_type_of
 
 Array = NDArray[Any]
@@ -79,27 +78,8 @@ def _plain(array: Array, name: str, depth: int = MAX_DEPTH) -> Iterator[tuple[st
 def _table(
     path: Path,
     shapes: Mapping[str, tuple[int, ...]],
-    load: Callable[[set[str]], Mapping[str, Array]],
+    load: Callable[[set[str]], Matrices],
 ) -> Table:
     columns = [column for name, shape in shapes.items() for column in columns_of(name, shape)]
     names = [column.name.removeprefix(".") or "1" for column in columns]
-    return Table(names, partial(_batches, path, columns, load))
-
-
-def _batches(
-    path: Path,
-    columns: Sequence[MatrixColumn],
-    load: Callable[[set[str]], Mapping[str, Array]],
-    indices: Sequence[int],
-) -> Iterator[Batch]:
-    required = {index: columns[index] for index in indices}
-    samples = samples_of(path, required)
-    arrays = load({column.matrix for column in required.values()})
-    for first in range(0, samples, BATCH_ROWS):
-        count = min(BATCH_ROWS, samples - first)
-        some = slice(first, first + count)
-        values = {
-            index: NumberValues(np.asarray(arrays[column.matrix][column.where(some)]))
-            for index, column in required.items()
-        }
-        yield Batch(count, values)
+    return Table(names, partial(batches, path, columns, load))
