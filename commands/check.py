@@ -28,6 +28,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, shortened, visible
 from stages.diagnosis.causes import (
+    APPLIED,
     INTERPOLATED,
     LEFT_OUT,
     MASKED,
@@ -39,7 +40,6 @@ from stages.diagnosis.declared import DECLARED
 
 LINE_WIDTH = 100
 MAX_FULL_CAUSES = 20  # of further ones only the names are listed
-APPLIED = ("applied", "confirmed")  # states of a repair
 WITHOUT_IT = (MASKED, INTERPOLATED, LEFT_OUT)  # cures
 SPOILING, WEAKENING, HARMLESS = 3, 2, 1  # severities
 SPOILS, SET_RIGHT, WEAKENS, GOOD_TO_KNOW = range(4)

@@ -6,10 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 from inertial import tables
-from inertial.campaign.records import rows_of
+from inertial.campaign.records import grouped, rows_of
 from inertial.text.messages import _
 from stages.history.archive import COMPARABLE_BY, Archive, Entry, results
 from stages.history.repeatability import (
@@ -99,9 +98,8 @@ def imus_of(
     """
     imus = []
     for simulated in (False, True):
-        groups: dict[tuple[Any, ...], list[Entry]] = {}
-        for entry in Archive(archive, simulated=simulated).of_serial(folder):
-            groups.setdefault(tuple(entry.row[key] for key in COMPARABLE_BY), []).append(entry)
+        entries = Archive(archive, simulated=simulated).of_serial(folder)
+        groups = grouped(entries, lambda entry: tuple(entry.row[key] for key in COMPARABLE_BY))
         for own in groups.values():
             stated = derived / own[-1].row["campaign"] / ALLOWED_CHANGES
             rows = rows_of(tables.ALLOWED_CHANGES.read(stated)) if stated.is_file() else []

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from inertial.arrays import Array
 from inertial.formats.columns import column_reader, vectornav_lines
+from inertial.formats.columns.column_values import NUMBER
 from inertial.formats.columns.text_lines import BYTE_ORDER_MARK, names_in, without_names
 from inertial.formats.file_type import FileType, file_type_of
 from inertial.formats.gps_time import NANOSECONDS
@@ -22,11 +23,10 @@ from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
 HEAD_BYTES = 1 << 17  # of the log, by which its layout is judged
-MIN_NUMBERS = 3  # in a row of data
+MINNUMBERS = 3  # in a row of data
 USUAL = 0.9  # share of rows in which a column of numbers holds one
 DELIMITERS, DECIMALS = (None, ",", ";", "\t"), (".", ",")
 COMMENTS = ("#", "//", "%")
-_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _DATE = re.compile(
     r"(\d{4}-?\d\d?-?\d\d?[T ]\d\d?:?\d\d?(:?\d\d?([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?)"
     r"|(\d?\d:\d\d:\d\d([.,]\d+)?)",
@@ -59,7 +59,7 @@ def text_layout(path: Path) -> TextLayout | None:
         lines = lines[:-1]  # the last one is cut off
     plain = _separated(lines)
     labels = [names_in(line.encode()) for line in lines]
-    labelled = sum(len(names) >= MIN_NUMBERS for names in labels)
+    labelled = sum(len(names) >= MINNUMBERS for names in labels)
     if labelled and labelled >= plain.rows:
         bare = [without_names(line.encode()).decode() for line in lines]
         if (separated := _separated(bare)).rows:
@@ -112,11 +112,11 @@ def is_number(text: str, decimal: str = ".") -> bool:
     text = text.strip(' \t"')
     if decimal == ",":
         text = text.replace(".", "_").replace(",", ".")
-    return bool(_NUMBER.fullmatch(text))
+    return bool(NUMBER.fullmatch(text))
 
 
 def _is_data(row: Sequence[str], decimal: str) -> bool:
-    return sum(is_number(field, decimal) for field in row) >= MIN_NUMBERS
+    return sum(is_number(field, decimal) for field in row) >= MINNUMBERS
 
 
 def _fields(line: str, delimiter: str | None) -> list[str]:

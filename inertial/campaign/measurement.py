@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
-from inertial.campaign.records import Row, rows_of
+from inertial.campaign.records import Row, grouped, rows_of
 from inertial.effects import KNOWN
 from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Effect
@@ -128,9 +128,7 @@ class Measurement:
 
 def measurements_of(result: pd.DataFrame) -> dict[str, Measurement]:
     """The measurement equation of each mount that has a result, by its name."""
-    by_mount: dict[str, list[Row]] = {}
-    for row in rows_of(result):
-        by_mount.setdefault(row["mount"], []).append(row)
+    by_mount = grouped(rows_of(result), lambda row: row["mount"])
     return {mount: measurement_of(rows) for mount, rows in by_mount.items()}
 
 
@@ -158,3 +156,6 @@ def _effect(name: str, rows: Iterable[Row]) -> EffectOfResult:
     constants = {key: row for key, row in own.items() if key not in parameters}
     values = {key: row["value"] for key, row in constants.items() if row["value"] is not None}
     return EffectOfResult(effect.with_constants(values), parameters, constants)
+
+
+NOTHING = measurement_of([])  # of a mount without a result

@@ -20,7 +20,7 @@ import pandas as pd
 
 from inertial import tables
 from inertial.arrays import Array, Booleans
-from inertial.campaign.records import Row, rows_of
+from inertial.campaign.records import Row, grouped, rows_of
 from inertial.estimation.noise_model import FLOOR_VARIANCE
 from inertial.estimation.noise_terms import NoiseTerms
 from inertial.estimation.probability import chi2_sf
@@ -83,9 +83,7 @@ def effective_levels(
     for else a level that came out low would weigh more for it. Then the common level has the
     relative sigma (Σw)^−½, and Σw/2 degrees of freedom: a variance known to √(2/ν).
     """
-    by_channel: dict[str, list[Row]] = {}
-    for row in rows_of(noise):
-        by_channel.setdefault(row["channel"], []).append(row)
+    by_channel = grouped(rows_of(noise), lambda row: row["channel"])
     rows: list[Row] = []
     rounding = dict(rounding or {})
     for channel, own in by_channel.items():

@@ -1,8 +1,8 @@
 """Rows of the small tables as records with types: manoeuvres, what was performed, what is known."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 import pandas as pd
@@ -14,16 +14,28 @@ from inertial.text.messages import _
 MAX_NAMED = 5  # manoeuvres that are left out for the same reason
 
 Row = dict[str, Any]
+Item = TypeVar("Item")
+Group = TypeVar("Group")
 
 
 def rows_of(table: pd.DataFrame) -> list[Row]:
     """The rows of a table, None for what is empty."""
-    names = list(table.columns)
-    rows = zip(*(table[name].to_numpy(dtype=object) for name in names), strict=True)
-    return [
-        {name: None if pd.isna(value) else value for name, value in zip(names, row, strict=True)}
-        for row in rows
-    ]
+    columns = {
+        str(name): [
+            None if gap else value
+            for value, gap in zip(column.tolist(), column.isna(), strict=True)
+        ]
+        for name, column in table.items()
+    }
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
+
+
+def grouped(items: Iterable[Item], key: Callable[[Item], Group]) -> dict[Group, list[Item]]:
+    """The items of each group, all in the order in which they come."""
+    groups: dict[Group, list[Item]] = {}
+    for item in items:
+        groups.setdefault(key(item), []).append(item)
+    return groups
 
 
 @dataclass(frozen=True)
@@ -187,10 +199,7 @@ def labels(parts: Iterable[Part]) -> str:
 
 def omissions(parts: Iterable[Part]) -> str:
     """In words: what is left out, and why; of many for one reason the first and their number."""
-    alike: dict[str, list[Part]] = {}
-    for part in parts:
-        if part.reason:
-            alike.setdefault(part.reason, []).append(part)
+    alike = grouped((part for part in parts if part.reason), lambda part: part.reason)
     return "; ".join(_omission(left_out).rstrip(".") for left_out in alike.values())
 
 

@@ -45,6 +45,7 @@ LETTERS = {
 }
 
 JOINT, EXTENDED = "joint", "extended"  # results: of the joint fit, with the unmodelled effects
+MIXTURE = "mixture"  # of several members of a class, each by its probability
 FREE = "free_positions"  # of static positions of unknown attitude
 STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}  # by the sensor as columns call it
 SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}

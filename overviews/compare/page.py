@@ -6,6 +6,7 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from inertial.sensors import PLURAL, SENSORS, SINGULAR
 from inertial.text import numbers
 from inertial.text.messages import _, plural
 from inertial.text.typography import capital
@@ -21,7 +22,7 @@ from stages.report.results import kind_of, quantity_of, symbol
 from stages.report.sections.findings import causes, title_of
 from stages.report.sections.verdict import LEVELS
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, SENSORS, with_mount
+from stages.report.words import with_mount
 
 LINE_WIDTH = 100
 KINDS = ("bias", "scale", "cross")
@@ -94,13 +95,13 @@ def remarks(pair: Pair) -> Iterator[outline.Paragraph]:
             ),
             "fair" if beyond else "good",
         )
-    for sensor in SENSOR:
+    for sensor in SENSORS:
         if together := pair.together(sensor):
             chi2, count, p_value = together
             yield outline.Paragraph(
                 _(
                     "All values of the {sensor} together: χ² = {chi2} of {count}, {p}.",
-                    sensor=SENSORS[sensor],
+                    sensor=PLURAL[sensor],
                     chi2=numbers.significant(chi2, 3),
                     count=count,
                     p=numbers.p_is(p_value),
@@ -114,9 +115,9 @@ def _differences(pair: Pair) -> outline.Section:
     parts: list[outline.Part] = [*remarks(pair)]
     if any(one.in_sigmas is not None for one in pair.compared):
         parts.append(_figure(pair))
-    for sensor in SENSOR:
+    for sensor in SENSORS:
         if rows := _ordered(pair.of(sensor)):
-            caption = _("Parameters of the {sensor}.", sensor=SENSORS[sensor])
+            caption = _("Parameters of the {sensor}.", sensor=PLURAL[sensor])
             parts.append(_table(pair, rows, caption))
     return _section(
         "differences",
@@ -191,7 +192,7 @@ def _figure(pair: Pair) -> outline.Figure:
     """The differences in units of their sigma."""
     with style():
         figure, axes = panels(1, 2, 1.6, Margins(bottom=0.45, left=0.35), sharex=False)
-        for panel, sensor in zip(axes[0], SENSOR, strict=True):
+        for panel, sensor in zip(axes[0], SENSORS, strict=True):
             rows = [one for one in _ordered(pair.of(sensor)) if one.in_sigmas is not None]
             sizes = [one.in_sigmas or 0.0 for one in rows]
             names = [symbol(one.key[2]).replace("_", "") for one in rows]
@@ -201,7 +202,7 @@ def _figure(pair: Pair) -> outline.Figure:
             panel.axhline(0, color=INK, linewidth=0.5)
             panel.set_xticks(range(len(rows)), names, rotation=60)
             panel.grid(visible=False, axis="x")
-            panel.set_title(_("{sensor}, σ", sensor=capital(SENSORS[sensor])), loc="left", pad=2)
+            panel.set_title(_("{sensor}, σ", sensor=capital(PLURAL[sensor])), loc="left", pad=2)
             ticks(panel, 5)
         drawn = svg(figure, "differences")
     return outline.Figure(
@@ -216,10 +217,10 @@ def _figure(pair: Pair) -> outline.Figure:
 
 def _effects(pair: Pair) -> outline.Section:
     parts: list[outline.Part] = []
-    for sensor in SENSOR:
+    for sensor in SENSORS:
         rows = [one for one in pair.effects if one.key[1] == sensor]
         if rows:
-            caption = _("Effects in the results of the {sensor}.", sensor=SENSORS[sensor])
+            caption = _("Effects in the results of the {sensor}.", sensor=PLURAL[sensor])
             table = _table(pair, rows, caption)
             lines = [
                 outline.Row((one.key[2].replace("_", " "), *row.cells[1:]), tone=row.tone)
@@ -244,7 +245,7 @@ def _verdicts(pair: Pair) -> outline.Section:
         lines.append(outline.head(numbers.shortened(name, 80)))
         for row in tables.rows("verdict"):
             word, tone, _meaning = LEVELS[row["verdict"]]
-            sensor = capital(with_mount(SENSOR[row["sensor"]], row["mount"]))
+            sensor = capital(with_mount(SINGULAR[row["sensor"]], row["mount"]))
             sentence = numbers.shortened(row["sentence"], 500)
             lines.append(outline.table_row(sensor, word, sentence, tone=_tone(tone)))
         titles = [title_of(tables, row) for row in causes(tables)]
@@ -302,8 +303,8 @@ def as_text(pair: Pair) -> str:
     """The same in plain text: remarks, parameters, effects, conditions, settings."""
     texts = [_("A: {first}\nB: {second}", first=pair.names[0], second=pair.names[1])]
     texts += [textwrap.fill(part.text, LINE_WIDTH) for part in remarks(pair)]
-    for sensor in SENSOR:
-        texts += _block(capital(SENSORS[sensor]), _ordered(pair.of(sensor)))
+    for sensor in SENSORS:
+        texts += _block(capital(PLURAL[sensor]), _ordered(pair.of(sensor)))
     texts += _block(_("Effects"), pair.effects)
     for title, lines in (
         (_("Conditions that differ"), conditions(pair)),

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, groupby
 from pathlib import Path
-from typing import Any
 
+from inertial.campaign.records import Row
+from inertial.sensors import PLURAL, SENSORS, SINGULAR
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
@@ -17,9 +18,7 @@ from stages.report import outline
 from stages.report.page import page
 from stages.report.results import quantity_of, symbol
 from stages.report.tables import Tables
-from stages.report.words import SENSOR, SENSORS
 
-Row = dict[str, Any]
 Rows = Mapping[str, Sequence[Row]]
 LEVEL = {
     "type": _("the type"),
@@ -244,7 +243,7 @@ def _populations(rows: Rows) -> outline.Section:
         for kind in dict.fromkeys(row["instrument"] for row in rows["population"]):
             yield outline.Heading(kind)
             yield from _outliers([row for row in rows["outliers"] if row["instrument"] == kind])
-            for sensor in SENSOR:
+            for sensor in SENSORS:
                 own = [
                     [r for r in rows[name] if (r["instrument"], r["sensor"]) == (kind, sensor)]
                     for name in ("population", "spreads")
@@ -288,7 +287,7 @@ def _parameters(sensor: str, rows: Sequence[Row], spreads: Sequence[Row]) -> out
             )
         )
     return outline.Table(
-        _("Parameters of the {sensor}.", sensor=SENSORS[sensor]),
+        _("Parameters of the {sensor}.", sensor=PLURAL[sensor]),
         (
             outline.Column("", "symbol"),
             *outline.value_and_sigma(_("mean")),
@@ -326,7 +325,7 @@ def _outliers(rows: Sequence[Row]) -> Iterator[outline.Part]:
                 "σ, {p}.",
                 imu=numbers.shortened(row["imu"], 60),
                 parameter=row["parameter"].replace("_", " "),
-                sensor=SENSOR[row["sensor"]],
+                sensor=SINGULAR[row["sensor"]],
                 size=numbers.fixed(row["size"], 1),
                 p=numbers.p_is(row["p_value"]),
             ),

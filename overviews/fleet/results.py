@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import atanh, sqrt
-from typing import Any
 
 import numpy as np
 
+from inertial.campaign.records import Row
 from inertial.estimation.consistency import normal_p_value
 from inertial.estimation.fleet_components import LEVELS, shares
 from inertial.estimation.type_population import of_new_imu, type_population
@@ -24,7 +24,6 @@ from overviews.fleet.members import (
     of_gravity,
 )
 
-Row = dict[str, Any]
 Rows = dict[str, list[Row]]
 EQUAL = 0.9999  # a correlation of what is equal by a convention, as the axes of a case by hand
 OF_FISHER_Z = 3  # degrees of freedom that a correlation takes

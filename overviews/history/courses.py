@@ -8,7 +8,7 @@ from datetime import date, timedelta
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from inertial.sensors import UNITS
+from inertial.sensors import SENSORS, SINGULAR, UNITS
 from inertial.text.messages import _
 from inertial.text.parameters import AXES, BIAS, CROSS, PARTS, SCALE
 from inertial.text.typography import capital
@@ -29,7 +29,6 @@ from stages.report.drawing import (
 )
 from stages.report.results import KIND
 from stages.report.tables import Record
-from stages.report.words import SENSOR
 
 KINDS = {"bias": BIAS, "scale": SCALE, "cross": CROSS}
 MARGINS = Margins(left=0.52, down=0.36, across=0.62, bottom=0.3)
@@ -42,7 +41,7 @@ def figures(imu: Imu) -> Iterator[outline.Figure]:
     """A figure for each sensor and kind of parameter, a panel for each parameter."""
     forecast = {(row["sensor"], row["quantity"]): row for row in imu.tables.rows("forecast")}
     jumps = {(row["sensor"], row["quantity"]): row for row in imu.tables.rows("jumps")}
-    for sensor in SENSOR:
+    for sensor in SENSORS:
         for kind, names in KINDS.items():
             series = {name: _dated(imu.series.get((sensor, name), [])) for name in names}
             there = [name for name, values in series.items() if values]
@@ -64,7 +63,7 @@ def figures(imu: Imu) -> Iterator[outline.Figure]:
             what = _(
                 "{kind} of the {sensor}, {unit}",
                 kind=KIND[kind],
-                sensor=SENSOR[sensor],
+                sensor=SINGULAR[sensor],
                 unit=unit.name,
             )
             yield outline.Figure(

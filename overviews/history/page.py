@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from inertial.sensors import UNITS
+from inertial.sensors import SENSORS, SINGULAR, UNITS
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.units import quantity
@@ -19,7 +19,6 @@ from stages.report.page import page
 from stages.report.sections.repeatability import SECTION as REPEATABILITY
 from stages.report.sections.verdict import LEVELS
 from stages.report.tables import Tables
-from stages.report.words import SENSOR
 
 Parts = Callable[[Tables], Iterator[outline.Part]]
 
@@ -91,7 +90,7 @@ def due_in_words(imu: Imu) -> tuple[str, outline.Tone]:
     if due is None:
         return _("No due date: {reason}.", reason=imu.why_not_due or _("nothing is known")), ""
     rows = [row for row in imu.tables.rows("forecast") if row["due"] == due]
-    of = ", ".join(f"{SENSOR[row['sensor']]} {row['quantity'].replace('_', ' ')}" for row in rows)
+    of = ", ".join(f"{SINGULAR[row['sensor']]} {row['quantity'].replace('_', ' ')}" for row in rows)
     return _("Due on {due}, by {parameters}.", due=due, parameters=of), "fair"
 
 
@@ -168,11 +167,11 @@ def _courses(imu: Imu, name: str, key: str) -> outline.Section:
 
 def _values(imu: Imu, name: str, key: str) -> outline.Section:
     def parts(_tables: Tables) -> Iterator[outline.Part]:
-        for sensor in SENSOR:
+        for sensor in SENSORS:
             rows = list(_rows(imu, sensor))
             if rows:
                 yield outline.Table(
-                    _("Values of the {sensor}s.", sensor=SENSOR[sensor]),
+                    _("Values of the {sensor}s.", sensor=SINGULAR[sensor]),
                     (
                         outline.Column(_("Date"), "name"),
                         outline.Column(_("Campaign")),

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
-from inertial.sensors import UNITS
+from inertial.sensors import SENSORS, SINGULAR, UNITS
 from inertial.text import numbers
 from inertial.text.messages import _, plural
 from inertial.text.parameters import PARTS
@@ -21,7 +21,6 @@ from stages.report.page import page
 from stages.report.sections.findings import causes, harmless, title_of
 from stages.report.sections.verdict import LEVELS, worst
 from stages.report.tables import Tables
-from stages.report.words import SENSOR
 
 SCRIPT = Path(__file__).with_name("sorted_tables.js")
 MOST_CAUSES = 2
@@ -119,9 +118,9 @@ def _campaigns(
                     outline.Column(
                         f"{name}, {_unit(sensor, kind).name}",
                         "number",
-                        _("worst σ, {sensor}", sensor=SENSOR[sensor]),
+                        _("worst σ, {sensor}", sensor=SINGULAR[sensor]),
                     )
-                    for sensor in SENSOR
+                    for sensor in SENSORS
                     for kind, name in KINDS.items()
                 ),
                 outline.Column(_("Due")),
@@ -164,7 +163,7 @@ def _campaigns(
 def _row(name: str, tables: Tables, due: str | None, reports: Path) -> outline.Row:
     about, level = tables.row("campaign"), worst(tables)
     word, tone, _meaning = LEVELS[level]
-    sigmas = [_worst_sigma(tables, sensor, kind) for sensor in SENSOR for kind in KINDS]
+    sigmas = [_worst_sigma(tables, sensor, kind) for sensor in SENSORS for kind in KINDS]
     date = numbers.shortened(about["date"], 20)
     serial, instrument = (numbers.shortened(about[key], 60) for key in ("serial", "instrument"))
     imu = f"{serial} · {instrument}" + (_(" · simulated") if about["simulated"] else "")

@@ -26,7 +26,7 @@ from inertial.tables import GYRO
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, with_own_sigma
-from inertial.text.units import DEGREES, DEGREES_PER_HOUR, MICRO_G, SECONDS_OF_ARC, Unit
+from inertial.text.units import DEGREES, DEGREES_PER_HOUR, ICE_POINT, MICRO_G, SECONDS_OF_ARC, Unit
 from stages.compensation.correction import UNKNOWN
 
 UNITS = {
@@ -38,7 +38,6 @@ UNITS = {
 }
 SI = {"gravity": "m/s²", "force_up": "m/s²", "rate_up": "rad/s", "angle": "rad"}
 NO_SCATTER = (np.zeros(3), np.zeros(3))
-ICE_POINT = 273.15  # K
 MAX_EXPECTED_SIGMAS = 3.0  # sigmas, above which the parameters do not explain the check
 
 

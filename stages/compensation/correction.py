@@ -11,7 +11,7 @@ from inertial import tables
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.masked_samples import Masks, Repairs
-from inertial.campaign.measurement import Measurement, measurement_of
+from inertial.campaign.measurement import NOTHING, Measurement
 from inertial.campaign.records import rows_of
 from inertial.campaign.sums import extremes_over
 from inertial.physics.motion import Motion, stretches
@@ -23,7 +23,6 @@ from inertial.tables.parquet import Stream
 
 ALL = np.iinfo(np.int64).max  # a record number that no log reaches
 UNKNOWN = np.full(3, np.nan)
-NOTHING = measurement_of([])
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ from inertial.campaign.rate_segments import position_of
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
 from inertial.estimation.horizontal_earth_rate import MAX_AZIMUTH_SIGMA
-from inertial.physics.forward import Site, Triad, predict
+from inertial.physics.forward import UNKNOWN_TRIAD, Site, predict
 from inertial.physics.motion import Motion, cross, stretches, turned
 from inertial.tables import ACCEL, CHANNELS, GYRO
 from inertial.tables.parquet import Stream
@@ -29,7 +29,6 @@ from inertial.tables.parquet import Stream
 SECONDS = 1.0  # of a mean in a rotation
 MIN_SHARE = 0.98  # of it that is recorded, so that a vibration averages out as in the others
 MIN_COSINE = 0.5  # to an axis from which its sensor shows an error along a direction
-UNKNOWN = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))
 LEFT = [f"residual_{channel}" for channel in GYRO]
 
 
@@ -94,7 +93,7 @@ def _in_blocks(position: StaticPosition, rest: Motion) -> Motion:
 
 def _predicted(motion: Motion, site: Site, channels: Sequence[str], result: SensorResult) -> Array:
     """The readings of one sensor by its result, (n, 3)."""
-    triad = result.triad or UNKNOWN
+    triad = result.triad or UNKNOWN_TRIAD
     values = {one.effect.label: one.values for one in result.effects}
     effects = [one.effect for one in result.effects]
     reading = predict(motion, site, triad, triad, effects, values)
@@ -154,7 +153,7 @@ def _in_rotation(
 
 def _force(data: CampaignData, means: pd.DataFrame) -> Array:
     """The specific force that the simulation had, (n, 3); NaN without accelerometers."""
-    joint = data.result.accelerometer or UNKNOWN
+    joint = data.result.accelerometer or UNKNOWN_TRIAD
     return (means[ACCEL].to_numpy(np.float64) - joint.bias) @ np.linalg.inv(joint.matrix).T
 
 

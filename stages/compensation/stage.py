@@ -14,7 +14,7 @@ from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.campaign.findings import Finding
 from inertial.campaign.masked_samples import MaskedSamples
-from inertial.campaign.measurement import Measurement, SensorResult, measurements_of
+from inertial.campaign.measurement import NOTHING, Measurement, SensorResult, measurements_of
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.triad import linear_names
@@ -26,7 +26,7 @@ from inertial.text.messages import _
 from inertial.text.parameters import FREE
 from stages.compensation.characteristics import ByCounts, characteristics, least_changes
 from stages.compensation.checks import checks, not_compensated
-from stages.compensation.correction import NOTHING, CompensatedStream, envelope, mounted
+from stages.compensation.correction import CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
 from stages.compensation.residuals import residuals
 

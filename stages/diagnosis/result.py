@@ -11,9 +11,8 @@ from inertial.campaign.records import Row, rows_of, with_mount
 from inertial.estimation.mixture import beside_effects, disagree, mixture
 from inertial.estimation.triad import UNKNOWNS, linear_names
 from inertial.text.messages import _
-from inertial.text.parameters import STAGES
+from inertial.text.parameters import MIXTURE, STAGES
 
-MIXTURE = "mixture"  # method of a result that several members of a class share
 NOT_BY_ALL = _("not all effects that these data may show leave it determined")
 
 

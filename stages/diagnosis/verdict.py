@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from inertial.campaign.hypotheses import MODEL
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed, significant
+from inertial.text.units import ICE_POINT
 from stages.diagnosis.causes import (
     CURVE,
     INTERPOLATED,
@@ -38,7 +39,6 @@ LIMITS = {
 }
 IF_SET_RIGHT = _("{sensors}: {causes}. Set right; the result is valid on condition: {conditions}.")
 IF_ASSUMED = _("{sensors}: {causes}. The result is valid on condition: {conditions}.")
-ICE_POINT = 273.15  # K
 MAX_SCALE_SIGMA = 0.01  # of a scale factor: what is known to no better is said of a usable result
 MOST_NAMES = 4  # of causes, or parameters, in a sentence
 

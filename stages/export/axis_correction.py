@@ -17,12 +17,12 @@ from inertial.arrays import Array
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.parameters import PARTS
+from inertial.text.units import STANDARD_GRAVITY
 from stages.export.calibration import PARAMETERS, Triad
 
-G = 9.80665  # m/s², by definition
 # Per triad: the truth, its name, and the unit in which the error is stated.
 PROBES = {
-    "accelerometer": (G, "1 g", 1e-3 * G, "mg"),
+    "accelerometer": (STANDARD_GRAVITY, "1 g", 1e-3 * STANDARD_GRAVITY, "mg"),
     "gyroscope": (radians(100), "100 deg/s", radians(1), "deg/s"),
 }
 

@@ -18,9 +18,9 @@ import pandas as pd
 from inertial.arrays import Array
 from inertial.campaign.estimates import UNIT
 from inertial.campaign.measurement import (
+    NOTHING,
     EffectOfResult,
     SensorResult,
-    measurement_of,
     measurements_of,
 )
 from inertial.campaign.records import (
@@ -46,7 +46,6 @@ PARAMETERS = linear_names()  # M − I by rows, then the bias
 MAX_CONDITION = 1e6  # condition number of M; that of three good sensors is 1.01
 INSTANT = 1e-6  # s, duration of a sample that has none
 NOT_USABLE = "not_usable"
-NOTHING = measurement_of([])
 COMPENSATED = _(
     "The campaign says that the errors were taken out of its logs already. Its "
     "parameters are what that first compensation has left over, not those of the "

@@ -36,9 +36,9 @@ from inertial.physics.effect import Reading, Truth
 from inertial.physics.motion import stretches
 from inertial.tables import AXES
 from inertial.text.parameters import SENSOR_OF
+from inertial.text.units import STANDARD_GRAVITY
 from stages.export.calibration import PARAMETERS, Triad, Use
 
-G = 9.80665  # m/s², by definition
 INSTANT = 1e-6  # s, duration of a probe
 
 
@@ -136,7 +136,7 @@ def calibration_errors(
     for i, axis in enumerate(AXES):
         square = covariance[:, i, :, i] + np.outer(remaining[:, i], remaining[:, i])
         matrix_part = float(np.trace(square[:3, :3]))
-        gravity = G**2 / 3 * matrix_part if triad.kind == "accelerometer" else 0.0
+        gravity = STANDARD_GRAVITY**2 / 3 * matrix_part if triad.kind == "accelerometer" else 0.0
         constant = float(square[3, 3]) + gravity + constant_of_effects[i]
         moving = matrix_part * use.rms(triad.kind) ** 2 + moving_of_effects[i]
         if np.isfinite(constant) and np.isfinite(moving):
@@ -157,7 +157,7 @@ def _effects(triad: Triad, use: Use) -> tuple[Array, Array]:
             total += np.nan_to_num(reading.gyro if triad.kind == "gyroscope" else reading.accel)
         return total
 
-    gravity = (added(still, G * probes) ** 2).mean(axis=0)
+    gravity = (added(still, STANDARD_GRAVITY * probes) ** 2).mean(axis=0)
     by_rate = (added(use.rate_rms * probes, still) ** 2).sum(axis=0) / 2
     by_force = (added(still, use.force_rms * probes) ** 2).sum(axis=0) / 2
     return gravity, by_rate + by_force

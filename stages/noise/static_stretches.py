@@ -9,12 +9,12 @@ time counts. Where somebody drills next door for an hour the other hours tell th
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.noise_levels import drift_of
+from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
 from inertial.estimation.multiresolution import MIN_WHOLE, Powers
 from inertial.estimation.noise_model import TERMS, NoiseModel
@@ -23,7 +23,6 @@ from inertial.estimation.welch import Spectrum, WelchSums, segment_for
 from inertial.sensors import COLUMNS
 from inertial.tables import AXES
 
-Row = dict[str, Any]
 StaticStretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
 
 SAME_INTERVAL = 1e-3  # relative difference of sampling intervals that are alike

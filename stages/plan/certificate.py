@@ -7,13 +7,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from inertial.campaign.records import Row
 from inertial.sensors import FILE_KEYS
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE, STANDARD_GRAVITY
-
-Row = dict[str, Any]
 
 STRICT = "strict"
 # In the order of the certificate, and whether ISO/IEC 17025:2017 (7.8.2.1, 7.8.4.1) wants it.

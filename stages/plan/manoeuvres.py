@@ -8,6 +8,7 @@ import numpy as np
 
 from inertial import tables
 from inertial.arrays import Array
+from inertial.campaign.records import Row
 from inertial.physics.motion import Profile, turned
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
@@ -16,7 +17,6 @@ from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 
 DIRECTIONS = np.eye(3)
 MAX_BELOW_RATE = 0.01  # by which a turn may stay below its rate
-Row = dict[str, Any]
 
 
 _ALWAYS = {

@@ -1,14 +1,12 @@
 """What others published of the same IMU: the file published.yaml beside campaign.yaml."""
 
 from collections.abc import Iterator
-from typing import Any
 
+from inertial.campaign.records import Row
 from inertial.sensors import FILE_KEYS
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.parameters import PARTS, SCALE
 from inertial.text.units import ARC_SECOND, DEGREE, STANDARD_GRAVITY
-
-Row = dict[str, Any]
 
 SI = {("accelerometer", "bias"): "m/s²", ("gyro", "bias"): "rad/s"}  # all others are ratios
 SIZES = {

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from inertial import tables
+from inertial.campaign.records import Row
 from inertial.estimation.noise_model import FLOOR_VARIANCE
 from inertial.formats.columns import vectornav_lines
 from inertial.sensors import FILE_KEYS
@@ -58,9 +59,6 @@ def encoder(file: YamlFile) -> dict[str, Any] | None:
         "gps_week": stated.get("gps_week"),
         "offset": stated.get("offset_s", 0.0),
     }
-
-
-Row = dict[str, Any]
 
 
 def instrument(file: YamlFile, listed: YamlFile) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from inertial.campaign.records import Row
 from inertial.sensors import FILE_KEYS
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
@@ -70,8 +71,6 @@ def with_rate(
         return layout | {"time": {**time, SAMPLE_RATE: rate}}
     return layout
 
-
-Row = dict[str, Any]
 
 MIN_MEANS = 15  # of a sensor: 12 parameters, and three degrees of freedom for their scatter
 IN_LOG = BY_RESIDUALS = 0.0  # the sigma where the log or the residuals show it

@@ -11,6 +11,7 @@ from typing import Any
 import pandas as pd
 
 from inertial import tables
+from inertial.campaign.records import Row
 from inertial.physics.ideal_triad import at_steady_speed, in_free_fall
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
@@ -32,8 +33,6 @@ from stages.plan.recording import (
 )
 from stages.plan.sampling import SAMPLE_RATE, StatedRate, one_by_one
 from stages.plan.taken_as_known import BY_HAND, by_hand, gravity_repairs, known
-
-Row = dict[str, Any]
 
 FACTS = ("laboratory", "operator", "notes", "mounting", "switch_on")  # as stated, or none
 

@@ -5,6 +5,7 @@ from functools import partial
 from math import cos, radians, sin
 from typing import Any
 
+from inertial.campaign.records import Row
 from inertial.physics.site import (
     EARTH_RATE,
     HEIGHT_SIGMA,
@@ -27,7 +28,6 @@ ASSUMED_RATE = 1e-3
 ASSUMED_GRAVITY = 5e-5  # m/s² of a stated value: 5 mGal
 ASSUMED_LATITUDE = radians(0.01)
 
-Row = dict[str, Any]
 BY_HAND = "by hand"
 
 

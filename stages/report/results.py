@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from inertial.campaign.records import Part, parts_of
+from inertial.campaign.records import Part, grouped, parts_of
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.messages import _
-from inertial.text.parameters import EXTENDED, JOINT, PARTS, SENSOR_OF, STAGES, sign_of
+from inertial.text.parameters import EXTENDED, JOINT, MIXTURE, PARTS, SENSOR_OF, STAGES, sign_of
 from inertial.text.typography import capital
 from stages.report.linked import DECISION_TABLES
 from stages.report.outline import Tone
@@ -26,7 +26,6 @@ ESTIMATE_TABLES = (
 )
 EXTENDED_TABLES = ("extended_parameters", "extended_fit", "extended_fit_manoeuvres")
 RESULT_TABLES = (*ESTIMATE_TABLES, *EXTENDED_TABLES, *DECISION_TABLES, "result")
-MIXTURE = "mixture"
 WITH_EFFECTS = _("fit with effects in the model")  # also by the other members of a class
 METHOD = {
     JOINT: _("joint fit of all manoeuvres"),
@@ -50,7 +49,6 @@ KIND = {
     "symmetric": _("Non-orthogonality: the symmetric part P of M = P R"),
 }
 KIND_IN_A_SENTENCE = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
-BIAS_UNIT = {"accelerometer": "m/s²", "gyroscope": "rad/s"}
 SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
 CALIBRATION = frozenset(
     [f"{kind}_{axis}" for kind in ("bias", "scale") for axis in AXES]
@@ -172,10 +170,7 @@ def _fit_manoeuvres(tables: Tables, *stages: str) -> dict[Key, list[Record]]:
 
 def _grouped(rows: Iterable[Record]) -> dict[Key, list[Record]]:
     """The rows by sensor, mount and method."""
-    groups: dict[Key, list[Record]] = {}
-    for row in rows:
-        groups.setdefault((row["sensor"], row["mount"], row["method"]), []).append(row)
-    return groups
+    return grouped(rows, lambda row: (row["sensor"], row["mount"], row["method"]))
 
 
 @once

@@ -10,9 +10,10 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from inertial.campaign.records import Row, rows_of
 from inertial.tables.parquet import Stream
 
-Record = dict[str, Any]
+Record = Row
 Result = TypeVar("Result")
 
 
@@ -39,7 +40,7 @@ class Tables:
     def rows(self, name: str) -> list[Record]:
         """The rows of a table as plain values, its gaps as None."""
         if name not in self._rows:
-            self._rows[name] = records(self.frame(name))
+            self._rows[name] = rows_of(self.frame(name))
         return self._rows[name]
 
     def row(self, name: str) -> Record:
@@ -67,18 +68,6 @@ def once(function: Callable[[Tables], Result]) -> Callable[[Tables], Result]:
         return tables.once(function)
 
     return cached
-
-
-def records(frame: pd.DataFrame) -> list[Record]:
-    """One dict per row; whatever stands for a gap in a column becomes None."""
-    columns = {
-        str(name): [
-            None if gap else value
-            for value, gap in zip(column.tolist(), column.isna(), strict=True)
-        ]
-        for name, column in frame.items()
-    }
-    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def arrays(rows: Sequence[Record], *keys: str) -> list[NDArray[np.float64]]:

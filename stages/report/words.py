@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 
+from inertial.sensors import SINGULAR
 from inertial.text.messages import ENGLISH, _, language
 from inertial.text.numbers import shortened
 from inertial.text.parameters import PARTS
 
-SENSOR = {"gyro": _("gyro"), "accel": _("accelerometer")}
-SENSORS = {"gyro": _("gyros"), "accel": _("accelerometers")}
 SENSOR_OF_STAGE = {"accelerometer": _("Accelerometer"), "gyroscope": _("Gyroscope")}
 KINDS = {
     "bias": _("bias"),
@@ -70,9 +69,9 @@ def phases_in_words(text: str) -> str:
 def parameter(sensor: str, quantity: str) -> str:
     """A parameter of a sensor in words: gyro, scale x."""
     if quantity not in PARTS:
-        return f"{SENSOR[sensor]} {quantity}"
+        return f"{SINGULAR[sensor]} {quantity}"
     kind, axes = PARTS[quantity]
-    return _("{sensor}, {kind} {axes}", sensor=SENSOR[sensor], kind=KINDS[kind], axes=axes)
+    return _("{sensor}, {kind} {axes}", sensor=SINGULAR[sensor], kind=KINDS[kind], axes=axes)
 
 
 def with_mount(name: str, mount: str | None) -> str:

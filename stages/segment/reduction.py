@@ -8,7 +8,7 @@ import pandas as pd
 from inertial import tables
 from inertial.arrays import Array, Booleans, Integers
 from inertial.campaign.masked_samples import Batch, Masks, regular
-from inertial.campaign.records import Clock, Manoeuvre
+from inertial.campaign.records import Clock, Manoeuvre, grouped
 from inertial.campaign.static_positions import ENCODER
 from inertial.campaign.sums import EdgesOver, ExtremesOver, SumsOver, TimesOver
 from inertial.tables import STATIC_PHASES
@@ -204,10 +204,8 @@ def _hidden(parts: Sequence[Part], masks: Masks) -> dict[str, Integers]:
     A gyro that is masked in all of them is one that was not recorded, and hides no other; nor does
     one that is cut off at the end of its range, which is not used in the turn.
     """
-    turns: dict[str, list[Part]] = {}
-    for part in parts:
-        if part.phase not in STATIC_PHASES:
-            turns.setdefault(part.manoeuvre, []).append(part)
+    moving = (part for part in parts if part.phase not in STATIC_PHASES)
+    turns = grouped(moving, lambda part: part.manoeuvre)
     hidden = {}
     for name, own in turns.items():
         records = np.concatenate([np.arange(part.first, part.after) for part in own])

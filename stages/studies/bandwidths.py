@@ -8,20 +8,18 @@ import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Rotation
-from inertial.campaign.records import with_mount
+from inertial.campaign.records import Row, with_mount
 from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.bandwidth import Bandwidth, by_noise, first_order, spread_by_ramps
 from inertial.estimation.time_angle import Valued
 from inertial.tables import AXES, CHANNELS, GYRO
 from inertial.text.messages import _
 from stages.studies.encoder_rows import mean_of
-
-Row = dict[str, Any]
+from stages.studies.table_motion import MAX_DELAY_STEPS
 
 MIN_COSINE = 1 - 1e-9  # between the axis of a turn and that of a gyro
 MIN_SPREAD_SIGMAS = -3.0  # of a variance: below, the drive overshoots, and there is no limit
 MAX_UNLIKE = 1e-3  # relative, of the sampling intervals of logs with one spectrum
-MAX_DELAY_STEPS = 0.5  # of a step by which a sample may be late; more, and one is missing
 
 NO_CHANGE = _("no manoeuvre changes the specific force fast by a known amount")
 NO_RAMPS = _(

@@ -7,13 +7,12 @@ import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import Rotation
+from inertial.campaign.records import Row, grouped
 from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.encoder_angle import Ripple, against_encoder, low_pass, ripple
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.time_angle import Valued
 from inertial.tables import GYRO
-
-Row = dict[str, Any]
 
 MIN_SPREAD_SIGMAS = 3.0  # of the variance of a delay that tells a low pass
 MAX_RIPPLE_P = 1e-4  # chance of a ripple, or of a harmonic, that counts
@@ -58,10 +57,8 @@ def of_turn(
 
 def together(data: CampaignData, rows: Sequence[Row]) -> Iterator[Row]:
     """What all turns have in common: the delay, its parts where they are told apart, harmonics."""
-    alike: dict[tuple[str, int | None], list[Row]] = {}
-    for row in rows:
-        if row["quantity"] in COMMON:
-            alike.setdefault((row["quantity"], row["order"]), []).append(row)
+    among = (row for row in rows if row["quantity"] in COMMON)
+    alike = grouped(among, lambda row: (row["quantity"], row["order"]))
     common: dict[tuple[str, int | None], Valued] = {}
     for (quantity, order), own in alike.items():
         value, chance = mean_of([Valued(row["value"], row["sigma"]) for row in own])

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,7 +10,7 @@ from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.log_lines import RecordRange
-from inertial.campaign.records import Manoeuvre, Performed, rows_of, with_mount
+from inertial.campaign.records import Manoeuvre, Performed, Row, rows_of, with_mount
 from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.triad import errors_of, linear_names
@@ -19,8 +18,6 @@ from inertial.sensors import COLUMNS
 from inertial.tables import AXES, CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
-
-Row = dict[str, Any]
 
 MAX_SAMPLES = 60_000  # of each rest: ten minutes at 100 Hz
 MAX_EPOCHS = 200  # of the table, each a second or longer

@@ -1,15 +1,12 @@
 """How the table performed a turn, by time and angle: rows of the study."""
 
-from typing import Any
-
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.campaign.records import Row
 from inertial.estimation.time_angle import Ramp, plateau, spin_down, spin_up
 from inertial.physics.motion import Profile
 from stages.studies.table_motion import WholeMotion
-
-Row = dict[str, Any]
 
 MAX_ROWS = 400  # rows of a turn
 

@@ -1,12 +1,12 @@
 """S0's studies: parameters by epochs, running means and windows, and the table's time and angle."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import pandas as pd
 
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
+from inertial.campaign.records import Row
 from inertial.campaign.sample_stretches import records_of, samples_in
 from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.parquet import Stream
@@ -26,8 +26,6 @@ from stages.studies.table_motion import (
     steady_times,
 )
 from stages.studies.window_rows import growing, middle, pair_of, sliding
-
-Row = dict[str, Any]
 
 
 def studies(

@@ -3,13 +3,13 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import Any
 
 import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import angles_about
+from inertial.campaign.records import Row
 from inertial.estimation.angle_windows import (
     Window,
     at_set_rate,
@@ -22,8 +22,6 @@ from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.estimation.time_angle import Valued, plateau
 from inertial.tables import AXES, GYRO
 from stages.studies.table_motion import Gyros, WholeMotion
-
-Row = dict[str, Any]
 
 WINDOW_ANGLE = pi  # rad, of a window, as S0 has it
 CLOSE_STARTS_S = 1.0  # within which every start of a window has a row

@@ -17,7 +17,7 @@ from inertial.formats.arrow_arrays import array_of_texts, numbers_of
 
 _DECIMAL = pa.decimal128(38, 9)  # holds every number of nanoseconds since 1970 to its last digit
 _TO_WHOLE = pc.CastOptions(target_type=pa.int64(), allow_decimal_truncate=True)
-_NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _TIME_ALONE = r"^(\d?\d:\d\d?:\d\d?)"
 _ONE_FIGURE = r"([-T :])(\d)([-T :.]|$)"
 _WITH_ZONE = r"[T ].*(Z|[+-]\d\d(:?\d\d)?)$"
@@ -70,7 +70,7 @@ class TextValues:
             return numbers_of(pc.cast(pc.replace_substring_regex(texts, "^$", "nan"), pa.float64()))
         except pa.ArrowInvalid:  # some are none: one by one
             return np.array(
-                [float(text) if _NUMBER.fullmatch(text) else np.nan for text in texts.to_pylist()]
+                [float(text) if NUMBER.fullmatch(text) else np.nan for text in texts.to_pylist()]
             )
 
     def nanoseconds(self, *, iso: bool) -> tuple[Integers, Booleans]:
@@ -199,7 +199,7 @@ def _time(text: str) -> int:
 
 def _whole(text: str) -> int:
     """The whole part of a number."""
-    if not _NUMBER.fullmatch(text):
+    if not NUMBER.fullmatch(text):
         raise ValueError
     return int(Decimal(text))
 

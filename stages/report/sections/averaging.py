@@ -8,19 +8,19 @@ from math import hypot, sqrt
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.campaign.records import grouped
+from inertial.sensors import UNITS
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
-from inertial.text.parameters import PARTS
+from inertial.text.parameters import PARTS, SENSOR_OF, STAGES
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
-from stages.report.results import BIAS_UNIT, Estimate, by_kind, kind_of
+from stages.report.results import Estimate, by_kind, kind_of
 from stages.report.tables import Record, Tables, arrays
 from stages.report.words import SENSOR_OF_STAGE, plain, sensor_of_stage
 
 MOST_PANELS = 24
 MOST_EPOCH_PANELS = 12
-SENSOR = {"accelerometer": "accel", "gyroscope": "gyro"}
-STAGE = {sensor: stage for stage, sensor in SENSOR.items()}
 Group = tuple[str, str, str]  # sensor, mount, method
 KINDS = {"bias": _("bias"), "scale": _("scale"), "cross": _("cross-axis terms")}
 SHOWN_SIGMAS = 4  # of a single epoch
@@ -39,7 +39,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
             yield outline.Paragraph(
                 _("None: the parameters were not followed over the averaging time.")
             )
-    yield _wanted([row for stage in SENSOR for row in tables.rows(f"{stage}_wanted")])
+    yield _wanted([row for stage in SENSOR_OF for row in tables.rows(f"{stage}_wanted")])
 
 
 SECTION = outline.Section(
@@ -54,7 +54,7 @@ SECTION = outline.Section(
         "would still help; where the line leaves the band and stays outside, something "
         "drifts."
     ),
-    tuple(f"{stage}_{table}" for stage in SENSOR for table in ("averaging", "wanted")),
+    tuple(f"{stage}_{table}" for stage in SENSOR_OF for table in ("averaging", "wanted")),
     parts,
 )
 
@@ -73,11 +73,11 @@ def _group(row: Record) -> Group:
 
 def _estimate(group: Group) -> Estimate:
     sensor, mount, method = group
-    return Estimate(STAGE[sensor], method, mount)
+    return Estimate(STAGES[sensor], method, mount)
 
 
 def _unit(stage: str, parameter: str) -> str:
-    return BIAS_UNIT[stage] if kind_of(parameter) == "bias" else "1"
+    return UNITS[SENSOR_OF[stage]] if kind_of(parameter) == "bias" else "1"
 
 
 def _figure(
@@ -159,7 +159,7 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
 
 
 def _wanted_row(row: Record) -> outline.Row:
-    unit = quantity(row["quantity"], BIAS_UNIT[STAGE[row["sensor"]]]).shown
+    unit = quantity(row["quantity"], UNITS[row["sensor"]]).shown
     walk = RANDOM_WALK[row["sensor"]]
     sigma, floor, wanted = (
         significant(unit.of(row[which]), 2) for which in ("sigma", "floor", "wanted")
@@ -237,10 +237,7 @@ def _ratio(row: Record) -> float:
 
 
 def _scatter(rows: Sequence[Record]) -> outline.Figure:
-    panels_of: dict[tuple[str, str], list[Record]] = {}
-    for row in rows:
-        place = (STAGE[row["sensor"]], kind_of(row["quantity"]))
-        panels_of.setdefault(place, []).append(row)
+    panels_of = grouped(rows, lambda row: (STAGES[row["sensor"]], kind_of(row["quantity"])))
     places = sorted(panels_of, key=lambda place: (place[0], list(KINDS).index(place[1])))
     with drawing.style():
         figure, [axes] = drawing.panels(
@@ -293,10 +290,10 @@ def _level_sigma(levels: Sequence[Record], sensor: str) -> float:
 def _scatter_at(rows: Sequence[Record], seconds: float, levels: Sequence[Record]) -> str:
     """How far the scatter is off that of white noise, at epochs of one length."""
     own = [row for row in rows if row["seconds"] == seconds]
-    ratios = sorted((_ratio(row), row["quantity"], STAGE[row["sensor"]]) for row in own)
+    ratios = sorted((_ratio(row), row["quantity"], STAGES[row["sensor"]]) for row in own)
     epochs = own[0]["epochs"]
     (smallest, *_unused), (largest, name, stage) = ratios[0], ratios[-1]
-    chance = hypot(1 / sqrt(2 * max(epochs - 1, 1)), _level_sigma(levels, SENSOR[stage]))
+    chance = hypot(1 / sqrt(2 * max(epochs - 1, 1)), _level_sigma(levels, SENSOR_OF[stage]))
     return _(
         "Epochs of {seconds} s ({epochs} of them) scatter {smallest} to {largest} times "
         "as much as white noise, most the {name} of the {stage}; chance and the uncertainty of the "
@@ -343,7 +340,7 @@ def _spread(row: Record) -> outline.Row:
     single, running, white = (row[f"{of}_variance"] for of in ("single", "running", "white"))
     return outline.table_row(
         plain(row["quantity"]),
-        SENSOR_OF_STAGE[STAGE[row["sensor"]]],
+        SENSOR_OF_STAGE[STAGES[row["sensor"]]],
         unit.name,
         *(significant(sqrt(each) / unit.size, 3) for each in (single, white, running)),
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
+from inertial.sensors import PLURAL
 from inertial.tables import BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
@@ -53,7 +54,7 @@ from stages.report.sections.conformity import conformity
 from stages.report.sections.findings import causes, spoils
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSORS, term, with_mount
+from stages.report.words import term, with_mount
 
 ITEMS = {  # of the left and of the right column, each with the items that it joins
     _("Laboratory"): ("laboratory.name", "laboratory.address", "laboratory.accreditation"),
@@ -158,7 +159,7 @@ def _not_for_use(tables: Tables) -> Iterator[Paragraph]:
     given = {result.place for result in final_results(tables) if result.determined}
     for row in tables.rows("verdict"):
         place = STAGES[row["sensor"]], row["mount"]
-        sensor = capital(with_mount(SENSORS[row["sensor"]], row["mount"]))
+        sensor = capital(with_mount(PLURAL[row["sensor"]], row["mount"]))
         if place in withheld(tables):
             yield Paragraph(
                 _(

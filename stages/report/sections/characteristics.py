@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from inertial.sensors import SINGULAR
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, PPM, Unit
 from stages.report.outline import Column, Part, Row, Section, Sentences, Table, head, table_row
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR
 
 NAMES = {
     "composite_error": _("Composite error, over the largest input"),
@@ -98,7 +98,7 @@ def _bandwidth_rows(rows: Sequence[Record]) -> Iterator[Row]:
         for sensor in ("accel", "gyro"):
             own = [r for r in rows if (r["by"], r["sensor"]) == (by, sensor)]
             if own:
-                yield head(f"{SENSOR[sensor]}: {name}")
+                yield head(f"{SINGULAR[sensor]}: {name}")
             for row in own:
                 value, sigma = "", ""
                 if row["value"] is not None:
@@ -130,7 +130,7 @@ def _no_bandwidth(axes: str, row: Record) -> str:
     return _(
         "{axis} {sensor}, bandwidth: not determined, for {reason}.",
         axis=axes,
-        sensor=SENSOR[row["sensor"]],
+        sensor=SINGULAR[row["sensor"]],
         reason=row["reason"],
     )
 
@@ -162,7 +162,7 @@ def _table_rows(rows: Sequence[Record]) -> Iterator[Row]:
             own = [r for r in rows if (r["quantity"], r["sensor"]) == (quantity, sensor)]
             if not own:
                 continue
-            yield head(f"{name}: {SENSOR[sensor]}")
+            yield head(f"{name}: {SINGULAR[sensor]}")
             unit = UNITS[own[0]["unit"]]
             sigmas = [unit.of(row["sigma"]) for row in own if row["sigma"] is not None]
             decimals = numbers.common_decimals(sigmas)
@@ -207,7 +207,7 @@ def _missing(axes: str, row: Record) -> str:
     return _(
         "{axis} {sensor}, {quantity}: not determined, for {reason}.",
         axis=axes,
-        sensor=SENSOR[row["sensor"]],
+        sensor=SINGULAR[row["sensor"]],
         quantity=NAMES[row["quantity"]].partition(",")[0].lower(),
         reason=row["reason"],
     )

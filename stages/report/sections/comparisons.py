@@ -7,6 +7,8 @@ from math import hypot
 
 from matplotlib.axes import Axes
 
+from inertial.campaign.records import grouped
+from inertial.sensors import SINGULAR, UNITS
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.cause_names import in_words
@@ -17,9 +19,9 @@ from inertial.text.typography import capital
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
-from stages.report.results import BIAS_UNIT, KIND, RESULT_TABLES, final_results
+from stages.report.results import KIND, RESULT_TABLES, final_results
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, SENSOR_OF_STAGE, parameter, with_mount
+from stages.report.words import SENSOR_OF_STAGE, parameter, with_mount
 
 KINDS = {
     "static_against_turns": _("Static, rotation"),
@@ -195,9 +197,7 @@ def history_parts(tables: Tables) -> Iterator[outline.Part]:
         for row in tables.rows("result")
         if row["effect"] is None and row["value"] is not None
     }
-    by_file: dict[str, list[Record]] = {}
-    for row in tables.rows("earlier"):
-        by_file.setdefault(row["file"], []).append(row)
+    by_file = grouped(tables.rows("earlier"), lambda row: row["file"])
     calibrations = sorted(by_file.values(), key=_date)
     if calibrations:
         yield _calibrations(calibrations, now)
@@ -292,7 +292,7 @@ def _verdicts(rows: Sequence[Record]) -> str:
         for row in rows
         if row["verdict"]
     }
-    parts = [f"{capital(SENSOR[sensor])}: {words.strip()}" for sensor, words in said.items()]
+    parts = [f"{capital(SINGULAR[sensor])}: {words.strip()}" for sensor, words in said.items()]
     return numbers.shortened("; ".join(parts), 200) or "—"
 
 
@@ -322,7 +322,7 @@ def _figure(
 
 
 def _panel(panel: Axes, stage: str, kind: str, each: Sequence[Calibration]) -> None:
-    unit = quantity(f"{kind}_x", "1" if kind == "scale" else BIAS_UNIT[stage]).shown
+    unit = quantity(f"{kind}_x", "1" if kind == "scale" else UNITS[SENSOR_OF[stage]]).shown
     for place, axis in enumerate(AXES):
         key = ("", SENSOR_OF[stage], f"{kind}_{axis}")
         points = [

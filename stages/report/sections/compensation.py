@@ -11,6 +11,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from inertial.sensors import SENSORS, SINGULAR
 from inertial.tables import AXES, CHANNELS
 from inertial.text import numbers, units
 from inertial.text.messages import _
@@ -18,7 +19,7 @@ from inertial.text.typography import capital
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, phases_in_words
+from stages.report.words import phases_in_words
 
 MAX_SIGMAS = 3.0  # from which a check is marked
 MOST_ROWS = 60
@@ -344,14 +345,14 @@ def _of(frame: pd.DataFrame, column: str) -> Array:
 def _draw(compensated: Compensated, key: str) -> str:
     with drawing.style():
         figure, axes = drawing.panels(3, 4, 0.52, drawing.Margins(across=0.44, down=0.2))
-        for place, sensor in enumerate(SENSOR):
+        for place, sensor in enumerate(SENSORS):
             both, corrections = ([line[2 * place + side] for line in axes] for side in (0, 1))
             fine = FINE[sensor]
             unit = units.DEGREES_PER_SECOND if sensor == "gyro" and compensated.turning else fine
             for axis, panel, beside in zip(AXES, both, corrections, strict=True):
                 _draw_both(panel, compensated, sensor, axis, unit)
                 _draw_correction(beside, compensated, sensor, axis, fine)
-            both[0].set_title(f"{capital(SENSOR[sensor])}, {unit.name}", loc="left", pad=2)
+            both[0].set_title(f"{capital(SINGULAR[sensor])}, {unit.name}", loc="left", pad=2)
             corrections[0].set_title(_("difference, {name}", name=fine.name), loc="left", pad=2)
         for panel in axes[-1]:
             panel.set_xlabel(_("Time, s") if compensated.timed else _("Record"))

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
+from inertial.campaign.records import grouped
+from inertial.sensors import SINGULAR
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.statements import RULES, STATEMENTS
@@ -9,7 +11,6 @@ from inertial.text.typography import capital
 from stages.report.outline import Column, Heading, Paragraph, Part, Row, Table, columns, table_row
 from stages.report.results import KIND_IN_A_SENTENCE, kind_of, quantity_of, symbol
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR
 
 MIN_RISK = 1e-4  # of a false statement; of a smaller one only that is said
 
@@ -21,9 +22,7 @@ def conformity(tables: Tables) -> Iterator[Part]:
     if not rows:
         yield Paragraph(_("Not assessed: no tolerances are stated."))
         return
-    groups: dict[tuple[str, str, str], list[Record]] = {}
-    for row in rows:
-        groups.setdefault((row["mount"], row["sensor"], kind_of(row["quantity"])), []).append(row)
+    groups = grouped(rows, lambda row: (row["mount"], row["sensor"], kind_of(row["quantity"])))
     yield Table(
         _("Decision rule: {rule}.", rule=RULES[rows[0]["decision_rule"]]),
         (
@@ -52,7 +51,7 @@ def _assessed(key: tuple[str, str, str], rows: Sequence[Record]) -> Row:
         if one in each
     ]
     risks = [row["risk"] for row in rows if row["risk"] is not None]
-    name = f"{capital(SENSOR[sensor])}, {KIND_IN_A_SENTENCE[kind]}" + (
+    name = f"{capital(SINGULAR[sensor])}, {KIND_IN_A_SENTENCE[kind]}" + (
         f" ({mount})" if mount else ""
     )
     tone = "" if set(each) == {"conforms"} else "poor" if "does_not_conform" in each else "fair"

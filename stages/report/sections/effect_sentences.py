@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from inertial.campaign.records import grouped
+from inertial.sensors import PLURAL, SENSORS
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
@@ -14,7 +16,7 @@ from inertial.text.numbers import fixed, plus_minus, shortened, significant, who
 from inertial.text.units import DEGREES_PER_SECOND, Unit
 from stages.report.results import Shift, quantity_of
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSORS, with_mount
+from stages.report.words import with_mount
 
 Kind = Literal["found", "class", "law", "structure", "consistent", "walk", "unexplained"]
 # The clearest first, each with its words in a line.
@@ -58,9 +60,7 @@ class Tested:
 @once
 def tested_effects(tables: Tables) -> list[Tested]:
     """Every effect with its parameters; of several mounts each by itself, as they come."""
-    groups: dict[tuple[str, str], list[Record]] = {}
-    for row in tables.rows("effects"):
-        groups.setdefault((row["mount"], row["effect"]), []).append(row)
+    groups = grouped(tables.rows("effects"), lambda row: (row["mount"], row["effect"]))
     effects = []
     for score in tables.rows("scores"):
         mount, rows = score["mount"], groups.get((score["mount"], score["effect"]), [])
@@ -109,7 +109,7 @@ def clearest_first(rows: Sequence[Record]) -> list[Record]:
 
 def name_of(row: Record) -> str:
     """What was found, in words, with its mount where there are several."""
-    kind, sensors = kind_of(row), SENSORS.get(row["sensor"] or "", "")
+    kind, sensors = kind_of(row), PLURAL.get(row["sensor"] or "", "")
     name = in_words(row["cause"])
     if sensors and kind == "structure":
         name = _("unidentified structure in the residuals of the {sensors}", sensors=sensors)
@@ -200,7 +200,7 @@ def _or(name: str, row: Record) -> str:
 
 
 def _sensors(rows: Sequence[Record]) -> str:
-    return _distinct(SENSORS.get(row["sensor"] or "", "readings") for row in rows)
+    return _distinct(PLURAL.get(row["sensor"] or "", "readings") for row in rows)
 
 
 # ---- what an effect in the model improves
@@ -259,7 +259,7 @@ def _on_held_out(row: Record) -> str:
     sentence = _(
         "On held-out data{value}, χ² of the {sensors} {row}",
         value=together if len(effects) > 1 else "",
-        sensors=SENSORS[row["sensor"]],
+        sensors=PLURAL[row["sensor"]],
         row=_change(row),
     )
     attainable = row["snr_squared"]

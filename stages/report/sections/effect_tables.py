@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from math import inf, pi
 
+from inertial.sensors import SINGULAR
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
@@ -25,7 +26,7 @@ from stages.report.results import (
 )
 from stages.report.sections.effect_sentences import Tested
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, count_in_words, with_mount
+from stages.report.words import count_in_words, with_mount
 
 MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"
@@ -260,7 +261,7 @@ def _moves(rows: Sequence[Record]) -> tuple[str, str, str]:
     most = max(known, key=lambda row: row["moves"])
     slight = most["moves"] < LEAST_MOVE
     moves = f"< {LEAST_MOVE}" if slight else numbers.significant(most["moves"], 2)
-    return moves, symbol(most["moved_parameter"]), SENSOR[most["moved_sensor"]]
+    return moves, symbol(most["moved_parameter"]), SINGULAR[most["moved_sensor"]]
 
 
 def _noticed(row: Record) -> tuple[str, str, str, str]:
@@ -400,7 +401,7 @@ def channel(row: Record) -> str:
     """Sensor and axis in words: x gyro."""
     if not row["axis"]:
         return "—"
-    return _("{axis} {sensor}", axis=row["axis"], sensor=SENSOR.get(row["sensor"], row["sensor"]))
+    return _("{axis} {sensor}", axis=row["axis"], sensor=SINGULAR.get(row["sensor"], row["sensor"]))
 
 
 def place(row: Record) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.sensors import PLURAL
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, whole
@@ -31,7 +32,6 @@ from stages.report.sections.residual_figures import (
     pieces_of,
 )
 from stages.report.tables import Tables, once
-from stages.report.words import SENSORS
 
 STEADY = "steady"
 MAX_SIGMAS = 3.0
@@ -99,7 +99,7 @@ def _figure(tables: Tables, sensor: str, shown: Sequence[Residual]) -> Figure:
         drawn, panels = draw_by_manoeuvre(sensor, shown, beside=1.0, band=MAX_SIGMAS)
         _histogram(panels[1], tables, sensor)
         picture = drawing.svg(drawn, f"residuals-{sensor}")
-    sensors = SENSORS[sensor]
+    sensors = PLURAL[sensor]
     return Figure(
         _(
             "Residuals of the {sensors} by manoeuvre, with ±3 σ of the noise, and their "
@@ -153,7 +153,7 @@ def _table(tables: Tables) -> Table:
                 beyond = int((np.abs(values) > MAX_SIGMAS).sum())
                 cells += [whole(len(values)), fixed(ratio, 2), whole(beyond)]
                 high = high or beyond_noise(ratio, len(values))
-            name = f"{capital(SENSORS[sensor])}, {axis}"
+            name = f"{capital(PLURAL[sensor])}, {axis}"
             rows.append(table_row(name, *cells, tone="fair" if high else ""))
     headings = (_("means"), _("rms, in σ"), _("beyond 3 σ"))
     return Table(

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from inertial.sensors import PLURAL, SENSORS, SINGULAR
 from inertial.tables import AXES, CHANNEL_PARTS, CHANNELS
 from inertial.text.messages import _
 from inertial.text.numbers import shortened, whole
@@ -34,7 +35,6 @@ from stages.report.drawing import (
 from stages.report.outline import Figure
 from stages.report.sections.raw_data import Log, draw_channel, draw_phases
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR, SENSORS
 
 Span = tuple[float, float]
 
@@ -213,10 +213,10 @@ class Place:
     def channels(self) -> tuple[str, ...]:
         """The channel that is concerned, or all of a sensor; of a turn the one that moves most."""
         sensor, of_axis = self.row["sensor"], self.row["axis"]
-        own = tuple(f"{sensor}_{each}" for each in AXES) if sensor in SENSOR else CHANNELS
-        if sensor in SENSOR and of_axis in AXES:
+        own = tuple(f"{sensor}_{each}" for each in AXES) if sensor in SENSORS else CHANNELS
+        if sensor in SENSORS and of_axis in AXES:
             return (f"{sensor}_{of_axis}",)
-        if sensor in SENSOR and (self.log.static or not self.row["manoeuvre"]):
+        if sensor in SENSORS and (self.log.static or not self.row["manoeuvre"]):
             return own
         return (_most_active(self.log, own),)
 
@@ -232,7 +232,7 @@ class Place:
     def name(self) -> str:
         """The concerned channels in words."""
         sensor, of_axis = CHANNEL_PARTS[self.channels[0]]
-        return f"{of_axis} {SENSOR[sensor]}" if len(self.channels) == 1 else SENSORS[sensor]
+        return f"{of_axis} {SINGULAR[sensor]}" if len(self.channels) == 1 else PLURAL[sensor]
 
     @property
     def middles(self) -> dict[str, float]:

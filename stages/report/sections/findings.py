@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from inertial.campaign.explanations import circumstances
+from inertial.sensors import SINGULAR
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
@@ -25,7 +26,6 @@ from stages.report.outline import (
 from stages.report.sections.evidence import evidence
 from stages.report.sizes import size_in_words
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSOR
 
 FINDING_TABLES = (
     "quality_findings",
@@ -116,7 +116,7 @@ def title_of(tables: Tables, row: Record) -> str:
     if len(names) > MOST_NAMES:
         names = [*names[: MOST_NAMES - 1], _("{count} others", count=len(names) - MOST_NAMES + 1)]
     name, where = listed(names, "or"), concerned(row)
-    if row["sensor"] and SENSOR[row["sensor"]] in name:
+    if row["sensor"] and SINGULAR[row["sensor"]] in name:
         where = _("{axis} axis", axis=row["axis"]) if row["axis"] else ""
     place = (row["manoeuvre"] or row["log"]) if row["count"] == 1 else None
     return _joined(capital(name), place, where)
@@ -124,7 +124,7 @@ def title_of(tables: Tables, row: Record) -> str:
 
 def concerned(row: Record) -> str:
     """The sensor and the axis that a row is about."""
-    sensor = SENSOR.get(row["sensor"] or "", "")
+    sensor = SINGULAR.get(row["sensor"] or "", "")
     return f"{row['axis']} {sensor}" if row["axis"] and sensor else sensor
 
 

@@ -8,13 +8,15 @@ from math import sqrt
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.campaign.records import grouped
+from inertial.sensors import SENSORS, SINGULAR
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.units import DEGREES, Unit
 from stages.report import drawing, outline
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, with_mount
+from stages.report.words import with_mount
 
 QUANTITIES = {
     "attitude": (_("attitude"), DEGREES),
@@ -154,9 +156,7 @@ def _rms(rows: Sequence[Record], name: str, unit: Unit) -> str:
 
 def _courses(tables: Tables) -> Iterator[outline.Figure]:
     """Errors against time in the longest rest of each mount."""
-    by_mount: dict[str, list[Record]] = {}
-    for row in tables.rows("navigation_courses"):
-        by_mount.setdefault(row["mount"], []).append(row)
+    by_mount = grouped(tables.rows("navigation_courses"), lambda row: row["mount"])
     for number, (mount, rows) in enumerate(by_mount.items(), 1):
         name = numbers.shortened(rows[0]["manoeuvre"], 60)
         yield outline.Figure(
@@ -230,7 +230,7 @@ def _shares(tables: Tables, groups: Mapping[Key, Sequence[Record]]) -> outline.T
 def _family(row: Record) -> str:
     """A family of sources in words."""
     sensor, _space, kind = row["family"].partition(" ")
-    if sensor in SENSOR:
+    if sensor in SENSORS:
         name = KINDS.get(kind) or in_words(kind)
-        return f"{SENSOR[sensor]}: {name}"
+        return f"{SINGULAR[sensor]}: {name}"
     return OTHERS[f"{row['family']} {row['source']}"]

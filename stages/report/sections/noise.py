@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from inertial.sensors import PLURAL
 from inertial.tables import AXES
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
@@ -13,7 +14,6 @@ from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
 from stages.report.sections.noise_figures import allan_figure, spectrum_figure
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSORS
 
 # The terms of IEEE Std 952 in the order of their slopes, with their letters.
 SYMBOL = {
@@ -134,7 +134,7 @@ def _terms_table(sensor: str, rows: Sequence[Record], note: str) -> outline.Tabl
     if any(by_row[-1]):
         lines.append(outline.table_row(DATA_SHEET, *by_row[-1], ""))
     return outline.Table(
-        _("{sensors}: the terms of the noise.", sensors=capital(SENSORS[sensor])),
+        _("{sensors}: the terms of the noise.", sensors=capital(PLURAL[sensor])),
         (*columns, *outline.columns("number", _("s"), group=_("Stretch"))),
         lines,
         note=note,
@@ -177,7 +177,7 @@ def _levels(levels: Sequence[Record], sheet: Sequence[Record]) -> outline.Table:
         values, sigmas = _written([row | {"detected": True, "value": row["white_noise"]}], unit)
         lines.append(
             (
-                f"{listed([SENSORS[sensor][:-1]])} {axis}",
+                f"{listed([PLURAL[sensor][:-1]])} {axis}",
                 *values,
                 *sigmas,
                 significant(unit.of(stated.get(channel)), 3),
@@ -206,8 +206,8 @@ def of_data_sheets(sheet: Sequence[Record]) -> str:
     """Whence the data sheet of each sensor is; nothing without one."""
     sensors: dict[str, list[str]] = {}
     for row in sheet:
-        if row["source"] and SENSORS[row["sensor"]] not in sensors.setdefault(row["source"], []):
-            sensors[row["source"]].append(SENSORS[row["sensor"]])
+        if row["source"] and PLURAL[row["sensor"]] not in sensors.setdefault(row["source"], []):
+            sensors[row["source"]].append(PLURAL[row["sensor"]])
     each = (
         _("{sensors}: {source}.", sensors=capital(listed(names)), source=shortened(source, 300))
         for source, names in sensors.items()

@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from inertial.sensors import PLURAL, SENSORS
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import significant
@@ -21,7 +22,6 @@ from inertial.text.units import DEGREES_PER_HOUR, MICRO_G, MILLI_G, RANDOM_WALK,
 from stages.report import drawing, outline
 from stages.report.drawing import Array
 from stages.report.tables import Record, arrays
-from stages.report.words import SENSORS
 
 HEIGHT = 1.95  # inches, of a panel
 MARGINS = drawing.Margins(left=0.46, right=0.16, top=0.24, across=0.62, bottom=0.36)
@@ -160,7 +160,7 @@ def _allan_panel(panel: Axes, sensor: str, rows: Sequence[Record], sheet: Sequen
     panel.set_title(
         _(
             "{sensors}: Allan deviation, {unit}",
-            sensors=capital(SENSORS[sensor]),
+            sensors=capital(PLURAL[sensor]),
             unit=unit.name,
         ),
         pad=4,
@@ -210,7 +210,7 @@ def _spectrum_panel(
     panel.set_title(
         _(
             "{sensors}: amplitude spectral density, {unit}",
-            sensors=capital(SENSORS[sensor]),
+            sensors=capital(PLURAL[sensor]),
             unit=unit.name,
         ),
         pad=6,

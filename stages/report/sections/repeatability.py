@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from inertial.sensors import SINGULAR
 from inertial.tables import AXES, UNITS
 from inertial.text import numbers
 from inertial.text.messages import _
@@ -12,7 +13,7 @@ from inertial.text.typography import capital
 from inertial.text.units import Unit, quantity
 from stages.report import outline
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, parameter
+from stages.report.words import parameter
 
 FIRST = ("repeatability", "within")  # columns; what is left are components
 NAMES = {
@@ -222,7 +223,7 @@ def _switch_ons(tables: Tables) -> Iterator[outline.Table]:
         yield outline.Table(
             _(
                 "{sensor}: bias after each switch-on less that of the joint fit, {unit}.",
-                sensor=capital(SENSOR[sensor]),
+                sensor=capital(SINGULAR[sensor]),
                 unit=unit.name,
             ),
             (

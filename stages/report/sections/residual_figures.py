@@ -11,6 +11,7 @@ from matplotlib.figure import Figure as Drawn
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from inertial.sensors import PLURAL
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened
@@ -22,7 +23,6 @@ from stages.report.outline import Figure
 from stages.report.sections.effect_sentences import FITTED, HELD_OUT, about_effect
 from stages.report.sections.effect_tables import TESTS, channel, place
 from stages.report.tables import Record, Tables, once
-from stages.report.words import SENSORS
 
 UNIT = {"gyro": DEGREES_PER_HOUR, "accel": MICRO_G}
 MOST_NAMES = 24  # manoeuvres whose names have room below each other
@@ -115,7 +115,7 @@ def by_manoeuvre(tables: Tables, finding: Record, mount: str, key: str) -> Figur
     caption = _(
         "Residuals of the {sensors} with the joint model: means over turns and over "
         "fifths of static positions, ± σ of the noise alone.",
-        sensors=SENSORS[sensor],
+        sensors=PLURAL[sensor],
     )
     if changes:
         scope = (

@@ -11,6 +11,7 @@ import pyarrow as pa
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from inertial.sensors import PLURAL
 from inertial.tables import AXES, CHANNELS, GYRO
 from inertial.tables.parquet import Stream
 from inertial.text.messages import _
@@ -48,7 +49,7 @@ from stages.report.outline import (
 from stages.report.sections.periodic_figures import turns_about
 from stages.report.sections.residual_figures import MIN_EXCESS_RATIO, beyond_noise
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSORS, term
+from stages.report.words import term
 
 AT_REST = _("at rest")
 MOST_TURNS = 6
@@ -312,8 +313,8 @@ def _table(rows: Sequence[Record]) -> Table:
         _("Ratio of the root mean square of the residuals to that of the noise."),
         (
             Column(_("Manoeuvre")),
-            *columns("number", *AXES, group=capital(SENSORS["accel"])),
-            *columns("number", *AXES, group=capital(SENSORS["gyro"])),
+            *columns("number", *AXES, group=capital(PLURAL["accel"])),
+            *columns("number", *AXES, group=capital(PLURAL["gyro"])),
         ),
         list(_rows(keys, ratios)),
         _("None: nothing was simulated, since the joint fits determine no model."),

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from matplotlib.axes import Axes
 
+from inertial.campaign.records import grouped
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.units import DEGREE, PPM, SECONDS_OF_ARC, Unit
@@ -144,9 +145,7 @@ LIMITS = (
 
 def time_and_angle(tables: Tables) -> Iterator[Part]:
     """The equation, a figure of what the angle differs by from what was set, speed and ramps."""
-    turns: dict[str, list[Record]] = {}
-    for row in tables.rows("time_angle"):
-        turns.setdefault(row["manoeuvre"], []).append(row)
+    turns = grouped(tables.rows("time_angle"), lambda row: row["manoeuvre"])
     if not turns:
         return
     yield Equation(

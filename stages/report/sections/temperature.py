@@ -7,15 +7,15 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.sensors import PLURAL
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed
 from inertial.text.typography import capital
-from inertial.text.units import quantity
+from inertial.text.units import ICE_POINT, quantity
 from stages.report import drawing, outline
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSORS, plain, with_mount
+from stages.report.words import plain, with_mount
 
-ICE_POINT = 273.15  # K
 MOST_PANELS = 12
 DEGREES = {1: _("straight line"), 2: _("parabola"), 3: _("cubic")}
 Curves = Mapping[str, Sequence[Record]]  # by parameter
@@ -28,8 +28,8 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         group = groups.setdefault((row["mount"], row["sensor"]), {})
         group.setdefault(row["parameter"], []).append(row)
     for number, ((mount, sensor), curves) in enumerate(groups.items(), 1):
-        yield _figure(with_mount(SENSORS[sensor], mount), f"temperature-{number}", curves)
-        yield _table(with_mount(SENSORS[sensor], mount), curves)
+        yield _figure(with_mount(PLURAL[sensor], mount), f"temperature-{number}", curves)
+        yield _table(with_mount(PLURAL[sensor], mount), curves)
     if sentences := [row["sentence"] for row in tables.rows("warm_up")]:
         yield outline.Sentences(tuple(sentences))
 

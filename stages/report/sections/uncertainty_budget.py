@@ -9,6 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure as Drawn
 
+from inertial.campaign.records import grouped
+from inertial.sensors import SINGULAR
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.typography import capital
@@ -24,7 +26,7 @@ from stages.report.results import (
     symbol,
 )
 from stages.report.tables import Record, Tables
-from stages.report.words import SENSOR, with_mount
+from stages.report.words import with_mount
 
 SOURCES = {
     "noise": _("white noise"),
@@ -51,9 +53,7 @@ def parts(tables: Tables) -> Iterator[Part]:
     if not rows:
         return
     there = [source for source in SOURCES if any(row["source"] == source for row in rows)]
-    groups: dict[tuple[str, str, str], list[Record]] = {}
-    for row in rows:
-        groups.setdefault((row["sensor"], row["mount"], kind_of(row["quantity"])), []).append(row)
+    groups = grouped(rows, lambda row: (row["sensor"], row["mount"], kind_of(row["quantity"])))
     yield Table(
         _("Shares of the variance, in %, as the mean over the parameters of a kind."),
         (
@@ -96,7 +96,7 @@ def _shares(key: tuple[str, str, str], rows: Sequence[Record], there: Sequence[s
         for source in there
     ]
     return table_row(
-        with_mount(f"{capital(SENSOR[sensor])}, {KIND_IN_A_SENTENCE[kind]}", mount),
+        with_mount(f"{capital(SINGULAR[sensor])}, {KIND_IN_A_SENTENCE[kind]}", mount),
         significant(unit.of(float(np.sqrt(max(variances)))), 2),
         unit.name,
         *("–" if share < MIN_SHARE else significant(100 * share, 2) for share in shares),
