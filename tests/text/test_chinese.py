@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import string
+import subprocess
+import sys
 from collections.abc import Iterator
 from html import unescape
 from pathlib import Path
@@ -133,3 +135,28 @@ def test_lines_are_as_wide_as_they_look_and_begin_with_no_mark() -> None:
     assert "".join(line.strip(" -") for line in lines).replace(" ", "") == text.replace(" ", "")
     assert all(CHINESE.search(line) and columns_of(line) <= 42 for line in lines)
     assert not any(line.strip()[0] in "，。；）" for line in lines)
+
+
+DRAWN = """
+import sys
+from inertial.text.messages import speak
+speak(sys.argv[1])
+import pandas as pd
+from stages.report.sections.compensation import _chosen
+from stages.report.tables import Tables
+rest = {"manoeuvre": "a", "do": "rest", "up_z": -1.0, "angle": None}
+turn = {"manoeuvre": "b", "do": "turn", "about_z": 1.0, "angle": 6.3}
+axes = [f"{of}_{axis}" for of in ("up", "about") for axis in "xyz"]
+plan = pd.DataFrame([rest, turn]).reindex(columns=["manoeuvre", "do", "angle", "rate", *axes])
+print(*_chosen(Tables({"segments": plan, "manoeuvres": plan}, {})), sep="; ")
+"""
+
+
+@pytest.mark.parametrize(
+    ("language", "shown"),
+    [("en", "z down; turn forward about z"), ("zh", "z 朝下; 绕 z 轴正向转动")],
+)
+def test_the_same_manoeuvres_are_drawn_in_both_languages(language: str, shown: str) -> None:
+    command = [sys.executable, "-c", DRAWN, language]
+    done = subprocess.run(command, capture_output=True, text=True, check=True, encoding="utf-8")
+    assert done.stdout.strip() == shown

@@ -190,6 +190,8 @@ def _table(checked: Checked, rows: Sequence[Record]) -> outline.Table:
 # ---- one manoeuvre before and after
 
 POINTS = 130  # per curve
+RESTS = (_("{axis} up"), _("{axis} down"))  # what is shown of an axis
+TURNS = (_("turn forward about {axis}"), _("turn backward about {axis}"))
 MIN_COSINE = 0.99  # from which a direction is an axis
 BEFORE = "#a9b3be"
 MAX_STEPS = 3.0  # usual steps from one stretch to the next from which a curve breaks off
@@ -259,28 +261,20 @@ def _chosen(tables: Tables) -> dict[str, Record]:
         for plan in tables.rows("manoeuvres"):
             if plan["manoeuvre"] in there and (view := _view(plan, axis)):
                 views.setdefault(view, plan)
-        rests = (_("{axis} up", axis=axis), _("{axis} down", axis=axis))
-        turns = (
-            _("turn {way} about {axis}", way=way, axis=axis) for way in ("forward", "backward")
-        )
-        shown = [
-            first
-            for some in (rests, turns)
-            for first in [view for view in some if view in views][:1]
-        ]
-        if len(shown) > len(best):
-            best = {view: views[view] for view in shown}
+        shown = [[view for view in some if view in views][:1] for some in (RESTS, TURNS)]
+        if sum(map(len, shown)) > len(best):
+            best = {view.format(axis=axis): views[view] for own in shown for view in own}
     return best
 
 
 def _view(plan: Record, axis: str) -> str:
-    """What a manoeuvre shows of an axis: up, down, a turn about it; or nothing."""
+    """What a manoeuvre shows of an axis, of RESTS and TURNS; or nothing."""
     up, about = plan[f"up_{axis}"], plan[f"about_{axis}"]
     if plan["do"] == "turn" and about is not None and abs(about) > MIN_COSINE:
         forward = (plan["angle"] or plan["rate"] or 0.0) * about > 0
-        return _("turn {value} about {axis}", value="forward" if forward else "backward", axis=axis)
+        return TURNS[0] if forward else TURNS[1]
     if plan["do"] == "rest" and up is not None and abs(up) > MIN_COSINE:
-        return f"{axis} {'up' if up > 0 else 'down'}"
+        return RESTS[0] if up > 0 else RESTS[1]
     return ""
 
 
