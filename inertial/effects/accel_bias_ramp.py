@@ -1,14 +1,12 @@
 """A bias of the accelerometers that drifts evenly."""
 
-from inertial.arrays import Array
-from inertial.physics.drift import Drift
+from inertial.physics.drift import Ramp
 from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
-from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import HOUR, STANDARD_GRAVITY
 
 
-class AccelBiasRamp(Drift):
+class AccelBiasRamp(Ramp):
     """Reading += c t, with t since the first sample of all logs.
 
     Told from a constant by the order of the positions. Only logs with a common clock show it.
@@ -28,6 +26,3 @@ class AccelBiasRamp(Drift):
     )
     terms = on_each_axis("accel", "c_{i}", "t")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY / HOUR, 20, 100, 100, 1000)
-
-    def course(self, motion: Motion) -> Array:
-        return motion.time

@@ -1,11 +1,7 @@
 """A bias of the accelerometers that goes with the temperature."""
 
-import numpy as np
-
-from inertial.arrays import Array
-from inertial.physics.drift import OfTemperature, warmer
-from inertial.physics.effect import Reading, Truth, by_grade, on_each_axis, parameters_by_axis
-from inertial.physics.motion import Motion
+from inertial.physics.drift import OfTemperature
+from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
@@ -17,6 +13,7 @@ class AccelBiasTemperature(OfTemperature):
     """
 
     name = "accel_bias_temperature"
+    sensor = "accel"
     cause = _("the bias of the accelerometers changes with the temperature of the instrument")
     source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
     parameters = parameters_by_axis(
@@ -24,7 +21,3 @@ class AccelBiasTemperature(OfTemperature):
     )
     terms = on_each_axis("accel", "k_{i}", "(T - T0)")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 100, 1000)
-
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        change = np.outer(warmer(motion, self.reference, self.valid), values)
-        return reading.plus("accel", change)

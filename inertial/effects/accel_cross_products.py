@@ -3,8 +3,7 @@
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.physics.effect import Effect, Parameter, Reading, Term, Truth, by_grade
-from inertial.physics.motion import Motion
+from inertial.physics.effect import OfSensed, Parameter, Term, Truth, by_grade
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
@@ -12,13 +11,14 @@ PAIRS = ((0, 1), (1, 2), (2, 0))
 NAMES = ("xy", "yz", "zx")
 
 
-class AccelCrossProducts(Effect):
+class AccelCrossProducts(OfSensed):
     """f̃_i += Σ K_i,jk f_j f_k over the pairs xy, yz, zx.
 
     Only oblique positions show it: with an axis up the products are nought.
     """
 
     name = "accel_cross_products"
+    sensor = "accel"
     cause = _("a force across the input axis changes what the proof mass does along it")
     source = "IEEE Std 1293-2018, model equation, cross-coupling coefficients"
     parameters = tuple(
@@ -43,6 +43,6 @@ class AccelCrossProducts(Effect):
     )
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 10, 50, 100, 500)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+    def change(self, truth: Truth, values: Array) -> Array:
         products = np.column_stack([truth.force[:, j] * truth.force[:, k] for j, k in PAIRS])
-        return reading.plus("accel", products @ values.reshape(3, 3).T)
+        return products @ values.reshape(3, 3).T

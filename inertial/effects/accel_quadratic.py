@@ -1,20 +1,12 @@
 """An accelerometer whose scale factor grows with the force."""
 
 from inertial.arrays import Array
-from inertial.physics.effect import (
-    Effect,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-    parameters_by_axis,
-)
-from inertial.physics.motion import Motion
+from inertial.physics.effect import OfSensed, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
-class AccelQuadratic(Effect):
+class AccelQuadratic(OfSensed):
     """f̃_i += K_i f_i².
 
     Told from a bias by three positions of an axis: up and down have it, level has not. Without
@@ -22,6 +14,7 @@ class AccelQuadratic(Effect):
     """
 
     name = "accel_quadratic"
+    sensor = "accel"
     cause = _("the suspension of the proof mass is not symmetric: second-order nonlinearity K2")
     source = "IEEE Std 1293-2018, model equation, K2"
     parameters = parameters_by_axis(
@@ -30,5 +23,5 @@ class AccelQuadratic(Effect):
     terms = on_each_axis("accel", "k2_{i}", "f_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 20, 100, 200, 1000)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return reading.plus("accel", values * truth.force**2)
+    def change(self, truth: Truth, values: Array) -> Array:
+        return values * truth.force**2

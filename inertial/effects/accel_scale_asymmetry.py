@@ -3,25 +3,18 @@
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.physics.effect import (
-    Effect,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-    parameters_by_axis,
-)
-from inertial.physics.motion import Motion
+from inertial.physics.effect import OfSensed, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 
 
-class AccelScaleAsymmetry(Effect):
+class AccelScaleAsymmetry(OfSensed):
     """f̃_i += A_i |f_i|.
 
     Told from a bias as the quadratic term is, and from that only by oblique positions.
     """
 
     name = "accel_scale_asymmetry"
+    sensor = "accel"
     cause = _("the suspension or the read-out answers unlike to push and pull")
     source = "IEEE Std 1293-2018, model equation, scale factor asymmetry"
     parameters = parameters_by_axis(
@@ -30,5 +23,5 @@ class AccelScaleAsymmetry(Effect):
     terms = on_each_axis("accel", "a_{i}", "abs(f_{i})")
     sizes = by_grade(1e-6, 10, 50, 100, 500)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return reading.plus("accel", values * np.abs(truth.force))
+    def change(self, truth: Truth, values: Array) -> Array:
+        return values * np.abs(truth.force)

@@ -1,21 +1,12 @@
 """A scale factor of the accelerometers that drifts evenly."""
 
-from inertial.arrays import Array
-from inertial.physics.drift import without_clock
-from inertial.physics.effect import (
-    Effect,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-    parameters_by_axis,
-)
-from inertial.physics.motion import Motion
+from inertial.physics.drift import Ramp
+from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 from inertial.text.units import HOUR
 
 
-class AccelScaleRamp(Effect):
+class AccelScaleRamp(Ramp):
     """f̃_i += k_i t f_i, with t since the first sample of all logs.
 
     Told from a bias that drifts by the axis up and down, each at several times. Where the
@@ -23,6 +14,8 @@ class AccelScaleRamp(Effect):
     """
 
     name = "accel_scale_ramp"
+    sensor = "accel"
+    of_scale = True
     cause = _("the scale factor of the accelerometers drifts, as the sensor warms up or ages")
     source = "IEEE Std 1293-2018, stability of bias and scale factor"
     parameters = parameters_by_axis(
@@ -31,10 +24,3 @@ class AccelScaleRamp(Effect):
     terms = on_each_axis("accel", "k_{i}", "t * f_{i}")
     sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
     thinkable = 4.0  # 200 ppm/K that warms by 10 K in an hour
-
-    def blind(self, motion: Motion) -> str:
-        return without_clock(motion)
-
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        change = values * truth.force * motion.time[:, None]
-        return reading.plus("accel", change)

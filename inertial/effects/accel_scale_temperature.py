@@ -1,9 +1,7 @@
 """A scale factor of the accelerometers that goes with the temperature."""
 
-from inertial.arrays import Array
-from inertial.physics.drift import OfTemperature, warmer
-from inertial.physics.effect import Reading, Truth, by_grade, on_each_axis, parameters_by_axis
-from inertial.physics.motion import Motion
+from inertial.physics.drift import OfTemperature
+from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 
 
@@ -14,6 +12,8 @@ class AccelScaleTemperature(OfTemperature):
     """
 
     name = "accel_scale_temperature"
+    sensor = "accel"
+    of_scale = True
     cause = _(
         "the scale factor of the accelerometers changes with the temperature of the instrument"
     )
@@ -21,7 +21,3 @@ class AccelScaleTemperature(OfTemperature):
     parameters = parameters_by_axis("k", "1/K", 1e-5, _("of the {axis} accelerometer, per kelvin"))
     terms = on_each_axis("accel", "k_{i}", "(T - T0) * f_{i}")
     sizes = by_grade(1e-6, 5, 20, 50, 200)
-
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        change = values * truth.force * warmer(motion, self.reference, self.valid)[:, None]
-        return reading.plus("accel", change)

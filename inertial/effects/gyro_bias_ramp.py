@@ -1,14 +1,12 @@
 """A bias of the gyros that drifts evenly."""
 
-from inertial.arrays import Array
-from inertial.physics.drift import Drift
+from inertial.physics.drift import Ramp
 from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
-from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, HOUR
 
 
-class GyroBiasRamp(Drift):
+class GyroBiasRamp(Ramp):
     """Reading += c t, with t since the first sample of all logs.
 
     Told from a constant by the order of the positions. Only logs with a common clock show it.
@@ -23,6 +21,3 @@ class GyroBiasRamp(Drift):
     )
     terms = on_each_axis("gyro", "c_{i}", "t")
     sizes = by_grade(DEGREE_PER_HOUR / HOUR, 0.05, 1, 10, 100)
-
-    def course(self, motion: Motion) -> Array:
-        return motion.time

@@ -1,11 +1,7 @@
 """A bias of the gyros that goes with the temperature."""
 
-import numpy as np
-
-from inertial.arrays import Array
-from inertial.physics.drift import OfTemperature, warmer
-from inertial.physics.effect import Reading, Truth, by_grade, on_each_axis, parameters_by_axis
-from inertial.physics.motion import Motion
+from inertial.physics.drift import OfTemperature
+from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 
@@ -17,6 +13,7 @@ class GyroBiasTemperature(OfTemperature):
     """
 
     name = "gyro_bias_temperature"
+    sensor = "gyro"
     cause = _("the bias of the gyros changes with the temperature of the instrument")
     source = "IEEE Std 952-1997, model equation, terms of temperature"
     parameters = parameters_by_axis(
@@ -24,7 +21,3 @@ class GyroBiasTemperature(OfTemperature):
     )
     terms = on_each_axis("gyro", "k_{i}", "(T - T0)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 5, 18)
-
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        change = np.outer(warmer(motion, self.reference, self.valid), values)
-        return reading.plus("gyro", change)

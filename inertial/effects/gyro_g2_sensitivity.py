@@ -1,28 +1,21 @@
 """A gyro that feels the square of the acceleration."""
 
 from inertial.arrays import Array
-from inertial.physics.effect import (
-    Effect,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-    parameters_by_axis,
-)
-from inertial.physics.motion import Motion
+from inertial.physics.effect import OfSensed, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
 UNIT = DEGREE_PER_HOUR / STANDARD_GRAVITY**2
 
 
-class GyroG2Sensitivity(Effect):
+class GyroG2Sensitivity(OfSensed):
     """ω̃_i += G2_i f_i².
 
     Told from a bias by three positions of an axis: up and down have it alike, level has it not.
     """
 
     name = "gyro_g2_sensitivity"
+    sensor = "gyro"
     cause = _(
         "the suspension of the gyro yields unlike in its directions under load (anisoelastic)"
     )
@@ -31,5 +24,5 @@ class GyroG2Sensitivity(Effect):
     terms = on_each_axis("gyro", "g2_{i}", "f_{i} * f_{i}")
     sizes = by_grade(UNIT, 0.01, 0.05, 0.5, 5)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return reading.plus("gyro", values * truth.force**2)
+    def change(self, truth: Truth, values: Array) -> Array:
+        return values * truth.force**2

@@ -1,15 +1,14 @@
 """A gyro that feels acceleration."""
 
 from inertial.arrays import Array
-from inertial.physics.effect import Effect, Parameter, Reading, Term, Truth, by_grade
-from inertial.physics.motion import Motion
+from inertial.physics.effect import OfSensed, Parameter, Term, Truth, by_grade
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
 UNIT = DEGREE_PER_HOUR / STANDARD_GRAVITY
 
 
-class GyroGSensitivity(Effect):
+class GyroGSensitivity(OfSensed):
     """ω̃_i += Σ_j G_ij f_j.
 
     Told from a constant bias by positions: it changes sign when the table turns the
@@ -18,6 +17,7 @@ class GyroGSensitivity(Effect):
     """
 
     name = "gyro_g_sensitivity"
+    sensor = "gyro"
     cause = _(
         "the bias of the gyro depends on the specific force: mass unbalance, or stress of the "
         "package"
@@ -36,5 +36,5 @@ class GyroGSensitivity(Effect):
     terms = tuple(Term(f"gyro_{i}", f"g_{i}{j}", f"f_{j}") for i in "xyz" for j in "xyz")
     sizes = by_grade(UNIT, 0.05, 1, 11, 100)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return reading.plus("gyro", truth.force @ values.reshape(3, 3).T)
+    def change(self, truth: Truth, values: Array) -> Array:
+        return truth.force @ values.reshape(3, 3).T

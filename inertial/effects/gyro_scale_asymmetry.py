@@ -3,19 +3,11 @@
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.physics.effect import (
-    Effect,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-    parameters_by_axis,
-)
-from inertial.physics.motion import Motion
+from inertial.physics.effect import OfSensed, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 
 
-class GyroScaleAsymmetry(Effect):
+class GyroScaleAsymmetry(OfSensed):
     """ω̃_i += A_i |ω_i|.
 
     Told from the bias by its growth with the rate, from the scale factor by turning both ways: a
@@ -23,6 +15,7 @@ class GyroScaleAsymmetry(Effect):
     """
 
     name = "gyro_scale_asymmetry"
+    sensor = "gyro"
     cause = _("the loop or the read-out of the gyro answers unlike to the two senses of rotation")
     source = "IEEE Std 528-2019, 'asymmetry error'"
     parameters = parameters_by_axis(
@@ -31,5 +24,5 @@ class GyroScaleAsymmetry(Effect):
     terms = on_each_axis("gyro", "a_{i}", "abs(w_{i})")
     sizes = by_grade(1e-6, 10, 30, 100, 500)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return reading.plus("gyro", values * np.abs(truth.rate))
+    def change(self, truth: Truth, values: Array) -> Array:
+        return values * np.abs(truth.rate)

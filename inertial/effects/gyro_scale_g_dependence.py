@@ -1,20 +1,12 @@
 """A gyro whose scale factor depends on the acceleration."""
 
 from inertial.arrays import Array
-from inertial.physics.effect import (
-    Effect,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-    parameters_by_axis,
-)
-from inertial.physics.motion import Motion
+from inertial.physics.effect import OfSensed, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 
 
-class GyroScaleGDependence(Effect):
+class GyroScaleGDependence(OfSensed):
     """ω̃_i += k_i ω_i f_i.
 
     Told from the scale factor by turns about the axis up and down, at the same rate: at another
@@ -22,6 +14,7 @@ class GyroScaleGDependence(Effect):
     """
 
     name = "gyro_scale_g_dependence"
+    sensor = "gyro"
     cause = _("load on the sensing element changes what a rate does to it")
     source = "Sensonor, STIM300 data sheet, linear acceleration effect on the scale factor"
     parameters = parameters_by_axis(
@@ -30,5 +23,5 @@ class GyroScaleGDependence(Effect):
     terms = on_each_axis("gyro", "k_{i}", "w_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 2, 30, 100, 500)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return reading.plus("gyro", values * truth.rate * truth.force)
+    def change(self, truth: Truth, values: Array) -> Array:
+        return values * truth.rate * truth.force

@@ -3,20 +3,12 @@
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.physics.effect import (
-    Effect,
-    Reading,
-    Truth,
-    by_grade,
-    on_each_axis,
-    parameters_by_axis,
-)
-from inertial.physics.motion import Motion
+from inertial.physics.effect import OfSensed, Truth, by_grade, on_each_axis, parameters_by_axis
 from inertial.text.messages import _
 from inertial.text.units import DEGREE
 
 
-class GyroScaleQuadratic(Effect):
+class GyroScaleQuadratic(OfSensed):
     """ω̃_i += k_i ω_i |ω_i|.
 
     Told from the scale factor by turns at two rates, from the cubic term by three: while the table
@@ -24,11 +16,12 @@ class GyroScaleQuadratic(Effect):
     """
 
     name = "gyro_scale_quadratic"
+    sensor = "gyro"
     cause = _("the loop or the read-out of the gyro is not linear in the rate")
     source = "IEEE Std 528-2019, 'nonlinearity'"
     parameters = parameters_by_axis("k", "1/(rad/s)", 1e-6 / DEGREE, _("of the {axis} gyro"))
     terms = on_each_axis("gyro", "k_{i}", "w_{i} * abs(w_{i})")
     sizes = by_grade(1e-6 / DEGREE, 0.1, 0.1, 1, 5)
 
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return reading.plus("gyro", values * truth.rate * np.abs(truth.rate))
+    def change(self, truth: Truth, values: Array) -> Array:
+        return values * truth.rate * np.abs(truth.rate)

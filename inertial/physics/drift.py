@@ -43,10 +43,11 @@ NOT_EVERYWHERE = _("The temperature is not recorded everywhere.")
 class Drift(Effect):
     """A bias of each axis of a sensor, gyro or accel, that has a course in time.
 
-    Its parameters are the sizes on x, y and z.
+    Its parameters are the sizes on x, y and z. `of_scale`: the scale factors have it, not the bias.
     """
 
     sensor: ClassVar[str]
+    of_scale: ClassVar[bool] = False
 
     @abstractmethod
     def course(self, motion: Motion) -> Array:
@@ -56,7 +57,18 @@ class Drift(Effect):
         return without_clock(motion)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        return reading.plus(self.sensor, np.outer(self.course(motion), values))
+        course = self.course(motion)
+        if not self.of_scale:
+            return reading.plus(self.sensor, np.outer(course, values))
+        sensed = truth.rate if self.sensor == "gyro" else truth.force
+        return reading.plus(self.sensor, values * sensed * course[:, None])
+
+
+class Ramp(Drift):
+    """An even drift: its course is the time since the first sample of all logs."""
+
+    def course(self, motion: Motion) -> Array:
+        return motion.time
 
 
 class WarmUp(Drift):
@@ -156,8 +168,11 @@ def temperature_constants(
     ]
 
 
-class OfTemperature(Effect):
-    """An effect that goes with the temperature of the instrument."""
+class OfTemperature(Drift):
+    """A drift that goes with the temperature of the instrument less its mean."""
+
+    def course(self, motion: Motion) -> Array:
+        return warmer(motion, self.reference, self.valid)
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
         return temperature_constants(motion, self.reference, self.valid)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from abc import ABC
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
@@ -288,6 +288,19 @@ class Effect(ABC):
     def columns(self) -> list[str]:
         """The names of its parameters in the equations and the evidence."""
         return [f"{self.label}.{parameter.name}" for parameter in self.parameters]
+
+
+class OfSensed(Effect):
+    """An effect on the readings of a sensor, gyro or accel, by what is sensed at the moment."""
+
+    sensor: ClassVar[str]
+
+    @abstractmethod
+    def change(self, truth: Truth, values: Array) -> Array:
+        """What it adds to them, (n, 3); `values` follow `parameters`."""
+
+    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        return reading.plus(self.sensor, self.change(truth, values))
 
 
 def known_earth(truth: Truth, motion: Motion) -> tuple[Array, Array]:
