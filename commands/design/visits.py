@@ -61,7 +61,7 @@ def written(vector: Array) -> str | list[float]:
     return [round(float(each), 9) + 0.0 for each in vector]  # no −0
 
 
-def manoeuvre_of(item: Item, angle_sigma: float, mount: str = "as mounted") -> Manoeuvre:
+def manoeuvre_of(item: Item, angle_sigma: float) -> Manoeuvre:
     """A rest or a whole turn of a plan as the stages have it; `angle_sigma`: rad."""
     up = direction(item["up"])
     rest = Manoeuvre(
@@ -69,21 +69,10 @@ def manoeuvre_of(item: Item, angle_sigma: float, mount: str = "as mounted") -> M
         do="rest",
         log="",
         position=str(item.get("position", item["id"])),
-        mount=mount,
+        mount="as mounted",
         up=up,
         mark=direction(item["mark"]) if "mark" in item else None,
-        about=None,
-        angle=None,
-        angle_sigma=None,
-        rate=None,
-        acceleration=None,
         seconds=item.get("seconds"),
-        recorded="whole",
-        from_s=None,
-        to_s=None,
-        from_row=None,
-        to_row=None,
-        label=None,
     )
     if item["do"] == "rest":
         return rest

@@ -11,8 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from inertial.arrays import Array
 from inertial.campaign.attitudes_by_hand import Handled
+from inertial.campaign.motions import Merged
 from inertial.campaign.passages import RecordedPassage
 from inertial.campaign.records import Known
 from inertial.campaign.solution import Solution
@@ -140,32 +140,25 @@ def motion_of(
     passage = recorded.passage
     rates = (passage.rates - gyro.bias) @ np.linalg.inv(gyro.matrix).T
     ups = integrate(rates, passage.seconds).middles @ before.up[0]
-    starts = passage.starts
-    seconds = np.add.reduceat(passage.seconds, starts)
-
-    def mean(values: Array) -> Array:
-        weights = passage.seconds.reshape(-1, *(1,) * (values.ndim - 1))
-        sums = np.add.reduceat(values * weights, starts)
-        return np.asarray(sums / seconds.reshape(-1, *(1,) * (values.ndim - 1)))
-
-    omega, n = mean(rates), len(starts)
+    merged = Merged(passage.seconds, passage.starts)
+    omega, n = merged.mean(rates), len(merged.starts)
     rate = np.linalg.norm(omega, axis=1)
     unknown = np.full((n, 3), np.nan)
     return Motion(
-        time=mean(recorded.time) if shared_clock else np.full(n, np.nan),
+        time=merged.mean(recorded.time) if shared_clock else np.full(n, np.nan),
         about=omega / np.maximum(rate, np.finfo(float).tiny)[:, None],
         angle=np.full(n, np.nan),
         rate=rate,
         acceleration=np.zeros(n),
-        up=mean(ups),
+        up=merged.mean(ups),
         north=unknown,
-        seconds=seconds,
+        seconds=merged.seconds,
         switched_on=np.full(n, before.switched_on[0]),
         visit=np.full(n, place + 0.5),
         position=np.full(n, float(place)),
         run=np.full(n, before.run[0]),
         surveyed=np.zeros(n, bool),
-        temperature=mean(recorded.temperature),
+        temperature=merged.mean(recorded.temperature),
         vibration=np.zeros((n, 3)),
         peaks=unknown,
         senses=unknown,

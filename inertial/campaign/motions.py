@@ -1,6 +1,6 @@
 """The motion of the table in each static position and rate segment."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
@@ -296,7 +296,7 @@ class Merged:
     `weights`: (n,), s, their durations.
     """
 
-    def __init__(self, weights: Array, starts: Sequence[int]) -> None:
+    def __init__(self, weights: Array, starts: Iterable[int]) -> None:
         self._weights, self.starts = weights, list(starts)
         self.seconds = np.add.reduceat(weights, self.starts)
 

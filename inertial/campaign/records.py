@@ -50,20 +50,20 @@ class Manoeuvre:
     log: str
     position: str
     mount: str
-    up: Array | None
-    mark: Array | None
-    about: Array | None
-    angle: float | None
-    angle_sigma: float | None
-    rate: float | None
-    acceleration: float | None
-    seconds: float | None
-    recorded: str
-    from_s: float | None
-    to_s: float | None
-    from_row: int | None
-    to_row: int | None
-    label: str | None
+    up: Array | None = None
+    mark: Array | None = None
+    about: Array | None = None
+    angle: float | None = None
+    angle_sigma: float | None = None
+    rate: float | None = None
+    acceleration: float | None = None
+    seconds: float | None = None
+    recorded: str = "whole"
+    from_s: float | None = None
+    to_s: float | None = None
+    from_row: int | None = None
+    to_row: int | None = None
+    label: str | None = None
     temperature: float | None = None
     temperature_sigma: float | None = None
     rate_sigma: float | None = None

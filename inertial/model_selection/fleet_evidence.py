@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.arrays import Array, Integers
+from inertial.arrays import Array, Booleans, Integers
 from inertial.estimation.effect_information import whitening
 from inertial.estimation.fleet_components import LEVELS, Sharing
 from inertial.model_selection.scan import MIN_EIGENVALUE
@@ -173,10 +173,7 @@ class FleetEvidence:
         alone, degrees = _explained(block - across @ across.transpose(0, 2, 1), scale, right)
         if not across.shape[2]:
             return np.append(alone, alone.sum()), np.append(degrees, degrees.sum())
-        values, vectors = np.linalg.eigh(block / (scale[:, :, None] * scale[:, None, :]))
-        seen = values > MIN_EIGENVALUE
-        white = np.where(seen, 1 / np.sqrt(np.where(seen, values, 1.0)), 0.0)[:, None, :] * vectors
-        white = (white / scale[:, :, None]).transpose(0, 2, 1)
+        white, seen = whitened(block)
         along, mixed = (white @ right[:, :, None])[:, :, 0], white @ across
         taken = np.einsum("gpr,gps->rs", mixed, mixed)
         left, directions = np.linalg.eigh(np.eye(len(taken)) - taken)
@@ -190,6 +187,15 @@ class FleetEvidence:
 def _scale(block: Array) -> Array:
     """Roots of the diagonals of matrices (g, p, p), (g, p)."""
     return np.sqrt(np.maximum(np.diagonal(block, axis1=1, axis2=2), np.finfo(float).tiny))
+
+
+def whitened(block: Array) -> tuple[Array, Booleans]:
+    """W of matrices (g, p, p) with W F Wᵀ = 1 where they are positive, (g, p); which that are."""
+    scale = _scale(block)
+    values, vectors = np.linalg.eigh(block / (scale[:, :, None] * scale[:, None, :]))
+    seen = values > MIN_EIGENVALUE
+    white = np.where(seen, 1 / np.sqrt(np.where(seen, values, 1.0)), 0.0)[:, None, :] * vectors
+    return (white / scale[:, :, None]).transpose(0, 2, 1), seen
 
 
 def _explained(block: Array, scale: Array, right: Array) -> tuple[Array, Integers]:

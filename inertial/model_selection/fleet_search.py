@@ -26,8 +26,7 @@ import numpy as np
 from inertial.arrays import Array, Integers
 from inertial.estimation.fleet_components import LEVELS
 from inertial.estimation.probability import chi2_isf, chi2_sf
-from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Given, Shared
-from inertial.model_selection.scan import MIN_EIGENVALUE
+from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Given, Shared, whitened
 
 Key = TypeVar("Key")
 
@@ -290,11 +289,8 @@ def _smallest(
     for effect, level in pairs:
         columns, groups = evidence.columns[effect], evidence.levels[level]
         block = groups.information[:, columns[:, None], columns]
-        scale = np.sqrt(np.maximum(np.diagonal(block, axis1=1, axis2=2), np.finfo(float).tiny))
-        values, vectors = np.linalg.eigh(block / (scale[:, :, None] * scale[:, None, :]))
-        seen = values > MIN_EIGENVALUE
-        root = np.where(seen, 1 / np.sqrt(np.where(seen, values, 1.0)), 0.0)[:, None, :] * vectors
-        along = (root / scale[:, :, None]).transpose(0, 2, 1) @ sums[level][:, columns]
+        white, seen = whitened(block)
+        along = white @ sums[level][:, columns]
         alone, degrees = np.sum(along**2, axis=1), seen.sum(axis=1)
         drops = {g: (alone[g], degrees[g]) for g in range(len(alone))}
         drops[EVERY] = alone.sum(axis=0), degrees.sum()

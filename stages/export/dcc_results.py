@@ -7,14 +7,13 @@ from inertial.campaign.records import Row
 from inertial.tables import AXES
 from inertial.text import numbers
 from inertial.text.messages import _
-from inertial.text.parameters import SENSOR_OF
+from inertial.text.parameters import STAGES
 from inertial.text.statements import NOT_STATED, RULES, STATEMENTS
 from stages.export.calibration import NOT_USABLE
 from stages.export.d_si import Value, add, add_list, add_real, values_of
 
 MEASURED = "basic_measuredValue"
 NO_VALUES = _("No values")
-KIND_OF = {sensor: kind for kind, sensor in SENSOR_OF.items()}
 CONFORMS = {"conforms": "pass", "does_not_conform": "fail"}  # not_assessed: neither
 
 
@@ -117,10 +116,10 @@ def add_conformity(parent: Element, rows: Sequence[Row], mount: Row, number: int
     """Each parameter against its limit; refId: the list that contains it."""
     if not rows:
         return
-    known = {kind: _parameters(mount[kind]) for kind in KIND_OF.values()}
+    known = {kind: _parameters(mount[kind]) for kind in STAGES.values()}
     statements = add(parent, "dcc:measurementMetaData")
     for row in rows:
-        kind = KIND_OF[row["sensor"]]
+        kind = STAGES[row["sensor"]]
         value = known[kind].get(row["quantity"])
         listed = value is not None and not unusable(mount[kind])
         refers = {"refId": f"{kind}-{number}"} if listed else {}
