@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
-from inertial.arrays import Array, Booleans
+from inertial.arrays import Array, Booleans, finite_or_none
 from inertial.campaign.records import Manoeuvre, Part, Row, with_mount
 from inertial.estimation import triad
 from inertial.estimation.gyroscope_observations import EARTH_UP
@@ -113,16 +113,7 @@ class Estimates:
                 }
             )
         determined = [i for i, name in enumerate(names) if name not in reasons]
-        kept_ids = [ids[i] for i in determined]
-        self.covariances.append(
-            pd.DataFrame(
-                {
-                    "first": np.repeat(kept_ids, len(kept_ids)),
-                    "second": np.tile(kept_ids, len(kept_ids)),
-                    "covariance": covariance[np.ix_(determined, determined)].ravel(),
-                }
-            )
-        )
+        self.covariances.append(covariance_rows(ids, covariance, determined))
 
     def _key(self, method: str, quantity: str = "") -> dict[str, Any]:
         """The columns that say whose estimate a row holds."""
@@ -224,6 +215,18 @@ class Estimates:
         return frames | {"covariance": pd.concat(self.covariances) if self.covariances else empty}
 
 
+def covariance_rows(ids: Sequence[str], covariance: Array, which: Sequence[int]) -> pd.DataFrame:
+    """The table of the covariance, (n, n), of those of n parameters that are determined."""
+    kept = [ids[i] for i in which]
+    return pd.DataFrame(
+        {
+            "first": np.repeat(kept, len(kept)),
+            "second": np.tile(kept, len(kept)),
+            "covariance": covariance[np.ix_(which, which)].ravel(),
+        }
+    )
+
+
 def stops_between_turns(plan: Sequence[Manoeuvre]) -> bool:
     """Whether several manoeuvres share a set position, as in S3's turns and stops."""
     return len({m.position for m in plan}) < len(plan)
@@ -307,6 +310,6 @@ def switch_on_columns(found: SwitchOns | None) -> Row:
     row: Row = {"switch_ons": 1 if found is None else found.count}
     for i, axis in enumerate(AXES):
         for of in ("", "_sigma", "_upper"):
-            value = np.nan if found is None else float(getattr(found, of[1:] or "value")[i])
-            row[f"switch_on_{axis}{of}"] = value if np.isfinite(value) else None
+            value = np.nan if found is None else getattr(found, of[1:] or "value")[i]
+            row[f"switch_on_{axis}{of}"] = finite_or_none(value)
     return row

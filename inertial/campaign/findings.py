@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-import numpy as np
 import pandas as pd
 
 from inertial import tables
+from inertial.arrays import finite_or_none
 from inertial.campaign.detection import Events
 from inertial.campaign.masked_samples import RecordIndex, rows_between
 from inertial.sensors import CHANNELS, UNITS
@@ -181,8 +181,8 @@ def _finding(
         sensor=channel["sensor"] or event.sensor or detector.sensor,
         axis=channel["axis"],
         log=log.name if log else None,
-        from_s=_number(event.from_s),
-        to_s=_number(event.to_s),
+        from_s=finite_or_none(event.from_s),
+        to_s=finite_or_none(event.to_s),
         count=event.count,
         size=event.size,
         unit=unit,
@@ -192,10 +192,6 @@ def _finding(
         action=description.action,
         severity=event.severity or detector.severity,
     )
-
-
-def _number(value: float) -> float | None:
-    return value if np.isfinite(value) else None
 
 
 def _of_many(finding: Finding, detector: Detector, group: Sequence[NamedEvent]) -> Finding:
@@ -208,8 +204,8 @@ def _of_many(finding: Finding, detector: Detector, group: Sequence[NamedEvent]) 
         finding,
         sensor=finding.sensor if len(sensors) == 1 else None,
         axis=finding.axis if len(channels) == 1 else None,
-        from_s=_number(min(e.from_s for _, e in group)) if one_log else finding.from_s,
-        to_s=_number(max(e.to_s for _, e in group)) if one_log else finding.to_s,
+        from_s=finite_or_none(min(e.from_s for _, e in group)) if one_log else finding.from_s,
+        to_s=finite_or_none(max(e.to_s for _, e in group)) if one_log else finding.to_s,
         count=_number_of(detector, group),
         p_value=min((e.p_value for _, e in group if e.p_value is not None), default=None),
         severity=max(event.severity or detector.severity for _, event in group),

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from inertial.arrays import finite_or_none
 from inertial.detectors.time_of_turns import thousands_longer, time_ratio
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded, Rescaled, Reversed
@@ -49,8 +50,7 @@ class IncompleteTurn(PlanDetector):
             refused = misread and recorded.lacking_s[i] == 0
             if scaled or reversed_ or refused or name in recorded.explained:
                 continue
-            missing = float(np.degrees(recorded.lacking[i]))
-            yield self.of(recorded, i, missing if np.isfinite(missing) else None)
+            yield self.of(recorded, i, finite_or_none(np.degrees(recorded.lacking[i])))
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at

@@ -5,9 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
-
-from inertial.arrays import Array, Booleans, Integers
+from inertial.arrays import Array, Booleans, Integers, finite_or_none
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.detector import Description, Given
 from inertial.text.messages import _
@@ -262,12 +260,8 @@ class PlanDetector(ABC):
         place = {
             "first": int(recorded.first[i]),
             "after": int(recorded.after[i]),
-            "from_s": _number(recorded.from_s[i]),
-            "to_s": _number(recorded.to_s[i]),
+            "from_s": finite_or_none(recorded.from_s[i]),
+            "to_s": finite_or_none(recorded.to_s[i]),
         }
         known: dict[str, Any] = {"sensor": self.sensor, **place, **more}
         return Deviation(i, recorded.log[i], size, **known)
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

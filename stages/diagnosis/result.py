@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
+from inertial.campaign.estimates import covariance_rows
 from inertial.campaign.records import Row, rows_of, with_mount
 from inertial.estimation.mixture import beside_effects, disagree, mixture
 from inertial.estimation.triad import UNKNOWNS, linear_names
@@ -36,14 +37,7 @@ class Result:
     def covariance_rows(self) -> pd.DataFrame:
         """The covariance as its table has it, of the parameters that are determined."""
         there = [i for i, row in enumerate(self.rows) if row["sigma"] is not None]
-        names = [self.rows[i]["id"] for i in there]
-        return pd.DataFrame(
-            {
-                "first": np.repeat(names, len(names)),
-                "second": np.tile(names, len(names)),
-                "covariance": self.covariance[np.ix_(there, there)].ravel(),
-            }
-        )
+        return covariance_rows([row["id"] for row in self.rows], self.covariance, there)
 
 
 def result_of(

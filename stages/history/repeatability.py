@@ -7,7 +7,7 @@ from datetime import date, timedelta
 import numpy as np
 import pandas as pd
 
-from inertial.arrays import Array
+from inertial.arrays import Array, finite_or_none
 from inertial.campaign.records import Row
 from inertial.estimation.calibration_components import Component, components
 from inertial.estimation.history_of_values import (
@@ -137,8 +137,8 @@ def _component(component: Component) -> Row:
         "component": " + ".join(component.names),
         "groups": component.groups,
         "value": component.value,
-        "sigma": component.sigma if np.isfinite(component.sigma) else None,
-        "upper": component.upper if np.isfinite(component.upper) else None,
+        "sigma": finite_or_none(component.sigma),
+        "upper": finite_or_none(component.upper),
     }
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from inertial.arrays import Array
+from inertial.arrays import Array, finite_or_none
 from inertial.campaign.noise_levels import drift_of
 from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
@@ -226,11 +226,11 @@ class SensorNoise:
                     "channel": channel,
                     "term": name,
                     "detected": term.detected,
-                    "value": _number(term.value),
-                    "sigma": _number(term.sigma),
-                    "upper": _number(term.upper),
+                    "value": finite_or_none(term.value),
+                    "sigma": finite_or_none(term.sigma),
+                    "upper": finite_or_none(term.upper),
                     "unit": unit,
-                    "p_value": _number(term.p_value),
+                    "p_value": finite_or_none(term.p_value),
                     "data_sheet": sheet[channel].get(name),
                     "seconds": self.seconds,
                 }
@@ -248,7 +248,3 @@ def _noise_of(pool: _Pool) -> SensorNoise:
         pool.interval,
         max(pool.powers.seconds),
     )
-
-
-def _number(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None
