@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from inertial.campaign.records import Part, grouped, parts_of
-from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, JOINT, MIXTURE, PARTS, SENSOR_OF, STAGES, sign_of
@@ -16,15 +15,9 @@ from stages.report.outline import Tone
 from stages.report.tables import Record, Tables, once
 from stages.report.words import SENSOR_OF_STAGE, sensor_of_stage, term, with_mount
 
-ESTIMATE_TABLES = (
-    "accelerometer_parameters",
-    "accelerometer_fit",
-    "accelerometer_fit_manoeuvres",
-    "gyroscope_parameters",
-    "gyroscope_fit",
-    "gyroscope_fit_manoeuvres",
-)
-EXTENDED_TABLES = ("extended_parameters", "extended_fit", "extended_fit_manoeuvres")
+OF_ESTIMATES = ("parameters", "fit", "fit_manoeuvres")
+ESTIMATE_TABLES = tuple(f"{stage}_{name}" for stage in SENSOR_OF_STAGE for name in OF_ESTIMATES)
+EXTENDED_TABLES = tuple(f"{EXTENDED}_{name}" for name in OF_ESTIMATES)
 RESULT_TABLES = (*ESTIMATE_TABLES, *EXTENDED_TABLES, *DECISION_TABLES, "result")
 WITH_EFFECTS = _("fit with effects in the model")  # also by the other members of a class
 METHOD = {
@@ -51,8 +44,7 @@ KIND = {
 KIND_IN_A_SENTENCE = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
 SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
 CALIBRATION = frozenset(
-    [f"{kind}_{axis}" for kind in ("bias", "scale") for axis in AXES]
-    + [f"cross_{row}{column}" for row in AXES for column in AXES if row != column]
+    name for name, parts in PARTS.items() if parts.kind in ("bias", "scale", "cross")
 )
 Key = tuple[str, str, str]  # sensor, mount and method
 MIN_P = 0.01  # of a fit that describes its data

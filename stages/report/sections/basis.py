@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from inertial.formats.account import KINDS, OTHER_MESSAGE
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.messages import _
@@ -23,11 +24,11 @@ from stages.report.outline import (
     columns,
     more,
     table_row,
+    value_and_sigma,
 )
 from stages.report.tables import Record, Tables
 from stages.report.words import term
 
-KINDS = ("decoded", "other message", "header", "blank", "not selected", "refused")
 MOST_LINES = 20
 MOST_REASONS = 20
 UNIT_VECTOR = 1e-9  # by which the length along an axis may be off 1
@@ -139,7 +140,7 @@ def account_parts(tables: Tables) -> Iterator[Part]:
         [_log(log, rows, size) for log in dict.fromkeys(row["log"] for row in rows)],
         _("None: no log was read."),
     )
-    if others := [row for row in rows if row["kind"] == "other message"]:
+    if others := [row for row in rows if row["kind"] == OTHER_MESSAGE]:
         yield _other_messages(others)
     yield Heading(_("Refused lines"))
     if refused:
@@ -257,8 +258,7 @@ def known_parts(tables: Tables) -> Iterator[Part]:
         _("Known quantities."),
         (
             Column(_("Quantity")),
-            Column(_("Value"), "number"),
-            Column("± σ", "sigma"),
+            *value_and_sigma(value=_("Value")),
             Column(_("Unit"), "unit"),
             Column(_("Origin")),
         ),

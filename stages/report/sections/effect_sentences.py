@@ -228,7 +228,7 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
             yield _("In the fit, χ² {by_scope}.", by_scope=_change(by_scope[FITTED]))
     for row in own:
         if row["unit"] != "sigma" and row["scope"] == HELD_OUT:
-            gyro = _("{axis} gyro", axis=row["axis"]) if row["axis"] else "gyros"
+            gyro = _("{axis} gyro", axis=row["axis"]) if row["axis"] else PLURAL["gyro"]
             unit = DEGREES_PER_SECOND if row["unit"] == "rad/s" else Unit(row["unit"], 1.0)
             before, after = (
                 significant(unit.of(row[f"rms_{at}"]), 3) for at in ("before", "after")

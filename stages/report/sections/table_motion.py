@@ -92,9 +92,7 @@ def _table(caption: str, rows: Sequence[Record]) -> Table:
         (
             Column(_("Turn"), "name"),
             Column(_("Quantity")),
-            Column(_("value"), "number"),
-            Column("± σ", "sigma"),
-            Column(_("unit"), "unit"),
+            *value_and_sigma(unit=True),
             Column(_("p-value"), "number"),
         ),
         [_row(row) for row in rows],
