@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import test_history as archive
+from scipy.spatial.transform import Rotation
 
 from inertial import tables
 from inertial.campaign.records import rows_of
@@ -17,6 +18,7 @@ from inertial.estimation.history_of_values import History, drift, jump, predicte
 from inertial.estimation.switch_ons import between
 from inertial.tables.parquet import write_once
 from inertial.tables.yaml_file import YamlFile
+from laboratory.folder import campaign_yaml
 from stages.history.repeatability import (
     LATEST,
     forecast_rows,
@@ -408,6 +410,40 @@ def test_runs_are_not_usable_until_it_is_stated_that_the_biases_are_others(tmp_p
     assert {"gyro_bias_per_log", "accel_bias_per_log"} <= set(causes.index)
     assert causes.loc["accel_bias_per_log", "action"].startswith("If the IMU was switched off")
     assert set(tables["diagnosis/verdict"]["verdict"]) == {"not_usable"}
+
+
+def test_leans_of_positions_by_hand_are_no_part_of_what_biases_of_runs_differ_by(tmp_path):
+    """Faces lean by 1.5°, which is 26 mg of a level axis; z warms up by 8 mg, which |f| shows."""
+    random = np.random.default_rng(31)
+    raw = tmp_path / "raw"
+    raw.mkdir()
+    plan = []
+    faces = ["+x", "-x", "+y", "-y", "-z", "+z", *["+z"] * 3]
+    for number, face in enumerate(faces):
+        up = np.eye(3)["xyz".index(face[1])] * (1 if face[0] == "+" else -1)
+        leaning = Rotation.from_rotvec(np.radians(random.normal(0, 1.5, 3))).apply(up)
+        warm = 0.0 if number < 6 else -0.008
+        force = 9.81 * (leaning + np.array([0.03, 0.004, -0.03 + warm]))
+        readings = force + random.normal(0, 0.03, (1000, 3))
+        np.savetxt(raw / f"{number}.csv", readings, delimiter=",", fmt="%.5f")
+        plan.append({"id": f"{number}", "do": "rest", "up": face, "seconds": 10})
+        plan[-1]["log"] = f"{number}.csv"
+    form = {"kind": "columns", "delimiter": ",", "header_lines": 0, "time": {"rate_hz": 100}}
+    form["accelerometer"] = {"columns": [1, 2, 3], "unit": "m/s2"}
+    document = {
+        "campaign": 1,
+        "instrument": {"name": "faces", "rate_hz": 100, "format": form},
+        "serial": "unknown",
+        "date": "unknown",
+        "site": {"latitude_deg": None, "gravity_m_s2": 9.81, "gravity_sigma_m_s2": 0.001},
+        "table": {"name": "by hand", "position_sigma_arcsec": 5400},
+        "plan": plan,
+    }
+    (raw / "campaign.yaml").write_bytes(campaign_yaml(document))
+    tables = chain.run(raw, tmp_path / "derived", "criticism", chain.BESIDE)
+    findings = tables["criticism/findings"].set_index("cause")
+    difference = findings.loc["accel_bias_per_log", "size"]
+    assert difference == pytest.approx(0.008 * 9.81, abs=0.004 * 9.81)  # 1 − cos 3°: 1.4 mg
 
 
 @pytest.mark.slow

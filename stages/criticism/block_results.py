@@ -38,6 +38,7 @@ from stages.criticism.without_law import WithoutLaw
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
 MIN_KNOWN_SHARE = 1e-3  # of its information that a combination keeps beside all else, to be known
+CLEAR = 3.0  # sigma of a difference of two biases, to be stated for itself
 MAX_SCATTERED = 2  # manoeuvres of a run, each with a bias of its own by their scatter
 MIN_EXCESS = 1.2  # of chi-squared per degree; the uncertainty of the noise level explains less
 
@@ -186,8 +187,8 @@ class BlockResults:
         clear = cause.verdict in NAMED
         sensor = self.selection.sensor(cause)
         if cause.effect == per_log_name(sensor):
-            difference = self._between_runs(cause)
-            sentence = sentences.per_log_sentence(cause, difference, UNITS[sensor])
+            difference, sigma = self._between_runs(cause)
+            sentence = sentences.per_log_sentence(cause, difference, sigma, UNITS[sensor])
             covered = self.campaign.by_hand is not None and not self._long_runs()
             size = (cause.snr, "sigma") if covered else (difference, UNITS[sensor])
         else:
@@ -233,20 +234,32 @@ class BlockResults:
             row = {"finding": identifier, "mount": self.mount, "rank": rank}
             yield "cause_positions", row | {"position": position, "statistic": statistic}
 
-    def _between_runs(self, cause: Cause) -> float:
-        """The largest difference between the biases of two runs, of the first 0 here.
+    def _between_runs(self, cause: Cause) -> tuple[float, float]:
+        """The largest difference between the biases of two runs that is clear, with its sigma.
 
-        Where only combinations of them are determined, it is that of the smallest biases which
-        have these: so large it is at least, or nearly.
+        Where none is clear by itself, the clearest. Where only combinations of the biases are
+        determined, it is that of the smallest biases which have these: so large it is at least, or
+        nearly.
         """
         others = [i for c in self.selection.named.causes if c is not cause for i in c.columns]
         chosen = list(dict.fromkeys([*cause.columns, *others]))
         evidence = self.selection.evidence
         known = whitening(evidence.total.information[np.ix_(chosen, chosen)], MIN_KNOWN_SHARE)
-        values = (known @ (known.T @ evidence.total.right[chosen]))[: len(cause.columns)]
+        values = known @ (known.T @ evidence.total.right[chosen])
         axes = np.array([evidence.names[i][-1] for i in cause.columns])
-        runs = [np.append(values[axes == axis], 0.0) for axis in set(axes)]
-        return max(float(np.ptp(own)) for own in runs)
+        pairs: list[tuple[float, float]] = []
+        for axis in set(axes):
+            own = np.flatnonzero(axes == axis)
+            bias = np.append(values[own], 0.0)  # the last is that of the first run
+            rows = np.vstack([known[own], np.zeros(known.shape[1])])
+            one, other = np.triu_indices(len(bias), 1)
+            sigma = np.linalg.norm(rows[one] - rows[other], axis=1)
+            pairs += zip(np.abs(bias[one] - bias[other]).tolist(), sigma.tolist(), strict=True)
+        determined = [(size, sigma) for size, sigma in pairs if sigma]
+        clear = [pair for pair in determined if pair[0] > CLEAR * pair[1]]
+        if clear:
+            return max(clear)
+        return max(determined, key=lambda pair: pair[0] / pair[1], default=(0.0, 0.0))
 
     def _long_runs(self) -> bool:
         """Whether a run holds so many manoeuvres that their scatter by hand is none of runs."""

@@ -18,7 +18,7 @@ from inertial.physics.effect import Effect
 from inertial.physics.setting_in import Jump
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import fixed, p_is, significant
+from inertial.text.numbers import fixed, p_is, plus_minus, significant
 from inertial.text.parameters import sign_of
 from inertial.text.typography import capital
 from inertial.text.units import quantity
@@ -100,12 +100,12 @@ SPLIT_TOO_WEAK = _(
 )
 
 
-def per_log_sentence(cause: Cause, difference: float, si: str) -> str:
-    """Of biases that are others in each run; `difference`: the largest, in its SI unit."""
+def per_log_sentence(cause: Cause, difference: float, sigma: float, si: str) -> str:
+    """Of biases that are others in each run; `difference`: the largest, in its SI unit `si`."""
     others = _others(cause)
     unit = quantity("bias", si).laboratory
     return PER_LOG[cause.effect].format(
-        size=f"{significant(unit.of(difference))} {unit.name}",
+        size=f"{plus_minus(unit.of(difference), unit.of(sigma))} {unit.name}",
         others=_(" Or it is {others}.", others=_(" or ").join(others)) if others else "",
     )
 
