@@ -469,7 +469,7 @@ def shifts(
 ) -> list[float | None]:
     """The largest shift of a parameter by each, in its sigma; None where none is determined.
 
-    `quiet`: the campaign without any of them.
+    `quiet`: the campaign without any of them, in which its random walks and drifts are.
     """
     without = _estimate(quiet) if oscillations else None
     if without is None:
@@ -478,7 +478,9 @@ def shifts(
     for one in oscillations:
         others = [other for other in oscillations if other is not one]
         blocks = without_lines(data.blocks, data.plan, turns, others)
-        present = _estimate(campaign_of(replace(data, blocks=blocks)))
+        with_it = campaign_of(replace(data, blocks=blocks))
+        alike = replace(with_it, solution=quiet.solution, drifts=quiet.drifts)
+        present = _estimate(alike)
         largest.append(None if present is None else _largest(without, present))
     return largest
 
