@@ -34,7 +34,8 @@ REASONS = {
 }
 
 ACTION = _(
-    "Remove it at its origin, or compensate readings with its terms too, which the export holds."
+    "Remove it at its origin, or compensate readings with its terms too, which the export "
+    "holds where the result includes them."
 )
 ACTION_WITHOUT_TERMS = _("Remove it at its origin. Readings are not compensated for it: {stays}.")
 ACTION_PER_RUN = _(
@@ -48,7 +49,7 @@ NO_COMMON_TIME = _(
 ACTION_OF_JUMP = _(
     "If the IMU was switched off and on at that time, state power_cycle: true in the first "
     "manoeuvre after it; else remove it at its origin, or compensate readings with its terms too, "
-    "which the export holds."
+    "which the export holds where the result includes them."
 )
 ACTION_OF_LATITUDE = _(
     "By the gyros the table stands at {latitude}°: correct latitude_deg, from which the earth's "

@@ -32,6 +32,7 @@ FORMS = {
     "exponential": _("an exponential of {state}, by e in {first} {unit}"),
     "ramp": _("a ramp from {times} s on"),
     "telegraph": _("two levels, changed at {times} s"),
+    "pulse": _("another level from {first_time} s to {last_time} s"),
     "hysteresis": _("hysteresis of {state}, {first} {unit} wide to either side"),
     "product": _("in proportion to {state}"),
 }
@@ -74,13 +75,16 @@ def form_of(law: Law) -> str:
         return _("{state} to the power {first}", state=state, first=significant(first, 3))
     period = 2 * np.pi / first if law.family == "harmonic" else 0.0
     of_time = f"{significant(HOUR * period, 3)} s"
+    times = [f"{HOUR * time:.0f}" for time in law.shape]
+    if law.family == "telegraph" and len(times) == 2:
+        return FORMS["pulse"].format(first_time=times[0], last_time=times[1])
     return FORMS[law.family].format(
         state=state,
         first=significant(first, 3),
         degree=f"{first:.0f}",
         unit=UNITS.get(law.state, "g"),
         period=of_time if law.state == "time" else f"{significant(period / DEGREE, 4)}°",
-        times=", ".join(f"{HOUR * time:.0f}" for time in law.shape),
+        times=", ".join(times),
     )
 
 

@@ -21,6 +21,7 @@ UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
 OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
+TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
 MAX_WIDENED = 1.5  # times noise: smaller residuals without a name widen the sigmas, no more
 MIN_WIDENED_DROP = 0.5  # of the SNR²: what effects then bring on held-out manoeuvres at least
@@ -178,7 +179,7 @@ def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
     if causes:
         return NOT_EXPLAINED.format(causes=causes)
     for row in effects:
-        if row["carried_by"] and row["effect"] not in OF_ONE_MANOEUVRE:
+        if row["carried_by"] and not _of_one_manoeuvre(row["effect"]):
             return CARRIED.format(manoeuvre=row["carried_by"], effect=in_words(row["effect"]))
     if best["open_form"]:
         return OPEN_FORM
@@ -199,9 +200,14 @@ def _freed(effects: Sequence[Row]) -> Mapping[str, str]:
     Such an effect cannot be predicted from other manoeuvres, and need not be: in the model it only
     gives its manoeuvre an unknown of its own, so that it no longer moves the parameters.
     """
-    if any(row["effect"] not in OF_ONE_MANOEUVRE for row in effects):
+    if not all(_of_one_manoeuvre(row["effect"]) for row in effects):
         return {}
     return _carriers(effects)
+
+
+def _of_one_manoeuvre(effect: str) -> bool:
+    """Whether an effect that one manoeuvre alone shows is an unknown of that manoeuvre alone."""
+    return effect in OF_ONE_MANOEUVRE or effect.endswith(TWO_LEVELS)
 
 
 def _carriers(effects: Sequence[Row]) -> Mapping[str, str]:

@@ -126,7 +126,7 @@ def _coarse(result: SensorResult) -> str:
     if not coarse:
         return ""
     return _(
-        " Known to {percent} % only: {names}.",
+        " Known to {percent} % (σ) only: {names}.",
         percent=significant(100 * max(coarse.values()), 2),
         names=", ".join(sorted(coarse)),
     )
@@ -172,15 +172,18 @@ def _why(causes: Sequence[Cause]) -> str:
 
 
 def _lacking(sensors: str, names: Sequence[str], own: Sequence[Cause]) -> str:
-    causes = _names(own) + ". " if own else ""
+    """First the causes by which manoeuvres are left out, which may have determined them."""
+    lost = [cause for cause in own if cause.cure == LEFT_OUT]
+    causes = _names(lost) + ". " if lost else ""
     if len(names) == len(TWELVE):
-        return _(
+        sentence = _(
             "{sensors}: {causes}Not usable: no parameter is determined.",
             sensors=sensors,
             causes=causes,
         )
+        return sentence + _others(own, lost)
     shown = ", ".join(names[:MOST_NAMES])
-    return _(
+    sentence = _(
         "{sensors}: {causes}Not usable as a whole: {count} of 12 parameters are not determined "
         "({names}{more}).",
         sensors=sensors,
@@ -189,6 +192,7 @@ def _lacking(sensors: str, names: Sequence[str], own: Sequence[Cause]) -> str:
         names=shown,
         more=" …" if len(names) > MOST_NAMES else "",
     )
+    return sentence + _others(own, lost)
 
 
 def _swept(sensors: str, swept: tuple[float, float], own: Sequence[Cause]) -> str:

@@ -62,6 +62,16 @@ def test_an_effect_of_one_manoeuvre_needs_no_other_to_predict_it():
     assert decided([JOINT, candidate()], both).method == "extended"
 
 
+def test_two_levels_within_one_manoeuvre_are_its_own_and_spare_what_others_show():
+    """A law of another state that one manoeuvre carries would change all others."""
+    levels = effect("gyro_x_telegraph_of_time", "y-up")
+    decision = decided([JOINT, candidate()], [levels, effect("gyro_g_sensitivity")])
+    assert decision.method == "extended" and not decision.freed
+    of_rate = effect("gyro_x_polynomial_of_rate", "y-up")
+    assert decided([JOINT, candidate()], [of_rate, effect()]).method == "joint"
+    assert decided([JOINT, candidate()], [levels]).freed == {"criticism/1": "y-up"}
+
+
 def test_what_one_manoeuvre_alone_shows_may_be_its_own_error_whatever_else_it_may_be():
     """A shift after the first rest, or that rest is off: for all others that is the same."""
     rows = [

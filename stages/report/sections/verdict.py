@@ -58,8 +58,9 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         _("usable within limits"),
         "fair",
         _(
-            "Departures from the ideal were found. Each is corrected, modelled, excluded, "
-            "interpolated or too small to matter, as is stated for each."
+            "Departures from the ideal were found, each of which is corrected, modelled, excluded, "
+            "interpolated or too small to matter, as is stated; or a scale factor is known "
+            "coarsely."
         ),
     ),
     "usable": (
