@@ -11,7 +11,9 @@ has an upper limit, and the model contains the likeliest.
 
 Oscillations, bins that stand significantly above both their neighbours and the model, are marked
 and not fitted. What the terms cannot describe, the fall of a sensor's own low-pass filter, is left
-out from the lowest frequency at which it shows.
+out from the lowest frequency at which it shows. Quantisation comes after every filter, so it is no
+larger than what is left out allows: what rises with the frequency within the band, and falls beyond
+it, as a hand does that trembles, is none.
 """
 
 from collections.abc import Sequence
@@ -29,6 +31,7 @@ from inertial.estimation.probability import chi2_isf, chi2_sf, t_isf, t_sf
 LEVEL = 0.01  # chance that a term that is absent is detected
 MIN_RISE = 1e-6  # of the deviance: less is rounding, whose root would be in the p-value
 CLASS_RISE = 6.0  # of the deviance: a drift in place of another, 20 times less likely
+QUANTISATION = "quantisation"
 DRIFTS = ("bias_instability", "random_walk", "ramp")
 INTERVAL = 0.05  # probability outside an interval
 LIMIT = 0.05  # probability above an upper limit
@@ -98,7 +101,8 @@ def _of_channel(bins: Bins, lowest: Sequence[Lowest], channel: int) -> NoiseTerm
     used = ~leaked & within
     likelihood = Likelihood.of(bins, lowest, channel, used)
     likelihood, misfit = _widened(likelihood, bins.frequency[used])
-    chosen = _Selection(likelihood).chosen()
+    beyond = ~within & ~lines
+    chosen = _Selection(likelihood, _largest_quantisation(bins, channel, beyond)).chosen()
     return NoiseTerms(
         {name: chosen.term(name) for name in TERMS},
         chosen.model,
@@ -157,10 +161,11 @@ class _Chosen:
 
 
 class _Selection:
-    """Fits of models of one channel, each made once."""
+    """Fits of models of one channel, each made once; `largest_quantisation`: that is possible."""
 
-    def __init__(self, likelihood: Likelihood) -> None:
+    def __init__(self, likelihood: Likelihood, largest_quantisation: float = np.inf) -> None:
         self.likelihood = likelihood
+        self.largest_quantisation = largest_quantisation
         self._fits: dict[tuple[frozenset[str], bool], Fit] = {}
 
     def fit(self, names: frozenset[str], *, restricted: bool = True) -> Fit:
@@ -185,8 +190,16 @@ class _Selection:
         return None
 
     def chosen(self) -> _Chosen:
-        """From all terms, the least significant is left out, until all are significant."""
-        names = frozenset(TERMS)
+        """The terms that are significant, quantisation only where it is possible."""
+        names = self._significant(frozenset(TERMS))
+        variance = self.fit(names).variances[STOCHASTIC.index(QUANTISATION)]
+        if QUANTISATION in names and np.sqrt(variance) > self.largest_quantisation:
+            names = self._significant(frozenset(TERMS) - {QUANTISATION})
+        return _Chosen(self, names, self._classes(names))
+
+    def _significant(self, every: frozenset[str]) -> frozenset[str]:
+        """Of all, the least significant is left out, until all are significant."""
+        names = every
         while len(names) > 1:
             p_values = {name: self.p_value(names, name) for name in names}
             worst = max(p_values, key=p_values.__getitem__)
@@ -194,9 +207,9 @@ class _Selection:
                 break
             names -= {worst}
         for name in TERMS:
-            if name not in names and self.p_value(names | {name}, name) < LEVEL:
+            if name in every - names and self.p_value(names | {name}, name) < LEVEL:
                 names |= {name}
-        return _Chosen(self, names, self._classes(names))
+        return names
 
     def p_value(self, names: frozenset[str], name: str) -> float:
         """Chance of data that ask for a term of a model at least as much, if it is absent."""
@@ -241,9 +254,9 @@ class _Selection:
             sigma = np.sqrt(fit.slope_variance)
             return float(abs(fit.slope) + t_isf(LIMIT, fit.slope_degrees) * sigma)
         rise, j = float(chi2_isf(2 * LIMIT, 1)), STOCHASTIC.index(name)
-        return float(
-            np.sqrt(self.likelihood.end_of_interval(fit, _places(names), ramp, j, rise, True))
-        )
+        end = self.likelihood.end_of_interval(fit, _places(names), ramp, j, rise, True)
+        limit = float(np.sqrt(end))
+        return min(limit, self.largest_quantisation) if name == QUANTISATION else limit
 
 
 def _places(names: frozenset[str]) -> tuple[int, ...]:
@@ -270,6 +283,13 @@ def _usable(
         if worst <= 1 and last == HALVES + MARGIN:
             last = half + MARGIN if half else half
     return best
+
+
+def _largest_quantisation(bins: Bins, channel: int, beyond: Booleans) -> float:
+    """That of which the bins beyond the band have no more, at an upper limit; see `LIMIT`."""
+    degrees, shape = bins.degrees[beyond], bins.shapes[STOCHASTIC.index(QUANTISATION), beyond]
+    density = bins.density[beyond, channel] * degrees / chi2_isf(1 - LIMIT, degrees)
+    return float(np.sqrt(np.min(density / shape, initial=np.inf)))
 
 
 def _lines(

@@ -22,6 +22,7 @@ MAX_SETTLED = 5.0  # scatters of bins from the plateau of a turn, within which a
 SETTLED_BINS = 3  # one after another within it: what rings goes through it as well
 MAX_SETTLING_SHARE = 0.25  # of the plateau, that is left out while the rate settles
 MIN_SLOW_TURN = np.radians(0.05)  # rad, of a motion below what counts as motion
+LEVEL_ROUNDS = 3  # in which what the gyros read at rest is had from the bins that do not move
 # In m/s², change of the specific force that counts as motion where no gyro is recorded
 MIN_FORCE_CHANGE = 0.1
 
@@ -172,12 +173,17 @@ def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
     ----------
     rates : (k, 3), rad/s, NaN where not recorded
     """
-    recorded = rates[:, np.isfinite(rates).any(axis=0)]
-    if not recorded.size:
+    recorded = np.nan_to_num(rates[:, np.isfinite(rates).any(axis=0)])
+    if len(recorded) < 2 or not recorded.size:
         return None
-    away = np.nan_to_num(recorded - np.nanmedian(recorded, axis=0))
-    scatter = MAD_TO_SIGMA * np.median(np.abs(away), axis=0)
-    above = np.linalg.norm(away, axis=1) > MIN_MOTION_SIGMA * float(np.linalg.norm(scatter))
+    change = MAD_TO_SIGMA * np.median(np.abs(np.diff(recorded, axis=0)), axis=0) / np.sqrt(2)
+    rests = np.ones(len(recorded), bool)
+    for _ in range(LEVEL_ROUNDS):  # it may last as long as the rest
+        away = recorded - np.median(recorded[rests], axis=0)
+        above = np.linalg.norm(away, axis=1) > MIN_MOTION_SIGMA * float(np.linalg.norm(change))
+        if above.all():
+            return None
+        rests = ~above
     turning = [
         run
         for run in stretches_of(above)

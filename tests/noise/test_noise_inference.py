@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from noise_draws import INTERVAL
 from noise_simulation import Array, noise
+from scipy.signal import butter, sosfilt
 from scipy.stats import binom
 
 from inertial.estimation.multiresolution import Powers
 from inertial.estimation.noise_likelihood import Likelihood
-from inertial.estimation.noise_terms import _Selection
+from inertial.estimation.noise_terms import _Selection, noise_terms
 
 SAMPLES = 1 << 14
 WHITE = frozenset({"white_noise"})
@@ -124,3 +125,24 @@ def test_the_information_is_that_of_the_residuals_of_a_slope():
         (expected[True] - expected[False]) * np.outer(scale, scale),
         atol=1e-9,
     )
+
+
+@pytest.mark.parametrize("corner", [6.0, 12.0])
+def test_what_rises_with_the_frequency_and_falls_beyond_the_band_is_no_quantisation(corner):
+    """A hand that trembles: the derivative of an angle that follows a hand to so many Hz.
+
+    Its density rises as f² does. That of quantisation, 2 Q² (1 − cos 2πfΔ) / Δ, would be many times
+    as large as what is there at half the sample rate.
+    """
+    chance, rate = np.random.default_rng(4), 1 / INTERVAL
+    angle = sosfilt(butter(4, corner, fs=rate, output="sos"), chance.normal(size=SAMPLES))
+    white = noise(SAMPLES, INTERVAL, chance, white_noise=1e-3)
+    rates = np.diff(angle, prepend=0.0) * 0.2 + white
+    powers = Powers(1, INTERVAL)
+    powers.add(rates[:, None])
+    powers.end()
+    (terms,) = noise_terms(powers)
+    assert not terms.terms["quantisation"].detected
+    measured = np.mean(np.abs(np.fft.rfft(white)[-SAMPLES // 20 :]) ** 2) * INTERVAL / SAMPLES
+    quantised = terms.terms["quantisation"].upper ** 2 * 2 * (1 - np.cos(0.9 * np.pi)) / INTERVAL
+    assert quantised < 2 * measured
