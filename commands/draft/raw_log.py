@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from inertial.arrays import Array
 from inertial.formats.columns import column_reader, vectornav_lines
+from inertial.formats.columns.column_layout import names_in_header
 from inertial.formats.columns.column_values import NUMBER
 from inertial.formats.columns.text_lines import BYTE_ORDER_MARK, names_in, without_names
 from inertial.formats.file_type import FileType, file_type_of
@@ -167,10 +168,7 @@ def _layout(
 
 def _names(line: str, delimiter: str | None, length: int) -> list[str]:
     """The names in the last line of a header; none where they do not fit the columns."""
-    line = line.replace("\0", "")  # as the reader has it
-    names = _fields(line.strip().lstrip("#%/").lstrip(), delimiter)
-    if len(names) > 1 and not names[-1]:
-        names = names[:-1]
+    names = names_in_header(line, delimiter)
     fit = len(names) in (length, length - 1) and len(set(names)) == len(names) and all(names)
     return names if fit and not any(map(is_number, names)) else []
 

@@ -238,6 +238,21 @@ def test_a_sensor_that_stands_blank_is_not_recorded_there(decoded):
     assert results["decode/refused"]["reason"][0].startswith("column az is ''")
 
 
+@pytest.mark.parametrize(
+    "header", ['"t","ax","ay","az","gx, raw"', 't, "ax", "ay", "az","gx, raw",']
+)
+def test_names_in_quotes_as_other_programs_write_them(decoded, header):
+    """R's write.csv does, by RFC 4180; a name may hold the delimiter."""
+    layout = (
+        "{kind: columns, delimiter: ',', header_lines: 1, time: {column: t, unit: s}, "
+        "accelerometer: {columns: [ax, ay, az], unit: m/s2}, "
+        "gyro: {columns: ['gx, raw', ~, ~], unit: rad/s}}"
+    )
+    results = decoded(header.encode() + b"\n0,1,2,3,4\n1,5,6,7,8\n", layout)
+    assert results["decode/samples"]["accel_y"].tolist() == [2, 6]
+    assert results["decode/samples"]["gyro_x"].tolist() == [4, 8]
+
+
 def test_a_header_in_the_code_page_of_windows(decoded):
     header = "t,ax,ay,az,gx [°/s],gy [°/s],gz [°/s]\n".encode("cp1252")
     layout = (

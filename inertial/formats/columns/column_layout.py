@@ -4,6 +4,7 @@ The layout is the JSON of the campaign's format (kind `columns`). Columns go by 
 header line of a text or the container gives them, or by number from 1.
 """
 
+import csv
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -105,6 +106,19 @@ class ColumnLayout:
 def without_comment_mark(header: str) -> str:
     """A line of a header, or its first name, without what marks it as a comment."""
     return header.strip().lstrip("#%/").lstrip()
+
+
+def names_in_header(line: str, delimiter: str | None) -> list[str]:
+    """The names of the columns in a line that separates them as the data, quoted or not (RFC 4180).
+
+    Without what marks it as a comment, and without what a serial port held before the first line.
+    """
+    text = without_comment_mark(line.replace("\0", "").replace("\r", " "))
+    if not text:
+        return []
+    fields = text.split() if delimiter is None else next(csv.reader([text], delimiter=delimiter))
+    names = [name.strip().strip('"').strip() for name in fields]
+    return names[:-1] if len(names) > 1 and not names[-1] else names
 
 
 def ticks_per_second(layout: Mapping[str, Any]) -> float:

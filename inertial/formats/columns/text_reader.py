@@ -27,7 +27,7 @@ from inertial.formats.columns import vectornav_lines
 from inertial.formats.columns.column_layout import (
     ColumnLayout,
     column_layout,
-    without_comment_mark,
+    names_in_header,
 )
 from inertial.formats.columns.column_values import ColumnValues, NumberValues, TextValues
 from inertial.formats.columns.data_rows import Place, Reading, sort_rows
@@ -118,17 +118,12 @@ def _beginning(
 
 
 def _names(header: bytes, delimiter: bytes | None) -> list[str]:
-    """The names of the columns in a line of the header, which may be marked as a comment."""
-    header = header.replace(b"\0", b"")  # what a serial port held before the first line
-    if not header:
-        return []
+    """The names of the columns in a line of the header."""
     try:
         text = header.decode("utf-8-sig")
     except UnicodeDecodeError:  # of a program for Windows
         text = header.decode("cp1252", "backslashreplace")
-    row = _separated(without_comment_mark(text).encode(), delimiter)
-    names = [name.strip() for name in row.decode().split(SEPARATOR.decode())]
-    return names[:-1] if len(names) > 1 and not names[-1] else names
+    return names_in_header(text, None if delimiter is None else delimiter.decode())
 
 
 def _usual_length(columns: ColumnLayout, lengths: Mapping[int, int]) -> int:
