@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from commands.draft.columns import Triad
 from commands.draft.manoeuvres import Manoeuvre, leaning, missing
 from commands.draft.questions import GRAVITY, GRAVITY_SIGMA, names_of_logs, questions, without_clock
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
+from commands.draft.triads import Triad
 from commands.new_campaign import comment, flow, in_flow, scalar
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole

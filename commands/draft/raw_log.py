@@ -210,6 +210,12 @@ class RawLog:
         return max((len(values) for values in self.columns.values()), default=0)
 
 
+def finite(values: Array) -> Array:
+    """Those that are numbers; one zero where none is."""
+    there = values[np.isfinite(values)]
+    return there if len(there) else np.zeros(1)
+
+
 def raw_log(path: Path) -> RawLog:
     """The log at `path`.
 

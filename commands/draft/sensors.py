@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from commands.draft.columns import Columns, Named, Triad, columns_of
+from commands.draft.columns import Columns, Named, columns_of
 from commands.draft.gravity import sphere
 from commands.draft.groups import alike, recorded_together, runs_of, sensors_apart
 from commands.draft.raw_log import RawLog
@@ -22,6 +22,7 @@ from commands.draft.scales import (
 from commands.draft.series import Divided, Series, divided
 from commands.draft.tails import without_tail
 from commands.draft.timing import Timing, common_rate, timing_of
+from commands.draft.triads import Triad
 from inertial.arrays import Array
 from inertial.signal.rests_and_motions import BinStretch, rest_level
 from inertial.tables.errors import Refusal

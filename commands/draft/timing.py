@@ -1,4 +1,4 @@
-"""The clock of a log: the unit of its time column, and how many samples a second it has."""
+"""The clock of a log: its time column, the unit of it, and how many samples a second it has."""
 
 import re
 from collections.abc import Sequence
@@ -6,12 +6,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from commands.draft.columns import CLOCK_PARTS
-from commands.draft.raw_log import Name, RawLog
+from commands.draft.raw_log import Name, RawLog, finite
 from inertial.arrays import Array
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 
+MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
+MIN_ADVANCING = 0.5  # of the rows, in which a clock of several columns advances
+CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
+TIME = re.compile(
+    r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]|^ms$|^us$|millis|micros", re.IGNORECASE
+)
+PACKETS = re.compile(r"packet|number|count|index|sequence|\bseq\b|frame|message", re.IGNORECASE)
 UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, "iso8601": 1.0}  # ticks in a second
 USUAL_RATE = 100.0  # Hz: of the units that a time may have, that with the rate nearest to it
 COMMON_RATES = np.array(
@@ -29,6 +35,49 @@ STATED = re.compile(
     r"(?:\bfs|\brate|\bfreq\w*|\bodr|\bhz)\b[^0-9\n]{0,20}([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE
 )
 IN_NAME = re.compile(r"(?:[\[(_ ])(ns|us|µs|ms|s|sec|seconds)(?:[\])]|$)", re.IGNORECASE)
+
+
+def time_of(log: RawLog) -> Name | None:
+    """The column that grows steadily, a named one before others; None where none does.
+
+    The messages of a receiver have one, however few they are.
+    """
+    if log.kind == "rawimus":
+        return "time"
+    growing = [
+        name
+        for name, values in log.columns.items()
+        if grows(values) and not _numbers_packets(name, values)
+    ]
+    named = [name for name in growing if TIME.search(str(name))]
+    # A temperature T that rises stands still from row to row.
+    named.sort(key=lambda name: np.mean(np.diff(finite(log.columns[name])) > 0) < MIN_ADVANCING)
+    return next(iter(named + growing), None)
+
+
+def _numbers_packets(name: Name, values: Array) -> bool:
+    """Whether a column by its name counts packets, of which not all are samples: no clock."""
+    if not PACKETS.search(str(name)) or TIME.search(str(name)):
+        return False
+    steps = np.diff(finite(values))
+    return not (values % 1).any() and len(steps) > 0 and 1 - np.mean(steps == 1) > MAX_RESETS
+
+
+def grows(values: Array) -> bool:
+    """Whether values grow as a clock does: hardly ever back, as much in each part of the log."""
+    values = values[np.isfinite(values)]
+    if len(values) < 2 * CLOCK_PARTS:
+        return False
+    steps = np.diff(values)
+    usual_step = np.median(steps)
+    if usual_step > 0 and np.mean(steps == usual_step) >= 1 - MAX_RESETS:
+        return True  # it counts, though it begin again at times
+    if usual_step > 0 and (steps >= 0).all() and np.mean(steps < 2 * usual_step) >= 1 - MAX_RESETS:
+        return True  # though the recording pause
+    growth = np.diff(values[np.linspace(0, len(values) - 1, CLOCK_PARTS + 1).astype(int)])
+    usual = float(np.median(growth))
+    alike = np.abs(growth - usual) < usual / 2
+    return bool(usual > 0 and np.mean(steps < 0) <= MAX_RESETS and alike.mean() >= 0.7)
 
 
 @dataclass(frozen=True)
