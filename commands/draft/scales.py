@@ -1,46 +1,28 @@
-"""Units and count sizes: accelerometers by gravity, gyros by how gravity's direction turns.
-
-Of a receiver's counts, which listed instrument they are of: by gravity, rate and round turns.
-"""
+"""Units and count sizes: accelerometers by gravity, gyros by how gravity's direction turns."""
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from commands.draft.gravity import Gravity, gravity_in
-from commands.draft.series import Divided, Still
+from commands.draft.series import Divided
+from commands.draft.turning import FIRST_SIGMA, USUAL_GYRO_COUNTS, Turning
 from inertial.arrays import Array
-from inertial.estimation.attitude import integrate
-from inertial.signal.axis_permutations import Permutation
-from inertial.signal.gravity_turned import turned
-from inertial.tables.yaml_file import YamlFile
+from inertial.signal.axis_permutations import AS_NAMED, Permutation
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.units import STANDARD_GRAVITY
+from inertial.text.units import CHANNEL_UNITS, DEGREE, STANDARD_GRAVITY
 
 MAX_UNIT_ERROR = 0.1  # of a reading in a unit: bias and scale factor
-MAX_COUNT_ERROR = 0.05  # of a usual count size
-MIN_TILT = np.radians(20)  # between two static positions, that shows the scale of the gyros
-MAX_TILT = np.radians(160)
+MAX_COUNT_ERROR = 0.1  # of a usual count size
 MIN_STRAIGHT = 0.9  # share of a rotation about one axis
 MAX_OFF_WHOLE = 0.06  # of a turn by hand, and of its gyro, to the whole multiples
 MAX_WHOLE = 3.5  # of these multiples in one turn
 MIN_OTHER_RANGE, MAX_OFF_RANGE = 1 / 8, 0.15  # factors between ranges; error of one, relative
-LARGE = 0.95  # quantile of the rates that is about 1 rad/s
-MIN_FACTOR_SIGMA = 10.0  # of the factor by the change of gravity's direction, to be one
-FIRST_SIGMA = 0.1  # relative, of a factor by the change of gravity's direction alone
-MAX_MISS = np.radians(30)  # of a direction: a motion that misses by more says no more
-MAX_WAYS = 20  # motions by which the factor is refined, the shortest of all
-RANGE, STEP = 0.4, 0.02  # about the first factor, relative
 GYRO_COUNTS_BESIDE = {16384.0: 131.0, 8192.0: 65.5, 4096.0: 32.8, 2048.0: 16.4}  # in 1 g: in 1 °/s
-USUAL_GYRO_COUNTS = (131.0, 65.5, 32.8, 16.4, 228.6, 114.3, 57.1, 28.6, 14.3)  # in 1 °/s
 MAX_RAD_S = 40.0  # rad/s: gyros that read more read °/s
-DEGREE = np.pi / 180
-AS_NAMED = Permutation((0, 1, 2), (1, 1, 1))
 GYRO_UNIT = {
     "deg/s": re.compile(r"deg|dps|°", re.IGNORECASE),
     "rad/s": re.compile(r"rad", re.IGNORECASE),
@@ -70,8 +52,7 @@ class Scale:
     @property
     def size(self) -> float:
         """One count, or one of the unit, in SI."""
-        units = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": DEGREE}
-        return units[self.unit] / (self.counts or 1.0)
+        return CHANNEL_UNITS[self.unit] / (self.counts or 1.0)
 
     def in_si(self, values: Array) -> Array:
         """Readings (n, 3) in SI, along the axes of the other sensor."""
@@ -100,29 +81,25 @@ def accel_scale(recordings: Sequence[Divided]) -> Scale:
     zero = zero_of(values)
     found = gravity_in(recordings, zero)
     scale = _unit(found, values, recordings[0].series.accel_hz, zero)
-    if found.doubt or not scale.guessed or scale.increments:
-        return replace(scale, doubt=found.doubt)
-    return replace(
-        scale, doubt=_no_unit(values, found.length, {"g": 1.0, "m/s²": STANDARD_GRAVITY})
-    )
+    doubt = found.doubt
+    if not doubt and scale.guessed and not scale.increments:
+        doubt = _no_unit(values, found.length, {"g": 1.0, "m/s²": STANDARD_GRAVITY})
+    return replace(scale, doubt=doubt)
 
 
 def _unit(found: Gravity, values: Array, rate: float, zero: float) -> Scale:
     """The unit in which gravity has this length; `values`: (n, 3), at `rate`, Hz."""
-    length, seen = found.length, found.seen
+    length, seen, whole, step = found.length, found.seen, are_counts(values), 1 / rate
     for of_gravity, unit, counts in (
         (STANDARD_GRAVITY, "m/s2", None),
         (1.0, "g", None),
         (1000.0, "g", 1000.0),
         (100 * STANDARD_GRAVITY, "m/s2", 100.0),
     ):
-        if abs(length / of_gravity - 1) < MAX_UNIT_ERROR and not (
-            counts is None and are_counts(values)
-        ):
+        if abs(length / of_gravity - 1) < MAX_UNIT_ERROR and not (counts is None and whole):
             return Scale(unit, counts, zero, seen, False)
-    step = 1 / rate
     for of_gravity, unit in ((STANDARD_GRAVITY, "m/s2"), (1.0, "g")):
-        if abs(length / (of_gravity * step) - 1) < MAX_UNIT_ERROR and not are_counts(values):
+        if abs(length / (of_gravity * step) - 1) < MAX_UNIT_ERROR and not whole:
             what = _("{seen}: increments over {step} s", seen=seen, step=significant(step))
             return Scale(unit, step, zero, what, True, increments=True)
     power = float(2.0 ** np.round(np.log2(length)))
@@ -160,115 +137,6 @@ def _no_unit(values: Array, readings: float, usual: Mapping[str, float]) -> str:
     )
 
 
-@dataclass(frozen=True)
-class Turning:
-    """What takes raw gyros to rad/s: a factor with its relative sigma, and the axes they read.
-
-    `shares`: as in `Scale`.
-    """
-
-    factor: float
-    sigma: float
-    axes: Permutation
-    shares: tuple[tuple[float, float], ...] = ()
-
-
-def turning(recordings: Sequence[Divided], force: Scale) -> Turning | None:
-    """The factor of raw gyros by gravity's direction in motion; None where it hardly turns."""
-    both = [own for own in recordings if len(own.series.gyro) and len(own.series.accel)]
-    if not any(own.rests for own in both):
-        return None
-    gravity = gravity_in(both, force.zero)
-    centre, length = gravity.centre, gravity.length
-    # Of rates in any unit the largest are made 1 rad/s, about as they are.
-    speed = np.concatenate([np.linalg.norm(own.rates - own.level, axis=1) for own in both])
-    one = float(np.quantile(speed, LARGE))
-    found = turned(
-        [
-            ((own.forces - force.zero) / length, (own.rates - own.level) / one, step)
-            for own in both
-            for step in [own.series.bin_seconds()]
-        ]
-    )
-    if found is None:
-        return _usual(
-            [way for each in both for way in _ways(each, force, centre, length, AS_NAMED)]
-        )
-    axes = found.axes or AS_NAMED
-    place = (np.arange(3), np.array(axes.sources))
-    own, weight = found.matrix[place] * np.array(axes.signs), found.sigma[place] ** -2
-    factor = float(np.sum(own * weight) / np.sum(weight))
-    if factor < MIN_FACTOR_SIGMA / np.sqrt(np.sum(weight)):
-        return None
-    ways = [way for each in both for way in _ways(each, force, centre, length, axes)]
-    shares = np.column_stack([found.matrix[place], found.sigma[place]]) / factor
-    first = Turning(factor / one, FIRST_SIGMA, axes, tuple(map(tuple, shares.tolist())))
-    # Without a centre the directions at rest are off by the bias.
-    return _refined(first, ways) if ways and centre.any() else first
-
-
-Way = tuple[Array, Array, Array, float]  # direction before and after, raw rates (k, 3), their step
-
-
-def _ways(own: Divided, force: Scale, centre: Array, length: float, axes: Permutation) -> list[Way]:
-    """What carries gravity's direction from one static position to the next."""
-    if not len(own.series.gyro) or not len(own.series.accel):
-        return []
-
-    def up(rest: Still) -> Array:
-        return np.asarray((rest.accel - force.zero - centre) / length)
-
-    edges = own.series.edges(own.series.gyro)
-    ways: list[Way] = []
-    for before, after in own.passages():
-        first, second = up(before), up(after)
-        first, second = first / np.linalg.norm(first), second / np.linalg.norm(second)
-        if not MIN_TILT < np.arccos(np.clip(first @ second, -1, 1)) < MAX_TILT:
-            continue
-        inside = slice(
-            edges[max(before.after - 2, 0)], edges[min(after.first + 2, own.series.bins)]
-        )
-        rates = own.series.gyro[inside] - (before.gyro + after.gyro) / 2
-        rates = rates[:, list(axes.sources)] * np.array(axes.signs)
-        if len(rates) > 2:
-            ways.append((first, second, rates, 1 / own.series.gyro_hz))
-    return ways
-
-
-def _usual(ways: Sequence[Way]) -> Turning | None:
-    """Of the usual units and count sizes that which carries the directions from rest to rest."""
-    sizes = [1.0, DEGREE, *(DEGREE / counts for counts in USUAL_GYRO_COUNTS)]
-    misses = [sum(_miss(way, size) for way in ways) for size in sizes]
-    best = int(np.argmin(misses))
-    if not ways or misses[best] > len(ways) * MAX_MISS**2:
-        return None
-    return Turning(sizes[best], FIRST_SIGMA, AS_NAMED)
-
-
-def _refined(first: Turning, ways: Sequence[Way]) -> Turning:
-    """The factor that carries the directions from rest to rest, where that is the surer one."""
-    ways = sorted(ways, key=lambda way: len(way[2]))[:MAX_WAYS]
-    factors = first.factor * np.arange(1 - RANGE, 1 + RANGE, STEP)
-    misses = np.array([[_miss(way, each) for each in factors] for way in ways])
-    total = np.sum(np.minimum(misses, MAX_MISS**2), axis=0)
-    best = int(np.argmin(total))
-    curve = np.polyfit(factors[max(best - 2, 0) : best + 3], total[max(best - 2, 0) : best + 3], 2)
-    if curve[0] <= 0:
-        return first
-    residual = float(total[best]) / max(2 * len(ways) - 1, 1)
-    sigma = float(np.sqrt(residual / curve[0]))
-    value = float(np.clip(-curve[1] / (2 * curve[0]), factors[0], factors[-1]))
-    refined = replace(first, factor=value, sigma=max(sigma / value, STEP))
-    return min(first, refined, key=lambda each: each.sigma)
-
-
-def _miss(way: Way, factor: float) -> float:
-    """The square of the angle by which a motion misses the direction after it, rad²."""
-    before, after, rates, step = way
-    there = integrate(factor * rates, np.full(len(rates), step)).whole @ before
-    return float(np.arccos(np.clip(there @ after, -1, 1)) ** 2)
-
-
 def _straight_turns(recordings: Sequence[Divided]) -> Array:
     """The largest rotations about one axis, in the unit of the gyros times s."""
     turns = []
@@ -278,8 +146,9 @@ def _straight_turns(recordings: Sequence[Divided]) -> Array:
                 rates = own.rates[stretch.first : stretch.after] - own.level
                 net, path = np.linalg.norm(rates.sum(axis=0)), np.linalg.norm(rates, axis=1).sum()
                 if net > MIN_STRAIGHT * path:
-                    turns.append(float(net * own.series.bin_seconds()))
-    return np.array([turn for turn in turns if turn > max(turns) / 2])
+                    turns.append(net * own.series.bin_seconds())
+    every = np.array(turns)
+    return np.asarray(every[every > every.max(initial=0.0) / 2])
 
 
 def turn_misfit(recordings: Sequence[Divided], size: float, whole: float = 2 * np.pi) -> float:
@@ -293,16 +162,17 @@ def turn_misfit(recordings: Sequence[Divided], size: float, whole: float = 2 * n
     return float(np.abs(ratios / np.maximum(np.round(ratios), 1) - 1).max())
 
 
-def _by_turns(recordings: Sequence[Divided], counts: bool) -> tuple[str, float | None, str] | None:
-    """What makes the motions whole turns: a sentence, counts in 1 °/s or none, and the unit."""
-    sizes: dict[tuple[str, float | None], float] = {("deg/s", None): DEGREE, ("rad/s", None): 1.0}
+def _by_turns(recordings: Sequence[Divided], counts: bool, zero: float) -> Scale | None:
+    """The unit, or the count size, in which the motions are whole turns; None where in none."""
+    tried: list[tuple[str, float | None]] = [("deg/s", None), ("rad/s", None)]
     if counts:
-        sizes = {("deg/s", each): DEGREE / each for each in USUAL_GYRO_COUNTS}
+        tried = [("deg/s", each) for each in USUAL_GYRO_COUNTS]
     for whole in (2 * np.pi, np.pi, np.pi / 2):
-        for (unit, own_counts), size in sizes.items():
-            if turn_misfit(recordings, size, whole) < MAX_OFF_WHOLE:
-                what = _("so that turns are multiples of {degrees:.0f}°", degrees=np.degrees(whole))
-                return what, own_counts, unit
+        what = _("so that turns are multiples of {degrees:.0f}°", degrees=np.degrees(whole))
+        for unit, own_counts in tried:
+            scale = Scale(unit, own_counts, zero, what, True)
+            if turn_misfit(recordings, scale.size, whole) < MAX_OFF_WHOLE:
+                return scale
     return None
 
 
@@ -318,26 +188,23 @@ def gyro_scale(
     """
     values = np.concatenate([own.series.gyro for own in recordings])
     zero = zero_of(values)
-    named = next(
-        (u for u, p in GYRO_UNIT.items() if any(isinstance(n, str) and p.search(n) for n in names)),
-        None,
-    )
-    thousandths = any(isinstance(n, str) and THOUSANDTH.search(n) for n in names)
-    if turns is None:
-        if named is not None:
-            return Scale(named, 1000.0 if thousandths else None, zero, _("by their names"), False)
-        if (found := _by_turns(recordings, are_counts(values))) is not None:
-            return Scale("deg/s" if found[1] else found[2], found[1], zero, found[0], True)
-        return _by_size(values, zero, accel)
-    return _by_motion(recordings, turns, values, thousandths)
+    words = [name for name in names if isinstance(name, str)]
+    thousandths = any(map(THOUSANDTH.search, words))
+    if turns is not None:
+        return _by_motion(recordings, turns, values, thousandths)
+    named = next((unit for unit, p in GYRO_UNIT.items() if any(map(p.search, words))), None)
+    if named is not None:
+        return Scale(named, 1000.0 if thousandths else None, zero, _("by their names"), False)
+    by_turns = _by_turns(recordings, are_counts(values), zero)
+    return _by_size(values, zero, accel) if by_turns is None else by_turns
 
 
 def _by_size(values: Array, zero: float, accel: Scale | None) -> Scale:
     """A guess, where no turn shows the unit: whole numbers are counts, of a size that is asked."""
     largest = float(np.abs(values - zero).max())
-    beside = (accel is not None and accel.counts) or None
+    beside = (accel.counts if accel else None) or 0.0
     if are_counts(values) and (beside or largest > MAX_RAD_S):
-        counts = GYRO_COUNTS_BESIDE.get(beside or 0.0, USUAL_GYRO_COUNTS[0])
+        counts = GYRO_COUNTS_BESIDE.get(beside, USUAL_GYRO_COUNTS[0])
         usual = ", ".join(f"{each:g}" for each in USUAL_GYRO_COUNTS)
         doubt = _(
             "they read counts, and no turn shows how many are in 1 °/s; which range was set? Usual "
@@ -378,52 +245,3 @@ def _by_motion(
     what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
     doubt = _no_unit(values, per_degree, {"°/s": 1.0, "rad/s": DEGREE})
     return Scale("deg/s", counts, zero, what, True, axes, shares, doubt=doubt)
-
-
-# ---- The instrument of a receiver's counts.
-
-INSTRUMENTS = Path(__file__).parents[2] / "data/instruments.yaml"
-MAX_COUNT_ERROR, MAX_RATE_ERROR = 0.1, 0.05  # relative
-RECEIVER_AXES = ["z", "-y", "x"]  # of every receiver of NovAtel
-
-
-@dataclass(frozen=True)
-class Receiver:
-    """An instrument as the campaign file names it or writes it out."""
-
-    instrument: str | dict[str, Any]
-    accel: Scale
-    gyro: Scale
-
-
-def receiver_of(recordings: Sequence[Divided], rate: float) -> Receiver:
-    """The instrument of these counts at `rate`, Hz."""
-    length = gravity_in(recordings).length
-    count = STANDARD_GRAVITY / length / rate
-    seen = _("|f| at rest makes one count {count} m/s", count=significant(count))
-    listed = YamlFile(INSTRUMENTS).content
-    fitting = {}
-    for name, entry in listed.items():
-        own = entry.get("accelerometer", {}).get("count_m_s")
-        same_rate = abs(entry.get("rate_hz", rate) / rate - 1) < MAX_RATE_ERROR
-        if own and same_rate and abs(own / count - 1) < MAX_COUNT_ERROR:
-            size = entry["gyro"]["count_rad"]
-            fitting[name] = (turn_misfit(recordings, size * rate), own, size)
-    if fitting:
-        least = min(misfit for misfit, *_sizes in fitting.values())
-        best = [name for name, own in fitting.items() if own[0] <= least + 1e-9]
-        _misfit, own, size = fitting[best[0]]
-        why = _("{seen}, that of {names}", seen=seen, names=", ".join(best))
-        return Receiver(
-            best[0],
-            Scale("m/s2", 1 / (own * rate), 0.0, why, False),
-            Scale("rad/s", 1 / (size * rate), 0.0, why, False),
-        )
-    accel = Scale("m/s2", length / STANDARD_GRAVITY, 0.0, seen, True)
-    gyro = gyro_scale(recordings, turning(recordings, accel), [])
-    entry = {
-        "axes": RECEIVER_AXES,
-        "gyro": {"count_rad": float(f"{gyro.size / rate:.4g}")},
-        "accelerometer": {"count_m_s": float(f"{count:.4g}")},
-    }
-    return Receiver(entry, accel, gyro)

@@ -9,20 +9,13 @@ from commands.draft.columns import Columns, Named, columns_of
 from commands.draft.gravity import sphere
 from commands.draft.groups import alike, recorded_together, runs_of, sensors_apart
 from commands.draft.raw_log import RawLog
-from commands.draft.scales import (
-    Receiver,
-    Scale,
-    Turning,
-    accel_scale,
-    are_counts,
-    gyro_scale,
-    receiver_of,
-    turning,
-)
+from commands.draft.receiver import Receiver, receiver_of
+from commands.draft.scales import Scale, accel_scale, are_counts, gyro_scale
 from commands.draft.series import Divided, Series, divided
 from commands.draft.tails import without_tail
 from commands.draft.timing import Timing, common_rate, timing_of
 from commands.draft.triads import Triad
+from commands.draft.turning import Turning, turning
 from inertial.arrays import Array
 from inertial.signal.rests_and_motions import BinStretch, rest_level
 from inertial.tables.errors import Refusal
@@ -57,6 +50,11 @@ class Kind:
     divided: Sequence[Divided]  # of each part, in SI
     receiver: Receiver | None = None
     means: bool = False  # each row is a mean of its own
+
+    @property
+    def recordings(self) -> list[Sequence[RawLog]]:
+        """The logs of each recording, which parts share that labels divide."""
+        return list({id(part.logs): part.logs for part in self.parts}.values())
 
     @property
     def interleaved(self) -> bool:
@@ -97,7 +95,7 @@ def _kind(group: Sequence[Sequence[RawLog]], sensor: Named | None, rate: float |
         return Kind(columns, timing, receiver.accel, receiver.gyro, parts, own, receiver)
     accel = accel_scale(own) if columns.accel else None
     _refuse_without_gravity(accel, columns, group)
-    turned = turning(own, accel) if accel and columns.gyro else None
+    turned = turning(own, accel.zero) if accel and columns.gyro else None
     gyro = None
     if columns.gyro:
         gyro = gyro_scale(own, turned, columns.gyro.columns, accel)

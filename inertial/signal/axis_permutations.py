@@ -72,6 +72,9 @@ class Permutation:
         return np.array(self.signs) * vector[list(self.sources)]
 
 
+AS_NAMED = Permutation((0, 1, 2), (1, 1, 1))
+
+
 def composed(second: Permutation, first: Permutation) -> Permutation:
     """One permutation after another."""
     sources = tuple(first.sources[i] for i in second.sources)

@@ -9,13 +9,14 @@ import pandas as pd
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.campaign.records import Manoeuvre, Performed
+from inertial.signal.axis_permutations import AS_NAMED
 from inertial.signal.detector import channel_name
 from inertial.signal.rests_and_motions import BinStretch
 from inertial.tables import CHANNELS
 from inertial.text.messages import _
 from inertial.text.numbers import fixed
 from inertial.text.units import STANDARD_GRAVITY
-from stages.segment.located import AS_NAMED, Located
+from stages.segment.located import Located
 from stages.segment.matching import motion
 from stages.segment.recording_explanations import ExplainedRecording
 from stages.segment.windows import Binned, rate_about

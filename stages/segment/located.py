@@ -10,7 +10,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
-from inertial.signal.axis_permutations import Permutation
+from inertial.signal.axis_permutations import AS_NAMED, Permutation
 from inertial.signal.rests_and_motions import (
     BinStretch,
     moving,
@@ -25,7 +25,6 @@ MIN_ALIKE_COSINE = float(np.cos(np.radians(1)))  # of directions of rests that l
 MIN_QUIETER = 25.0  # of chi-squared: by less, parts of a still stretch change alike
 MOVES_OF_PARTS = 3  # rounds in which each part is moved between its neighbours
 MIN_ROOM = 0.9  # share of the time of several rests that a still stretch must last to hold them
-AS_NAMED = Permutation((0, 1, 2), (1, 1, 1))
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,14 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import (
+    AS_NAMED,
     PERMUTATIONS,
     Permutation,
     read_as_other_axes,
     simplicity,
 )
 from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA
-from stages.segment.located import AS_NAMED, AS_PLANNED, Axes, Division, Located, divide, locate
+from stages.segment.located import AS_PLANNED, Axes, Division, Located, divide, locate
 from stages.segment.matching import MAX_WHOLE_DIFFERENCE, MIN_SCALE_RATIO
 from stages.segment.rest_readings import earth_seen, forces_at_rest, level_of
 from stages.segment.steps import (

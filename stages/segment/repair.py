@@ -14,7 +14,7 @@ from inertial.arrays import Array
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre, Row
 from inertial.sensors import PLURAL
-from inertial.signal.axis_permutations import Permutation, composed
+from inertial.signal.axis_permutations import AS_NAMED, Permutation, composed
 from inertial.signal.detector import Given
 from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import Misread, Rescaled, Reversed, SpansOff, Swapped
@@ -22,7 +22,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from inertial.text.typography import capital
 from stages.segment.detection import Undone, in_order, misread_in, swapped_in
-from stages.segment.located import AS_NAMED, AS_PLANNED
+from stages.segment.located import AS_PLANNED
 from stages.segment.recording_explanations import (
     ExplainedRecording,
     explained_of,

@@ -12,7 +12,7 @@ import pandas as pd
 from inertial.arrays import Array
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre
-from inertial.signal.axis_permutations import Permutation
+from inertial.signal.axis_permutations import AS_NAMED, Permutation
 from inertial.signal.detector import Given, Log
 from inertial.signal.gravity_turned import Turned, turned
 from inertial.signal.misread_axes import determinant
@@ -25,7 +25,7 @@ from inertial.signal.scale_factor import (
     factors_near,
 )
 from inertial.text.messages import _
-from stages.segment.located import AS_NAMED, Located
+from stages.segment.located import Located
 from stages.segment.matching import motion
 from stages.segment.recording_explanations import ExplainedRecording
 from stages.segment.steps import BY_GRAVITY, Step, axes_step

@@ -13,6 +13,7 @@ from inertial.campaign.masked_samples import Masks, RecordIndex, Repairs, read_o
 from inertial.campaign.records import Manoeuvre, Performed, Row, clocks_of, manoeuvres_of, rows_of
 from inertial.detectors import OF_PLAN, OF_RESTS
 from inertial.sensors import COLUMNS
+from inertial.signal.axis_permutations import AS_NAMED
 from inertial.signal.detector import Log
 from inertial.signal.plan_detector import SpansOff
 from inertial.tables import CHANNEL_REPAIRS, STATIC_PHASES
@@ -24,7 +25,7 @@ from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, Recording, compare, recorded_of
 from stages.segment.encoder import ByEncoder, plan_by_encoder, without_unused
-from stages.segment.located import AS_NAMED, Located
+from stages.segment.located import Located
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
 from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken

@@ -8,12 +8,11 @@ import pytest
 from diagnosis.test_real_recordings import campaign, columns
 from moved_by_hand import TWENTY_FOUR, attitudes, by_hand
 
-from inertial.signal.axis_permutations import Permutation
+from inertial.signal.axis_permutations import AS_NAMED, Permutation
 from inertial.signal.gravity_turned import turned
 
 GRAVITY, RATE, FINE = 9.81, 100, 10
 BIAS = np.array([4.0, -1.0, 6.0])  # m/s², 0.75 g
-AS_NAMED = Permutation((0, 1, 2), (1, 1, 1))
 
 
 def moved(seed, positions=12, jerk=0.5, *, sudden=False):
