@@ -44,6 +44,7 @@ def free_folder(name: str, data: Path) -> Path:
 # ---- The text of a campaign file: comments, and values as YAML on one line
 
 LINE_WIDTH = 100
+GUESS = "# guessed:"
 PLAIN = re.compile(r"^[A-Za-z][\w-]*$")
 WORDS = {"true", "false", "null", "yes", "no", "on", "off", "y", "n"}
 
@@ -54,6 +55,11 @@ def comment(text: str, first: str = "# ") -> list[str]:
     return textwrap.wrap(
         text, LINE_WIDTH, initial_indent=first, subsequent_indent=indent, break_on_hyphens=False
     )
+
+
+def guess(why: str) -> str:
+    """A comment behind what is a guess."""
+    return f"  {GUESS} {why}"
 
 
 def flow(**keys: Any) -> str:

@@ -7,23 +7,27 @@ from typing import Any
 
 import numpy as np
 
-from commands.draft.manoeuvres import Manoeuvre, leaning, missing
-from commands.draft.questions import GRAVITY, GRAVITY_SIGMA, names_of_logs, questions, without_clock
-from commands.draft.scales import Scale, are_counts
+from commands.draft.formats import (
+    format_name,
+    formats,
+    instrument,
+    logs_of,
+    part_of,
+    wired_otherwise,
+)
+from commands.draft.header import header
+from commands.draft.manoeuvres import Manoeuvre, leaning
+from commands.draft.questions import GRAVITY, GRAVITY_SIGMA
 from commands.draft.sensors import Kind
-from commands.draft.triads import Triad
-from commands.new_campaign import comment, flow, in_flow, scalar
+from commands.new_campaign import GUESS, flow, guess, in_flow, scalar
 from inertial.text.messages import _
-from inertial.text.numbers import fixed, significant, whole
+from inertial.text.numbers import significant
 
 HAND_POSITION, TABLE_SIGMA = 3600, 180  # arc seconds, of what a person or an unknown table sets
 HAND_TURN, FEW_TURNS = 8.0, 3  # °, sigma of an angle by hand; turns that show it
 BEST_HAND_TURN = 5.0  # degrees, sigma of an angle by hand that the gyros confirm
 TABLE_RATE = 1000  # ppm, of a table of which nothing is known
-LARGEST_COUNT = 32767
-VERSION, GUESS = "campaign: 1", "# guessed:"
-BOTH = ("accelerometer", "gyro")  # sensors in one file
-MAX_LEFT_OUT = 0.25  # of a log, that is in no manoeuvre without a word
+VERSION = "campaign: 1"
 
 
 def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -> str:
@@ -31,35 +35,31 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
     by_hand = not any(m.by_table for m in plan)
     site = {"latitude_deg": None, "gravity_m_s2": GRAVITY, "gravity_sigma_m_s2": GRAVITY_SIGMA}
     anywhere = _("gravity anywhere on earth; a latitude and height make it better")
-    formats = _formats(kinds)
+    named = formats(kinds)
     logs = {m.part.logs[0].path.name for m in plan}
     lines = [
-        *_head(kinds, plan, name, by_hand),
+        *header(kinds, plan, name, by_hand),
         VERSION,
-        *_instrument(kinds, name),
+        *instrument(kinds, name),
         "serial: unknown",
         "date: unknown",
-        f"site: {flow(**site)}{_guess(anywhere)}",
-        *(f"notes: {scalar(text)}" for text in _wired_otherwise(kinds)),
+        f"site: {flow(**site)}{guess(anywhere)}",
+        *(f"notes: {scalar(text)}" for text in wired_otherwise(kinds)),
         *_table(plan, by_hand),
-        *(["formats:"] if formats else []),
-        *(line for lines in formats.values() for line in lines),
+        *(["formats:"] if named else []),
+        *(line for lines in named.values() for line in lines),
     ]
     if len(logs) == 1:
-        lines += [f"{key}: {in_flow(value)}" for key, value in _logs_of(plan[0], kinds).items()]
+        lines += [f"{key}: {in_flow(value)}" for key, value in logs_of(plan[0], kinds).items()]
     lines.append("plan:")
     sigma = _angle_sigma(plan)
     for m, own, position in zip(plan, _ids(plan), _positions(plan), strict=True):
-        keys = {
-            "id": own,
-            **position,
-            **_keys(m, None if m.by_table else sigma),
-            **_where(m, kinds),
-        }
+        stated = _keys(m, None if m.by_table else sigma)
+        keys = {"id": own, **position, **stated, **part_of(m, kinds)}
         if len(kinds) > 1:
-            keys["format"] = _format_name(m, kinds)
+            keys["format"] = format_name(m, kinds)
         if len(logs) > 1:
-            keys |= _logs_of(m, kinds)
+            keys |= logs_of(m, kinds)
         lines.append(f"  - {flow(**keys)}{_seen(m)}")
     told = _("delete each when it is confirmed")
     lines.insert(lines.index(VERSION) + 1, f"guessed: {in_flow(_guessed(lines))}  # {told}")
@@ -77,260 +77,6 @@ def _guessed(lines: Sequence[str]) -> list[str]:
     return list(found)
 
 
-def _place(m: Manoeuvre, kinds: Sequence[Kind]) -> int:
-    """The number of the kind of log that a manoeuvre is in, from 1."""
-    return next(n for n, k in enumerate(kinds, 1) if any(part is m.part for part in k.parts))
-
-
-def _format_name(m: Manoeuvre, kinds: Sequence[Kind]) -> str:
-    """The format of its log: of equal ones the first."""
-    own = list(_format(kinds[_place(m, kinds) - 1], BOTH))
-    return (
-        f"format-{next(n for n, kind in enumerate(kinds, 1) if list(_format(kind, BOTH)) == own)}"
-    )
-
-
-def _logs_of(m: Manoeuvre, kinds: Sequence[Kind]) -> dict[str, Any]:
-    """The log of a manoeuvre, and that of the gyros where they have one of their own."""
-    files = [log.path.name for log in m.part.logs]
-    columns = kinds[_place(m, kinds) - 1].columns
-    if len(files) == 1 or columns.accel is None or columns.gyro is None:
-        return {"log": files[0]}
-    gyro = {"log": files[columns.gyro.file], "format": f"gyros-{_place(m, kinds)}"}
-    return {"log": files[columns.accel.file], "gyro": gyro}
-
-
-def _where(m: Manoeuvre, kinds: Sequence[Kind]) -> dict[str, Any]:
-    """Where in its log a manoeuvre is."""
-    if m.part.label is not None:
-        return {"where": {kinds[_place(m, kinds) - 1].columns.label: m.part.label}}
-    if m.rows is None:
-        return {}
-    if len(m.part.logs) > 1:
-        rate = m.part.series.accel_hz
-        return {"span": [round(row / rate, 2) for row in m.rows]}
-    return {"rows": list(m.rows)}
-
-
-# ---- the comments at the top
-
-
-def _head(
-    kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str, by_hand: bool
-) -> Iterator[str]:
-    yield from comment(
-        _(
-            "{name}, drafted from its logs. What is marked `guessed:` is a guess with a sigma that "
-            "fits one; whoever knows better writes it here. Then: make check CAMPAIGN={name}, "
-            "make report CAMPAIGN={name}",
-            name=name,
-        )
-    )
-    yield "#"
-    yield from comment(_("Questions that only a person can answer:"))
-    for number, question in enumerate(questions(kinds, plan, by_hand), 1):
-        yield from comment(question, f"#   {number}. ")
-    yield "#"
-    yield from comment(_("What the logs are:"))
-    for kind in kinds:
-        for text in _evidence(kind):
-            yield from comment(text, "#   - ")
-    for text in _left_out(kinds, plan):
-        yield from comment(text, "#   - ")
-    yield "#"
-    lacking = list(missing(kinds, plan))
-    yield from comment(
-        _("What is missing for a calibration of both sensors:")
-        if lacking
-        else _("Nothing is missing for a calibration of both sensors.")
-    )
-    for text in lacking:
-        yield from comment(text, "#   - ")
-
-
-def _evidence(kind: Kind) -> Iterator[str]:
-    columns, timing = kind.columns, kind.timing
-    rows = sum(logs[0].rows for logs in {id(p.logs): p.logs for p in kind.parts}.values())
-    if kind.means:
-        yield _(
-            "{logs}: {rows} rows; {why}",
-            logs=names_of_logs(kind),
-            rows=whole(rows),
-            why=timing.evidence,
-        )
-    else:
-        seconds = sum(part.series.seconds for part in kind.parts)
-        yield _(
-            "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz{assumed}; {why}",
-            logs=names_of_logs(kind),
-            rows=whole(rows),
-            seconds=seconds,
-            rate=significant(timing.rate),
-            assumed=_(", a rate that is assumed") if without_clock(timing) else "",
-            why=timing.evidence,
-        )
-    which = []
-    for word, triad in ((_("accelerometers"), columns.accel), (_("gyros"), columns.gyro)):
-        if triad is not None:
-            which.append(f"{word} {', '.join(map(str, triad.columns))}")
-    yield _("{which}: {why}", which="; ".join(which), why=columns.evidence)
-    for word, scale in ((_("accelerometers"), kind.accel), (_("gyros"), kind.gyro)):
-        if scale is not None:
-            yield f"{word}: {scale.evidence}"
-    for log in {log.path: log for part in kind.parts for log in part.logs if log.left_out}.values():
-        yield _(
-            "{log}: its last {count} rows hold no samples, for nothing changes in them; they are "
-            "not used",
-            log=log.path.name,
-            count=whole(log.left_out),
-        )
-    if columns.unused:
-        yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
-
-
-def _left_out(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
-    """Long stretches of a log that are in no manoeuvre, such as a journey after a calibration."""
-    for part in (part for kind in kinds for part in kind.parts):
-        taken = sorted(m.rows or part.rows for m in plan if m.part is part)
-        edges = [part.rows[0], *(edge for rows in taken for edge in rows), part.rows[1]]
-        stretches = zip(edges[::2], edges[1::2], strict=True)
-        first, after = max(stretches, key=lambda rows: rows[1] - rows[0])
-        share = (after - first) / (part.rows[1] - part.rows[0])
-        if taken and share > MAX_LEFT_OUT:
-            yield _(
-                "{log}: its rows from {first} to {after}, {share:.0f} % of it, are in no manoeuvre "
-                "of the plan",
-                log=part.logs[0].path.name,
-                first=whole(first),
-                after=whole(after),
-                share=100 * share,
-            )
-
-
-# ---- instrument and formats
-
-
-def _instrument(kinds: Sequence[Kind], name: str) -> Iterator[str]:
-    receiver = next((kind.receiver for kind in kinds if kind.receiver), None)
-    if receiver is not None and isinstance(receiver.instrument, str):
-        yield f"instrument: {receiver.instrument}{_guess(receiver.accel.evidence)}"
-        return
-    yield "instrument:"
-    yield f"  name: {scalar(name)}" + _guess(_("the name of the campaign"))
-    if receiver is not None and not isinstance(receiver.instrument, str):
-        for key, value in receiver.instrument.items():
-            yield f"  {key}: {in_flow(value)}" + _guess(receiver.accel.evidence)
-    elif (axes := _axes(kinds)) is not None:
-        yield f"  gyro: {flow(axes=axes)}" + _guess(_("gravity turns as if so"))
-    if len(kinds) == 1:
-        yield "  format:"
-        yield from _format(kinds[0], BOTH)
-
-
-def _axes(kinds: Sequence[Kind]) -> list[str] | None:
-    """Body axis and sign of each column of the gyros, where it is not x, y, z."""
-    moved = [kind.gyro.axes for kind in kinds if kind.gyro and kind.gyro.axes.moved]
-    if not moved:
-        return None
-    back = moved[0].inverse  # column j is the body axis that reads it
-    return [f"{'-' if back.signs[j] < 0 else ''}{'xyz'[back.sources[j]]}" for j in range(3)]
-
-
-def _wired_otherwise(kinds: Sequence[Kind]) -> Iterator[str]:
-    """What the report has to tell of gyros whose axes are not those of the accelerometers."""
-    for gyro in (kind.gyro for kind in kinds):
-        if gyro is not None and gyro.axes.moved and gyro.shares:
-            seen = ", ".join(
-                f"{axis} {fixed(share, 2)} ± {fixed(sigma, 2)}"
-                for axis, (share, sigma) in zip("xyz", gyro.shares, strict=True)
-            )
-            text = _(
-                "Of the gyros {axes}: gravity's direction turns in the accelerometers by these "
-                "shares of what they read: {seen}. The draft has set their axes so.",
-                axes=gyro.axes.in_words,
-                seen=seen,
-            )
-            right = [i for i, other in enumerate(gyro.axes.changed) if not other]
-            if gyro.axes.sources == (0, 1, 2) and len(right) == 1:
-                text += _(
-                    " A reversed {axis} axis of the accelerometers would look the same; a single "
-                    "reversed gyro would not.",
-                    axis="xyz"[right[0]],
-                )
-            yield text
-            return
-
-
-def _formats(kinds: Sequence[Kind]) -> dict[str, list[str]]:
-    """The named formats, line by line: of each kind of log, and of gyros in a log of their own."""
-    found: dict[str, list[str]] = {}
-    for number, kind in enumerate(kinds, 1):
-        own = list(_format(kind, BOTH))
-        if len(kinds) > 1 and own not in found.values():
-            found[f"format-{number}"] = own
-        if len(kind.columns.time) > 1:
-            found[f"gyros-{number}"] = list(_format(kind, ("gyro",)))
-    return {name: [f"  {name}:", *lines] for name, lines in found.items()}
-
-
-def _format(kind: Kind, sensors: Sequence[str]) -> Iterator[str]:
-    """The format of a log that holds these sensors, as far as they are in one file."""
-    columns, timing = kind.columns, kind.timing
-    triads = {"accelerometer": columns.accel, "gyro": columns.gyro}
-    file = next((triad.file for key in sensors if (triad := triads[key]) is not None), 0)
-    log = kind.parts[0].logs[file]
-    for key, value in log.layout.items():
-        yield f"    {key}: {scalar(value)}"
-    if log.kind == "rawimus":
-        return
-    guess = _guess(timing.evidence) if timing.guessed else ""
-    if kind.means:
-        number = "null" if columns.mean_of is None else scalar(columns.mean_of)
-        yield f"    mean_of: {number}{_guess(timing.evidence)}"
-    else:
-        yield f"    time: {flow(**_time(kind, file))}{guess}"
-    if columns.temperature is not None and file == 0:
-        name, unit = columns.temperature
-        yield f"    temperature: {flow(column=name, unit=unit)}{_guess(_('by its name'))}"
-    for key, scale in (("accelerometer", kind.accel), ("gyro", kind.gyro)):
-        triad = triads[key]
-        if log.kind == "columns" and triad and scale and triad.file == file:
-            guess = _guess(scale.evidence) if scale.guessed or columns.guessed else ""
-            yield f"    {key}: {flow(**_triad(kind, triad, scale))}{guess}"
-
-
-def _time(kind: Kind, file: int) -> dict[str, Any]:
-    column, timing = kind.columns.time[file], kind.timing
-    time: dict[str, Any] = {} if column is None else {"column": column, "unit": timing.unit}
-    if timing.unit in (None, "sample"):
-        time["rate_hz"] = timing.rate
-    if timing.wraps_at:
-        time["wraps_at"] = timing.wraps_at
-    return time
-
-
-def _triad(kind: Kind, triad: Triad, scale: Scale) -> dict[str, Any]:
-    keys: dict[str, Any] = {"columns": list(triad.columns), "unit": scale.unit}
-    if scale.counts is not None:
-        keys["counts_per_unit"] = scale.counts
-    if triad.bits is not None:
-        keys["signed_bits"] = triad.bits
-    if scale.zero:
-        keys["zero_counts"] = scale.zero
-    if _clips(kind, triad):
-        keys["limit_counts"] = LARGEST_COUNT
-    if triad.rows is not None:
-        keys["rows"] = {triad.rows[0]: triad.rows[1]}
-    return keys
-
-
-def _clips(kind: Kind, triad: Triad) -> bool:
-    """Whether a sensor reaches the last count of 16 bits."""
-    logs = {id(part.logs): part.logs for part in kind.parts}.values()
-    values = np.concatenate([triad.of(together) for together in logs])
-    return are_counts(values) and float(np.abs(values).max()) in (LARGEST_COUNT, LARGEST_COUNT + 1)
-
-
 def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
     """The table; by hand only where the plan says more than positions."""
     if by_hand and all(m.do == "positions" for m in plan):
@@ -339,7 +85,7 @@ def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
         seen = leaning(plan)
         degrees = 1.0 if seen is None else max(1.0, float(np.ceil(2 * np.degrees(seen)) / 2))
         keys = {"name": "by hand", "position_sigma_arcsec": round(degrees * HAND_POSITION)}
-        yield f"table: {flow(**keys)}" + _guess(
+        yield f"table: {flow(**keys)}" + guess(
             _("a case on its faces stands to within {degrees:g}°", degrees=degrees)
         )
     else:
@@ -349,7 +95,7 @@ def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
             "angle_sigma_arcsec": TABLE_SIGMA,
             "rate_sigma_ppm": TABLE_RATE,
         }
-        yield f"table: {flow(**keys)}" + _guess(_("steady rates are those of a table"))
+        yield f"table: {flow(**keys)}" + guess(_("steady rates are those of a table"))
 
 
 # ---- the plan
@@ -357,10 +103,9 @@ def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
 
 def _angle_sigma(plan: Sequence[Manoeuvre]) -> float:
     """The sigma of the turns by hand, °: how far the gyros have them from round angles."""
-    by_hand = [m for m in plan if m.degrees and m.seen and not m.by_table]
-    if len(by_hand) < FEW_TURNS:
+    off = [m.seen - m.degrees for m in plan if m.degrees and m.seen and not m.by_table]
+    if len(off) < FEW_TURNS:
         return HAND_TURN
-    off = [m.seen - m.degrees for m in by_hand if m.seen and m.degrees]
     return float(np.clip(np.ceil(np.sqrt(np.mean(np.square(off)))), BEST_HAND_TURN, HAND_TURN))
 
 
@@ -387,24 +132,17 @@ def _keys(m: Manoeuvre, angle_sigma: float | None) -> dict[str, Any]:
 
 def _seen(m: Manoeuvre) -> str:
     """What the log shows of a manoeuvre, as a comment behind it."""
+    if m.do == "turn" and m.seen is not None:
+        angle = significant(m.seen)
+        return guess(_("the gyros have {seen}° in {seconds:.1f} s", seen=angle, seconds=m.seconds))
+    if m.do == "rest" and m.up is None:
+        return guess(_("no axis points up"))
+    if m.seconds is None:
+        return "  # " + _("{count} means", count=m.count)
     if m.do == "positions":
-        if m.seconds is None:
-            return "  # " + _("{count} means", count=m.count)
         return "  # " + _(
             "{count} static positions of at least {seconds:g} s", count=m.count, seconds=m.seconds
         )
-    if m.do == "turn" and m.seen is not None:
-        return _guess(
-            _(
-                "the gyros have {seen}° in {seconds:.1f} s",
-                seen=significant(m.seen),
-                seconds=m.seconds,
-            )
-        )
-    if m.up is None:
-        return _guess(_("no axis points up"))
-    if m.seconds is None:
-        return "  # " + _("{count} means", count=m.count)
     return "  # " + _("{seconds:.1f} s", seconds=m.seconds)
 
 
@@ -427,20 +165,11 @@ def _positions(plan: Sequence[Manoeuvre]) -> Iterator[dict[str, str]]:
 
 
 def _name(m: Manoeuvre) -> str:
-    if m.part.label is not None:
-        slug = re.sub(r"[^a-z0-9+-]+", "-", m.part.label.lower()).strip("-")
-        if slug:
-            return slug
+    if slug := re.sub(r"[^a-z0-9+-]+", "-", (m.part.label or "").lower()).strip("-"):
+        return slug
     if m.do == "rest":
         return f"{m.up[1]}-{'up' if m.up[0] == '+' else 'down'}" if m.up else "rest"
     if m.do == "turn" and m.about:
         backward = (m.degrees or m.rate or 1) < 0
         return f"{m.about[1]}-{'backward' if backward else 'forward'}"
     return m.do
-
-
-# ---- YAML
-
-
-def _guess(why: str) -> str:
-    return f"  {GUESS} {why}"

@@ -1,7 +1,4 @@
-"""What was done: static positions and turns, with attitude, angle and rate, as far as logs show.
-
-And what a plan of them lacks for a calibration of accelerometers and gyros.
-"""
+"""What was done: static positions and turns, with attitude, angle and rate, as far as logs show."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -11,8 +8,6 @@ import numpy as np
 from commands.draft.sensors import Kind, Part, are_means
 from commands.draft.series import MIN_REST_S, Divided, Still
 from inertial.arrays import Array
-from inertial.text.messages import _, plural
-from inertial.text.parameters import AXES
 
 MAX_FACE_ANGLE = np.radians(15)  # of gravity to an axis, that is meant to be a face
 MAX_AXIS_ANGLE = np.radians(25)  # of a turn to an axis, that is meant to be about it
@@ -91,21 +86,23 @@ def face(vector: Array, most: float = MAX_FACE_ANGLE) -> str | None:
 
 def plan_of(kinds: Sequence[Kind]) -> list[Manoeuvre]:
     """The manoeuvres of all recordings in their order."""
-    return [m for kind in kinds for m in (_means(kind) if kind.means else _all(kind))]
-
-
-def _means(kind: Kind) -> list[Manoeuvre]:
-    """Each row is a static position; or all are one, each at its temperature."""
     return [
-        Manoeuvre("positions", part, rows=part.rows, count=part.logs[0].rows)
-        if are_means(part.series.accel)
-        else Manoeuvre("rest", part, up=face(part.series.accel.mean(axis=0)), count=rows)
-        for part in kind.parts
-        for rows in [part.logs[0].rows]
+        m
+        for kind in kinds
+        for m in (map(_of_means, kind.parts) if kind.means else _of_samples(kind))
     ]
 
 
-def _all(kind: Kind) -> list[Manoeuvre]:
+def _of_means(part: Part) -> Manoeuvre:
+    """Each row is a static position; or all are one, each at its temperature."""
+    accel, count = part.series.accel, part.logs[0].rows
+    if are_means(accel):
+        return Manoeuvre("positions", part, rows=part.rows, count=count)
+    return Manoeuvre("rest", part, up=face(accel.mean(axis=0)), count=count)
+
+
+def _of_samples(kind: Kind) -> list[Manoeuvre]:
+    """What each recording holds; of one whose end holds no samples the rows are stated."""
     return [
         replace(m, rows=m.rows or part.rows) if part.logs[0].left_out else m
         for part, own in zip(kind.parts, kind.divided, strict=True)
@@ -214,13 +211,12 @@ def _about_vertical(own: Divided) -> dict[int, Turn]:
     rests = own.rests
     turns = {}
     for turn in _turns(own):
-        before = next((r for r in reversed(rests) if r.after <= turn.first + 1), None)
-        behind = next((r for r in rests if r.first >= turn.after - 1), None)
-        if before and behind:
-            up = face(before.accel)
-            vertical = up and up == face(behind.accel) and up[1] == _axis(turn.net)[1]
-            if vertical and rests.index(behind) == rests.index(before) + 1:
-                turns[rests.index(before)] = turn
+        before = sum(rest.after <= turn.first + 1 for rest in rests) - 1
+        behind = sum(rest.first < turn.after - 1 for rest in rests)
+        if before >= 0 and behind == before + 1 < len(rests):
+            up = face(rests[before].accel)
+            if up and up == face(rests[behind].accel) and up[1] == _axis(turn.net)[1]:
+                turns[before] = turn
     return turns
 
 
@@ -232,7 +228,8 @@ def _in_order(
     turns = {k: turn for k, turn in turns.items() if k in session and k + 1 in session}
     most = round(MAX_BESIDE_S / own.series.bin_seconds())
     held = False
-    for k, rest in [(k, rests[k]) for k in session]:
+    for k in session:
+        rest = rests[k]
         # A rest beside a turn belongs to it; a longer one is a static position besides.
         first, after = own.inside(rest)
         first += min(most, after - first) if k - 1 in turns else 0
@@ -340,48 +337,3 @@ def leaning(plan: Sequence[Manoeuvre]) -> float | None:
     level = np.arange(3) != axes[:, np.newaxis]
     lengths = np.linalg.norm(forces, axis=1, keepdims=True)
     return float(np.sqrt(np.mean(np.square(forces / lengths)[level])))
-
-
-# ---- What is missing.
-
-MIN_ATTITUDES = 9  # of unknown attitude, for the nine parameters of accelerometers
-FACES = [sign + axis for axis in AXES for sign in "+-"]
-
-
-def missing(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
-    """A sentence for each thing that no log shows."""
-    used = {id(m.part.logs) for m in plan}
-    for part in (part for kind in kinds for part in kind.parts):
-        if id(part.logs) not in used:
-            yield _(
-                "{log} is not in the plan: in its {seconds:.1f} s nothing rests for a second or "
-                "turns about one axis",
-                log=part.logs[0].path.name,
-                seconds=part.series.seconds,
-            )
-    positions = [m for m in plan if m.do == "positions"]
-    with_gyros = [m for m in plan if len(m.part.series.gyro)]
-    if not any(kind.columns.accel for kind in kinds):
-        yield _("accelerometers: none are recorded")
-    elif positions:
-        count = sum(m.count for m in positions)
-        if count < MIN_ATTITUDES:
-            yield plural(
-                "static positions: {count} is there, of which at least {needed} are needed, as "
-                "different as possible",
-                "static positions: {count} are there, of which at least {needed} are needed, as "
-                "different as possible",
-                count,
-                needed=MIN_ATTITUDES,
-            )
-    else:
-        there = {m.up for m in plan if m.do == "rest" and len(m.part.series.accel)}
-        there |= {m.up for m in plan if m.do == "turn" and m.up and len(m.part.series.accel)}
-        if lacking := [face for face in FACES if face not in there]:
-            yield _("static positions with {faces} up", faces=", ".join(lacking))
-    if not with_gyros:
-        yield _("gyros: none are recorded")
-    elif not positions:
-        turned = {m.about[1] for m in with_gyros if m.do == "turn" and m.about}
-        if lacking := [axis for axis in AXES if axis not in turned]:
-            yield _("a turn about {axes}", axes=", ".join(lacking))

@@ -1,0 +1,147 @@
+"""The comments at the top of a campaign file: questions, what the logs are, what is missing."""
+
+from collections.abc import Iterator, Sequence
+
+from commands.draft.manoeuvres import Manoeuvre
+from commands.draft.questions import names_of_logs, questions, without_clock
+from commands.draft.sensors import Kind
+from commands.new_campaign import comment
+from inertial.text.messages import _, plural
+from inertial.text.numbers import significant, whole
+from inertial.text.parameters import AXES
+
+MAX_LEFT_OUT = 0.25  # of a log, that is in no manoeuvre without a word
+MIN_ATTITUDES = 9  # of unknown attitude, for the nine parameters of accelerometers
+FACES = [sign + axis for axis in AXES for sign in "+-"]
+
+
+def header(
+    kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str, by_hand: bool
+) -> Iterator[str]:
+    """Questions, what the logs are, and what is missing, line by line."""
+    yield from comment(
+        _(
+            "{name}, drafted from its logs. What is marked `guessed:` is a guess with a sigma that "
+            "fits one; whoever knows better writes it here. Then: make check CAMPAIGN={name}, "
+            "make report CAMPAIGN={name}",
+            name=name,
+        )
+    )
+    yield "#"
+    yield from comment(_("Questions that only a person can answer:"))
+    for number, question in enumerate(questions(kinds, plan, by_hand), 1):
+        yield from comment(question, f"#   {number}. ")
+    yield "#"
+    yield from comment(_("What the logs are:"))
+    for kind in kinds:
+        for text in _evidence(kind):
+            yield from comment(text, "#   - ")
+    for text in _left_out(kinds, plan):
+        yield from comment(text, "#   - ")
+    yield "#"
+    lacking = list(_missing(kinds, plan))
+    yield from comment(
+        _("What is missing for a calibration of both sensors:")
+        if lacking
+        else _("Nothing is missing for a calibration of both sensors.")
+    )
+    for text in lacking:
+        yield from comment(text, "#   - ")
+
+
+def _evidence(kind: Kind) -> Iterator[str]:
+    """What logs of one kind are taken for, and what says so."""
+    columns, timing = kind.columns, kind.timing
+    rows = sum(together[0].rows for together in kind.recordings)
+    if kind.means:
+        yield _(
+            "{logs}: {rows} rows; {why}",
+            logs=names_of_logs(kind),
+            rows=whole(rows),
+            why=timing.evidence,
+        )
+    else:
+        seconds = sum(part.series.seconds for part in kind.parts)
+        yield _(
+            "{logs}: {rows} rows, {seconds:.0f} s at {rate} Hz{assumed}; {why}",
+            logs=names_of_logs(kind),
+            rows=whole(rows),
+            seconds=seconds,
+            rate=significant(timing.rate),
+            assumed=_(", a rate that is assumed") if without_clock(timing) else "",
+            why=timing.evidence,
+        )
+    which = []
+    for word, triad in ((_("accelerometers"), columns.accel), (_("gyros"), columns.gyro)):
+        if triad is not None:
+            which.append(f"{word} {', '.join(map(str, triad.columns))}")
+    yield _("{which}: {why}", which="; ".join(which), why=columns.evidence)
+    for word, scale in ((_("accelerometers"), kind.accel), (_("gyros"), kind.gyro)):
+        if scale is not None:
+            yield f"{word}: {scale.evidence}"
+    for log in {log.path: log for part in kind.parts for log in part.logs if log.left_out}.values():
+        yield _(
+            "{log}: its last {count} rows hold no samples, for nothing changes in them; they are "
+            "not used",
+            log=log.path.name,
+            count=whole(log.left_out),
+        )
+    if columns.unused:
+        yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
+
+
+def _left_out(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
+    """Long stretches of a log that are in no manoeuvre, such as a journey after a calibration."""
+    for part in (part for kind in kinds for part in kind.parts):
+        taken = sorted(m.rows or part.rows for m in plan if m.part is part)
+        edges = [part.rows[0], *(edge for rows in taken for edge in rows), part.rows[1]]
+        stretches = zip(edges[::2], edges[1::2], strict=True)
+        first, after = max(stretches, key=lambda rows: rows[1] - rows[0])
+        share = (after - first) / (part.rows[1] - part.rows[0])
+        if taken and share > MAX_LEFT_OUT:
+            yield _(
+                "{log}: its rows from {first} to {after}, {share:.0f} % of it, are in no manoeuvre "
+                "of the plan",
+                log=part.logs[0].path.name,
+                first=whole(first),
+                after=whole(after),
+                share=100 * share,
+            )
+
+
+def _missing(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
+    """A sentence for each thing that no log shows."""
+    used = {id(m.part.logs) for m in plan}
+    for part in (part for kind in kinds for part in kind.parts):
+        if id(part.logs) not in used:
+            yield _(
+                "{log} is not in the plan: in its {seconds:.1f} s nothing rests for a second or "
+                "turns about one axis",
+                log=part.logs[0].path.name,
+                seconds=part.series.seconds,
+            )
+    positions = [m for m in plan if m.do == "positions"]
+    with_gyros = [m for m in plan if len(m.part.series.gyro)]
+    if not any(kind.columns.accel for kind in kinds):
+        yield _("accelerometers: none are recorded")
+    elif positions:
+        count = sum(m.count for m in positions)
+        if count < MIN_ATTITUDES:
+            yield plural(
+                "static positions: {count} is there, of which at least {needed} are needed, as "
+                "different as possible",
+                "static positions: {count} are there, of which at least {needed} are needed, as "
+                "different as possible",
+                count,
+                needed=MIN_ATTITUDES,
+            )
+    else:
+        there = {m.up for m in plan if len(m.part.series.accel)}
+        if lacking := [face for face in FACES if face not in there]:
+            yield _("static positions with {faces} up", faces=", ".join(lacking))
+    if not with_gyros:
+        yield _("gyros: none are recorded")
+    elif not positions:
+        turned = {m.about[1] for m in with_gyros if m.do == "turn" and m.about}
+        if lacking := [axis for axis in AXES if axis not in turned]:
+            yield _("a turn about {axes}", axes=", ".join(lacking))
