@@ -8,7 +8,8 @@ import numpy as np
 
 from inertial.arrays import Array, Booleans
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.rate_segments import Rotation, position_of
+from inertial.campaign.rate_segments import position_of
+from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Manoeuvre, runs_of
 from inertial.campaign.static_positions import Blocks, StaticPosition
 from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate

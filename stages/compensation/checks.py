@@ -13,7 +13,8 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
-from inertial.campaign.rate_segments import Rotation, position_of
+from inertial.campaign.rate_segments import position_of
+from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Row, with_mount
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_equations import horizontal_sigma

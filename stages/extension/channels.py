@@ -9,7 +9,7 @@ from scipy.linalg import solve_triangular
 
 from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
-from inertial.campaign.rate_segments import Rotation
+from inertial.campaign.recorded_turns import Rotation
 from inertial.estimation import accelerometers
 from inertial.estimation.gyroscope_equations import (
     CLOCK,

@@ -9,7 +9,8 @@ from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import Estimates, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.gyroscope_methods import add_formulas, add_turn_and_stop
-from inertial.campaign.rate_segments import GyroInputs, Rotation
+from inertial.campaign.rate_segments import GyroInputs
+from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import omissions, with_mount
 from inertial.campaign.static_positions import averaging_times
 from inertial.estimation import gyroscopes

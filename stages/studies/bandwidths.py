@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.rate_segments import Rotation
+from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Row, with_mount
 from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.bandwidth import Bandwidth, by_noise, first_order, spread_by_ramps

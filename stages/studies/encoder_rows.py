@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.rate_segments import Rotation
+from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Row, grouped
 from inertial.campaign.sample_stretches import Samples
 from inertial.estimation.encoder_angle import Ripple, against_encoder, low_pass, ripple

@@ -11,7 +11,8 @@ import pandas as pd
 from inertial.arrays import Array, Booleans
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.motions import measured_angles
-from inertial.campaign.rate_segments import Rotation, position_of
+from inertial.campaign.rate_segments import position_of
+from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.sample_stretches import Samples
 from inertial.campaign.solution import joint_rows

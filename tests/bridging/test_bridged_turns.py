@@ -9,7 +9,8 @@ import pytest
 from z_turns import ANGLE, NOISE, STEP, Z_SCALE
 
 from inertial.campaign.noise_levels import NoiseLevels, effective_levels
-from inertial.campaign.rate_segments import Rotation, rate_segment_of
+from inertial.campaign.rate_segments import rate_segment_of
+from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.static_positions import Blocks
 from inertial.estimation.gyroscope_observations import Earth, Position, RateSegment, StaticRate

@@ -1,0 +1,161 @@
+"""The turns of a plan as they were recorded, and why one cannot be used."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import degrees
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from inertial.arrays import Array
+from inertial.campaign.encoder_windows import windows_of
+from inertial.campaign.interpolated_gaps import weights_of
+from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.records import Manoeuvre, Performed
+from inertial.campaign.static_positions import NO_BLOCKS, Blocks, by_manoeuvre
+from inertial.estimation.turn_outliers import off_rate, off_ratio
+from inertial.tables import GYRO
+from inertial.text.messages import _
+from inertial.text.numbers import significant
+
+if TYPE_CHECKING:
+    from inertial.campaign.campaign_data import CampaignData
+
+TURNING = ("spin-up", "steady", "spin-down", "settling", "turning")
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """A rotation of the plan, its record, its blocks in motion, and why it is refused.
+
+    `begun`: whether the rest before it is in its record; one that is recorded in part and has
+    none begins at another azimuth than that of the set position. `clock_sigma`: of the rate of the
+    clock of its log, relative; `off_ratio`: to its stated rate or angle, where by the other turns
+    it was another.
+    """
+
+    plan: Manoeuvre
+    done: Performed
+    blocks: Blocks
+    refusal: str  # empty where it can be used
+    begun: bool = True
+    clock_sigma: float = 0.0
+    off_ratio: float | None = None
+
+    @property
+    def steady(self) -> Blocks:
+        """The blocks at the steady rate."""
+        return self.blocks.those(self.blocks.steady)
+
+    @property
+    def in_part(self) -> bool:
+        """Whether it is refused as a turn, but the encoder gives the angle of what is recorded."""
+        lacks = self.done.found and not (self.done.complete or self.done.bridged)
+        whole = self.plan.recorded == "whole" and self.done.angle is not None
+        return bool(lacks and whole and windows_of(self.blocks, self.plan.axis))
+
+    @property
+    def by_encoder(self) -> bool:
+        """Whether the encoder gives the angle of its steady part."""
+        return bool(windows_of(self.steady, self.plan.axis))
+
+    @property
+    def weights(self) -> Array:
+        """How often each block counts in the turn, (k,): with its share of what is missing."""
+        return weights_of(self.blocks)
+
+
+def recorded_turns(data: "CampaignData") -> list[Rotation]:
+    """Every turn of the plan; refused, too, where by the others it was at another rate or angle."""
+    rotations = list(_rotations(data))
+    for place, refused in [*_off_rate(rotations, data.noise), *_off_angle(rotations)]:
+        rotations[place] = refused
+    return rotations
+
+
+def _rotations(data: "CampaignData") -> Iterator[Rotation]:
+    moving = by_manoeuvre(data.blocks[data.blocks["phase"].isin(TURNING)])
+    begun = set(data.blocks.loc[data.blocks["phase"] == "rest-before", "manoeuvre"])
+    for m in data.plan:
+        if m.do == "turn":
+            done, part = data.performed[m.name], moving.get(m.name, NO_BLOCKS)
+            clock = data.clocks.get(m.log)
+            timed = 0.0 if clock is None else clock.sigma
+            yield Rotation(m, done, part, refusal_of(m, done, part), m.name in begun, timed)
+
+
+def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
+    """Why a turn cannot be used; empty where it can."""
+    if not done.found:
+        return _("not found in its log")
+    if not len(part) or np.isnan(part.seconds).any() or bool((part.counts == 0).any()):
+        return _("it has no time, so no angle can be summed")
+    if m.recorded == "steady":
+        return "" if part.steady.any() else _("no steady rate was found")
+    if not (done.complete or done.bridged):
+        return _("the angle method needs the whole turn, and {sentence}", sentence=done.sentence)
+    if m.angle is None or m.angle_sigma is None:
+        return _("its angle is not stated")
+    if done.angle is None:
+        return _("its angle is not measured: {sentence}", sentence=done.sentence)
+    if done.angle * m.angle < 0:
+        return _("it turned by {degrees:.1f}°, against the plan", degrees=degrees(done.angle))
+    return ""
+
+
+def _off_rate(rotations: Sequence[Rotation], noise: NoiseLevels) -> Iterator[tuple[int, Rotation]]:
+    """Which runs at a rate were at another one by the others about their axis, refused."""
+    axes: dict[tuple[float, ...], list[int]] = {}
+    for place, run in enumerate(rotations):
+        if not run.refusal and run.plan.recorded == "steady" and not run.by_encoder:
+            axes.setdefault(_line_of(run), []).append(place)
+    for places in axes.values():
+        stated, read, sigma = np.transpose([_rates(rotations[i], noise) for i in places])
+        if (found := off_rate(stated, read, sigma)) is not None:
+            number, rate = found
+            run = rotations[places[number]]
+            why = _("by the other runs it turned at {read} °/s, not at {stated} °/s")
+            ratio = rate / float(stated[number])
+            yield places[number], _refused(run, why, run.plan.rate, ratio)
+
+
+def _off_angle(rotations: Sequence[Rotation]) -> Iterator[tuple[int, Rotation]]:
+    """Which whole turn was by another angle by the others, refused."""
+    whole = {
+        place: turn
+        for place, turn in enumerate(rotations)
+        if not turn.refusal and turn.plan.recorded == "whole" and turn.done.complete
+    }
+    angles = [(turn.done.angle, turn.plan.angle) for turn in whole.values()]
+    ratios = np.array([angle / planned for angle, planned in angles if angle and planned])
+    lines = list(map(_line_of, whole.values()))
+    if len(ratios) == len(whole) and (one := off_ratio(ratios, lines)) is not None:
+        place, turn = list(whole.items())[one]
+        why = _("by the other turns it turned by {read}°, not by {stated}°")
+        ratio = float(ratios[one] / np.median(ratios))
+        yield place, _refused(turn, why, turn.plan.angle, ratio)
+
+
+def _line_of(turn: Rotation) -> tuple[float, ...]:
+    """Its axis, whichever way it points."""
+    return tuple(np.abs(turn.plan.axis).round(3).tolist())
+
+
+def _rates(run: Rotation, noise: NoiseLevels) -> tuple[float, float, float]:
+    """Stated and read about the axis, without its sign, and the sigma, rad/s."""
+    m, part = run.plan, run.steady
+    sign = 1.0 if m.axis.sum() > 0 else -1.0
+    density = float(np.max(noise.of(m.name, "steady", GYRO)))
+    read = float(m.axis @ mean_rate(part))
+    return sign * (m.rate or 0.0), sign * read, density / float(part.seconds.sum()) ** 0.5
+
+
+def mean_rate(part: Blocks) -> Array:
+    """The mean reading of the gyros in some blocks, rad/s, (3,)."""
+    return np.asarray(np.average(part.gyro, weights=part.counts, axis=0))
+
+
+def _refused(one: Rotation, why: str, stated: float | None, ratio: float) -> Rotation:
+    said = degrees(stated or 0.0)
+    why = why.format(read=significant(ratio * said, 4), stated=significant(said, 4))
+    return replace(one, refusal=why, off_ratio=ratio)
