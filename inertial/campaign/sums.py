@@ -47,26 +47,6 @@ class Sums(Means):
 
 
 @dataclass(frozen=True)
-class Extremes:
-    """The smallest and the largest readings in k stretches, (k, 6), NaN where there are none.
-
-    `first`, `last`: (k,) times.
-    """
-
-    least: Array
-    most: Array
-    first: Array
-    last: Array
-
-
-def extremes_over(samples: Stream, stretches: Stretches) -> dict[str, Extremes]:
-    """Extremes over stretches of records of each log, in a pass of their own."""
-    extremes = ExtremesOver(stretches)
-    read_once(samples, [extremes])
-    return extremes.result()
-
-
-@dataclass(frozen=True)
 class _Part:
     """The n records of a batch that lie in stretches, those of a stretch together.
 
@@ -94,14 +74,13 @@ class _Part:
 
     def counted(self, values: Array) -> Array:
         """The sums of values, (n, 6), over the stretches, (m, 6)."""
-        weighted = (
-            values if self.share is None else np.where(self.share > 0, self.share * values, 0)
-        )
-        return np.asarray(np.add.reduceat(weighted, self.starts))
+        if self.share is not None:
+            values = np.where(self.share > 0, self.share * values, 0)
+        return np.asarray(np.add.reduceat(values, self.starts))
 
 
 @dataclass(frozen=True)
-class _Rows:
+class Rows:
     """The m stretches that records of a batch lie in, and the rows [start, end) of each, (m,)."""
 
     stretches: Integers
@@ -109,7 +88,7 @@ class _Rows:
     ends: Integers
 
 
-def _rows_in(batch: Batch, stretches: Stretches) -> _Rows | None:
+def rows_in(batch: Batch, stretches: Stretches) -> Rows | None:
     """Which stretches of its log a batch has records of; None if none."""
     if batch.log not in stretches:
         return None
@@ -121,22 +100,21 @@ def _rows_in(batch: Batch, stretches: Stretches) -> _Rows | None:
     there = np.flatnonzero(ends > starts)
     if not len(there):
         return None
-    return _Rows(there + near.start, starts[there], ends[there])
+    return Rows(there + near.start, starts[there], ends[there])
 
 
 def _part_of(batch: Batch, stretches: Stretches, masks: Masks | None) -> _Part | None:
     """What of a batch lies in stretches, without what is masked; None if nothing does."""
-    found = _rows_in(batch, stretches)
+    found = rows_in(batch, stretches)
     if found is None:
         return None
     lengths = found.ends - found.starts
+    places, starts = found.stretches, np.cumsum(lengths) - lengths
     if (found.starts[1:] == found.ends[:-1]).all():
         rows: slice | Integers = slice(int(found.starts[0]), int(found.ends[-1]))
     else:
-        offset = found.starts - np.append(0, np.cumsum(lengths)[:-1])
-        rows = np.arange(lengths.sum()) + np.repeat(offset, lengths)
+        rows = np.arange(lengths.sum()) + np.repeat(found.starts - starts, lengths)
     masked = None if masks is None else masks.of(batch.log, batch["record"][rows])
-    places, starts = found.stretches, np.append(0, np.cumsum(lengths)[:-1])
     if masked is not None and masked.repeated.any():
         kept = np.flatnonzero(~masked.repeated)
         if not len(kept):
@@ -190,13 +168,24 @@ class TimesOver:
 
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
-        if found := _rows_in(batch, self._stretches):
+        if found := rows_in(batch, self._stretches):
             time = batch["time"]
             self._times[batch.log].add(found.stretches, time[found.starts], time[found.ends - 1])
 
     def result(self) -> dict[str, tuple[Array, Array]]:
         """By log, in the order of the stretches."""
         return {log: (times.first, times.last) for log, times in self._times.items()}
+
+
+def _samples(number: Array) -> Array:
+    """The samples of each stretch from those of its channels, (k, 6).
+
+    By the gyros where they have any: an angle is their sum over time, whatever the accelerometers
+    lack. Where the sensors come in rows of their own a stretch may hold one row more of the one
+    than of the other.
+    """
+    accel, gyro = number[:, :3].max(axis=1), number[:, 3:].max(axis=1)
+    return np.asarray(np.where(gyro > 0, gyro, accel))
 
 
 class _Means:
@@ -209,13 +198,11 @@ class _Means:
     def add(self, part: _Part, batch: Batch, values: Array) -> None:
         """Add records by their values, (n, 6)."""
         k, time = part.stretches, batch["time"][part.rows]
-        ends = np.append(part.starts[1:], len(time)) - 1
-        self.times.add(k, time[part.starts], time[ends])
-        self.number[k] += (
-            part.lengths[:, None]
-            if part.share is None
-            else np.add.reduceat(part.share, part.starts)
-        )
+        self.times.add(k, time[part.starts], time[part.starts + part.lengths - 1])
+        if part.share is None:
+            self.number[k] += part.lengths[:, None]
+        else:
+            self.number[k] += np.add.reduceat(part.share, part.starts)
         self.sum[k] += part.counted(values)
 
     def means(self) -> Means:
@@ -251,28 +238,8 @@ class MeansOver:
         return {log: means.means() for log, means in self._means.items()}
 
 
-class SumsOver:
-    """Means of all columns over stretches of records, as in `MeansOver`, and the scatter."""
-
-    columns = (*_AUXILIARY, "mean_of", *CHANNELS)
-
-    def __init__(self, stretches: Stretches, masks: Masks | None = None) -> None:
-        self._stretches = stretches
-        self._masks = masks
-        self._sums = {log: _Sums(len(first)) for log, (first, _) in stretches.items()}
-
-    def add(self, batch: Batch) -> None:
-        """Take in the next batch."""
-        if part := _part_of(batch, self._stretches, self._masks):
-            self._sums[batch.log].add(part, batch)
-
-    def result(self) -> dict[str, Sums]:
-        """By log, in the order of the stretches."""
-        return {log: sums.sums() for log, sums in self._sums.items()}
-
-
 class _Sums:
-    """Likewise; the shift, a value of the stretch itself, keeps the squares small."""
+    """Likewise, and of squares; the shift, a value of the stretch itself, keeps these small."""
 
     def __init__(self, k: int) -> None:
         self.shifted = _Means(k)
@@ -317,68 +284,37 @@ class _Sums:
         )
 
 
-EDGE_SAMPLES = 8  # by which the rate of the table at the edge of a block is known
+class SumsOver:
+    """Means of all columns over stretches of records, as in `MeansOver`, and the scatter."""
 
+    columns = (*_AUXILIARY, "mean_of", *CHANNELS)
 
-@dataclass(frozen=True)
-class Edges:
-    """The encoder's angle, rad, and rate, rad/s, at the beginning and end of k stretches, (k,)."""
-
-    angle_from: Array
-    angle_to: Array
-    rate_from: Array
-    rate_to: Array
-
-
-class EdgesOver:
-    """The angle of the table's encoder where stretches of records begin and end.
-
-    It is read at the end of a sample; where the first one began it was by its rate, which is that
-    of a parabola through the first samples.
-    """
-
-    columns = ("time", "table_angle")
-
-    def __init__(self, stretches: Stretches) -> None:
+    def __init__(self, stretches: Stretches, masks: Masks | None = None) -> None:
         self._stretches = stretches
-        self._ends: dict[str, dict[int, tuple[Array, Array]]] = {log: {} for log in stretches}
+        self._masks = masks
+        self._sums = {log: _Sums(len(first)) for log, (first, _) in stretches.items()}
 
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
-        if np.isnan(batch["table_angle"]).all():
-            return
-        found = _rows_in(batch, self._stretches)
-        if found is None:
-            return
-        read = np.column_stack([batch["time"], batch["table_angle"]])
-        own = self._ends[batch.log]
-        for k, start, end in zip(found.stretches, found.starts, found.ends, strict=True):
-            first, last = own.get(int(k), (read[:0], read[:0]))
-            more = read[start : min(end, start + EDGE_SAMPLES - len(first))]
-            tail = np.concatenate([last, read[max(start, end - EDGE_SAMPLES) : end]])
-            own[int(k)] = np.concatenate([first, more]), tail[-EDGE_SAMPLES:]
+        if part := _part_of(batch, self._stretches, self._masks):
+            self._sums[batch.log].add(part, batch)
 
-    def result(self) -> dict[str, Edges]:
-        """By log, in the order of the stretches; NaN where the encoder gives nothing."""
-        result = {}
-        for log, (first, _after) in self._stretches.items():
-            found = np.full((len(first), 4), np.nan)
-            for k, (head, tail) in self._ends[log].items():
-                step = (tail[-1, 0] - tail[0, 0]) / max(len(tail) - 1, 1)
-                found[k, [0, 2]] = _at_edge(head, head[0, 0] - step)
-                found[k, [1, 3]] = _at_edge(tail, tail[-1, 0])
-            result[log] = Edges(*found.T)
-        return result
+    def result(self) -> dict[str, Sums]:
+        """By log, in the order of the stretches."""
+        return {log: sums.sums() for log, sums in self._sums.items()}
 
 
-def _at_edge(read: Array, time: float) -> tuple[float, float]:
-    """Angle and rate at an edge by samples next to it: n times and angles, (n, 2)."""
-    if len(read) < 4 or not np.isfinite(read).all():
-        return np.nan, np.nan
-    near = int(np.argmin(np.abs(read[:, 0] - time)))
-    curved, rate, _angle = np.polyfit(read[:, 0] - time, read[:, 1], 2)
-    ago = float(read[near, 0] - time)
-    return float(read[near, 1] - rate * ago - curved * ago**2), float(rate)
+@dataclass(frozen=True)
+class Extremes:
+    """The smallest and the largest readings in k stretches, (k, 6), NaN where there are none.
+
+    `first`, `last`: (k,) times.
+    """
+
+    least: Array
+    most: Array
+    first: Array
+    last: Array
 
 
 class ExtremesOver:
@@ -397,7 +333,7 @@ class ExtremesOver:
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
         self._times.add(batch)
-        found = _rows_in(batch, self._stretches)
+        found = rows_in(batch, self._stretches)
         if found is None:
             return
         least, most = self._extremes[batch.log]
@@ -414,12 +350,8 @@ class ExtremesOver:
         return {log: Extremes(*pair, *times[log]) for log, pair in self._extremes.items()}
 
 
-def _samples(number: Array) -> Array:
-    """The samples of each stretch from those of its channels, (k, 6).
-
-    By the gyros where they have any: an angle is their sum over time, whatever the accelerometers
-    lack. Where the sensors come in rows of their own a stretch may hold one row more of the one
-    than of the other.
-    """
-    accel, gyro = number[:, :3].max(axis=1), number[:, 3:].max(axis=1)
-    return np.asarray(np.where(gyro > 0, gyro, accel))
+def extremes_over(samples: Stream, stretches: Stretches) -> dict[str, Extremes]:
+    """Extremes over stretches of records of each log, in a pass of their own."""
+    extremes = ExtremesOver(stretches)
+    read_once(samples, [extremes])
+    return extremes.result()

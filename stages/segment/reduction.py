@@ -7,10 +7,11 @@ import pandas as pd
 
 from inertial import tables
 from inertial.arrays import Array, Booleans, Integers
+from inertial.campaign.encoder_edges import EdgesOver
 from inertial.campaign.masked_samples import Batch, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre, grouped
 from inertial.campaign.static_positions import ENCODER
-from inertial.campaign.sums import EdgesOver, ExtremesOver, SumsOver, TimesOver
+from inertial.campaign.sums import ExtremesOver, SumsOver, TimesOver
 from inertial.tables import STATIC_PHASES
 from stages.segment.matching import BETWEEN, SETTLING, Part
 
