@@ -145,11 +145,9 @@ class Campaign:
 
     def candidates(self, effects: Sequence[Effect]) -> dict[str, list[Effect]]:
         """Each effect by its name, once for every value of its scanned parameter."""
-        if not self.motions:
-            return {effect.name: [effect] for effect in effects}
         return {
             effect.name: [effect]
-            if self.excludes(effect)
+            if not self.motions or self.excludes(effect)
             else list(effect.candidates(self.motion)) or [effect]
             for effect in effects
         }
@@ -195,8 +193,7 @@ class Campaign:
     @property
     def scattering(self) -> tuple[str, ...]:
         """The sensors, by hand, whose residuals have a scatter that is estimated from them."""
-        by_hand = self.by_hand
-        return () if by_hand is None else by_hand.scattering
+        return () if self.by_hand is None else self.by_hand.scattering
 
     def without_scatter(self) -> "Campaign":
         """The same without the scatter of positions by hand."""
@@ -243,8 +240,10 @@ class Campaign:
         manoeuvres that are used; `sharing`: by sensor, errors that are not eliminated, but the last
         effects.
         """
-        sigmas = _prior_sigmas(effects, prior_sigma)
-        gyro, accel = (self._system(s, effects, sigmas, only, sharing.get(s, ())) for s in SENSORS)
+        gyro, accel = (
+            self.system(sensor, effects, prior_sigma, only, sharing.get(sensor, ()))
+            for sensor in SENSORS
+        )
         return gyro, accel
 
     @property
@@ -259,9 +258,14 @@ class Campaign:
         effects: Sequence[Effect],
         prior_sigma: float,
         only: set[str] | None = None,
+        sharing: Sequence[Name] = (),
     ) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
-        return self._system(sensor, effects, _prior_sigmas(effects, prior_sigma), only)
+        walk = self.solution.random_walks[SENSORS.index(sensor)]
+        drifting = self.equations(sensor, effects, prior_sigma, only, walking=bool(walk))
+        if drifting and sharing:
+            drifting = drifting.sharing(sharing)
+        return drifting.system(walk=walk) if drifting else None
 
     def equations(
         self,
@@ -274,7 +278,9 @@ class Campaign:
     ) -> DriftingEquations | None:
         """The same before errors are eliminated; `walking`: a random walk may be added."""
         sigmas = _prior_sigmas(effects, prior_sigma)
-        return self._drifting(sensor, effects, sigmas, only, walking=walking)
+        if sensor == "gyro":
+            return self._gyro(effects, sigmas, only)
+        return self._accelerometer(effects, sigmas, only, walking=walking)
 
     def by_scatter(
         self, effects: Sequence[Effect], prior_sigma: float
@@ -290,37 +296,9 @@ class Campaign:
         self, sensor: str, effects: Sequence[Effect], prior_sigma: float
     ) -> Callable[[float], float]:
         """−2 log of the likelihood of one sensor as a function of the random walk of its biases."""
-        sigmas = _prior_sigmas(effects, prior_sigma)
-        drifting = self._drifting(sensor, effects, sigmas, None, walking=True)
+        drifting = self.equations(sensor, effects, prior_sigma, walking=True)
         assert drifting is not None  # else it has no times
         return drifting.likelihood.of_walk()
-
-    def _system(
-        self,
-        sensor: str,
-        effects: Sequence[Effect],
-        prior_sigmas: Mapping[str, float],
-        only: set[str] | None,
-        sharing: Sequence[Name] = (),
-    ) -> System | None:
-        walk = self.solution.random_walks[SENSORS.index(sensor)]
-        drifting = self._drifting(sensor, effects, prior_sigmas, only, walking=bool(walk))
-        if drifting and sharing:
-            drifting = drifting.sharing(sharing)
-        return drifting.system(walk=walk) if drifting else None
-
-    def _drifting(
-        self,
-        sensor: str,
-        effects: Sequence[Effect],
-        prior_sigmas: Mapping[str, float],
-        only: set[str] | None,
-        *,
-        walking: bool,
-    ) -> DriftingEquations | None:
-        if sensor == "gyro":
-            return self._gyro(effects, prior_sigmas, only)
-        return self._accelerometer(effects, prior_sigmas, only, walking=walking)
 
     def _gyro(
         self,
@@ -344,7 +322,7 @@ class Campaign:
     def _carried(
         self, by_hand: ByHand, effects: Sequence[Effect], prior_sigmas: Mapping[str, float]
     ) -> CarriedEquations:
-        answers = self._sensitivities("gyro", effects, self._responses(effects))
+        answers = self._sensitivities("gyro", effects)
         at_rest = {
             position.label: (_first(response), position.stretch)
             for position, response in zip(self.inputs.static_positions, answers, strict=False)
@@ -367,7 +345,7 @@ class Campaign:
         return made
 
     def _newly_linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
-        sensitivities = self._sensitivities("gyro", effects, self._responses(effects))
+        sensitivities = self._sensitivities("gyro", effects)
         static = len(self.static_motions)
         rests = [
             replace(rest, sensitivities=_first(responses))
@@ -385,33 +363,23 @@ class Campaign:
                 self.steady_rates, sensitivities[static + len(self.turn_motions) :], strict=False
             )
         ]
-        gyro = self.solution.gyro
+        gyro, site = self.solution.gyro, self.solution.site
         assert gyro is not None  # else it has no equations
         levels = {
             (f"{POSITION_UNKNOWNS[quantity]} {component}", position): value
             for (position, quantity, component), value in self.solution.position_parameters.items()
         }
-        levels[EARTH_UP] = self.solution.site.earth_up
-        point = Linearisation(
-            gyro.matrix,
-            gyro.bias,
-            levels,
-            constrained_positions(levels, self.solution.site.earth_level),
-        )
+        levels[EARTH_UP] = site.earth_up
+        constrained = constrained_positions(levels, site.earth_level)
+        point = Linearisation(gyro.matrix, gyro.bias, levels, constrained)
         known = (self.inputs.earth, self.position_sigma)
         columns = _prior_sigmas(effects, 1.0)
         drift = self.drifts["gyro"]
         made = gyroscopes.linearised(point, turns, steady, *known, columns, drift)
-        site = self.solution.site
-        changes = {
-            name: change
-            for effect in effects
-            for name, change in zip(
-                effect.columns,
-                effect.level_rate_changes(site.earth_up, site.earth_level).tolist(),
-                strict=True,
-            )
-        }
+        changes: dict[str, float] = {}
+        for effect in effects:
+            by_column = effect.level_rate_changes(site.earth_up, site.earth_level).tolist()
+            changes |= zip(effect.columns, by_column, strict=True)
         return replace(made.with_statics(rests), level_changes=changes)
 
     def _accelerometer(
@@ -424,7 +392,7 @@ class Campaign:
     ) -> DriftingEquations | None:
         if self.solution.accelerometer is None:
             return None
-        sensitivities = self._sensitivities("accel", effects, self._responses(effects))
+        sensitivities = self._sensitivities("accel", effects)
         rests = [
             replace(rest, sensitivities=_first(responses))
             for (name, rest, _), responses in zip(self.static_forces, sensitivities, strict=True)
@@ -461,18 +429,17 @@ class Campaign:
         )
         return [responses[key] for key in keys]
 
-    def _sensitivities(
-        self, sensor: str, effects: Sequence[Effect], responses: Sequence[Reading]
-    ) -> list[Sensitivities]:
+    def _sensitivities(self, sensor: str, effects: Sequence[Effect]) -> list[Sensitivities]:
         """The responses of one sensor in each stretch of its equations.
 
         Gyros: static positions, then rotations; accelerometers: as in `static_forces`.
         """
+        responses = self._responses(effects)
         ends = [0, *accumulate(len(motion.rate) for motion in self.motions)]
         parts = [slice(first, after) for first, after in pairwise(ends)]
-        gyros = len(parts) - len(self.static_forces)
+        gyros = len(self.gyro_motions)
         of_sensor = parts[:gyros] if sensor == "gyro" else parts[gyros:]
-        if not responses or not of_sensor:
+        if not responses:
             return [
                 Sensitivities(values=np.zeros((part.stop - part.start, 3, 0))) for part in of_sensor
             ]
