@@ -19,7 +19,7 @@ from pathlib import Path
 
 from commands.no_result import SEE_REPORT, NoResult, no_results
 from inertial import tables
-from inertial.campaign.explanations import ExplainedFindings, circumstances, compete
+from inertial.campaign.competition import ExplainedFindings, circumstances, compete
 from inertial.campaign.hypotheses import MODEL, Findings, hypotheses
 from inertial.campaign.records import Performed, Row, performed_of, rows_of
 from inertial.tables.declared import read_declared

@@ -5,18 +5,16 @@ One table, read from top to bottom: a cause, what it makes other stages report, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from inertial.campaign.hypotheses import (
     JUMP_NOT_TESTABLE,
     LAW,
-    MAX_CARRYING,
     MODEL,
     POSITIONS,
     Hypothesis,
 )
-from inertial.campaign.records import Row
 from inertial.sensors import SENSORS
 
 Where = Callable[[Hypothesis, Hypothesis], bool]
@@ -60,10 +58,6 @@ def same_log(cause: Hypothesis, other: Hypothesis) -> bool:
 # ---- Which findings.
 
 
-def _is(*causes: str) -> Where:
-    return lambda _, other: other.cause in causes
-
-
 def _same_cause(cause: Hypothesis, other: Hypothesis) -> bool:
     """Another stage has the same cause, or the same physics by its own name for it."""
     kind = {_KIND.get(name, name) for name in cause.causes}
@@ -88,9 +82,6 @@ _KIND = {
     }.items()
     for name in names
 }
-# What a recording shows of its circumstances: no fault; whether it matters follows from the model.
-CIRCUMSTANCES = ("temperature_drift", "rests_divided", "turning_point_once")
-MAX_WALK_P = 0.005  # as of all names together, of a random walk that is a cause and no mere noise
 ANOTHER_IMU = "another_imu"
 PER_RUN = ("accel_bias_per_log", "gyro_bias_per_log")
 MISFITS = ("unexplained", "unknown_structure")
@@ -155,10 +146,10 @@ LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stand
 
 @dataclass(frozen=True)
 class Explanation:
-    """What these causes explain: the findings for which both conditions hold."""
+    """What these causes explain, and where they do."""
 
     causes: tuple[str, ...]
-    which: Where
+    findings: tuple[str, ...]
     where: Where
 
 
@@ -174,73 +165,69 @@ EXPLANATIONS = (
             "status_invalid",
             "clock_step",
         ),
-        _is(*PERFORMANCE),
+        PERFORMANCE,
         same_manoeuvre,
     ),
     Explanation(
         ("dead_axis", "saturation"),
-        _is(*PERFORMANCE, "oscillation", "quantisation", *MISFITS),
+        (*PERFORMANCE, "oscillation", "quantisation", *MISFITS),
         same_axis,
     ),
-    Explanation(("dead_axis",), _is("bias_jump"), same_axis),
+    Explanation(("dead_axis",), ("bias_jump",), same_axis),
     # A motion beyond the range does not explain findings of a rest before or after it.
-    Explanation(("saturation",), _is("bias_jump"), same_readings),
+    Explanation(("saturation",), ("bias_jump",), same_readings),
     # Once in every period a reading is off: those that were not masked look like spikes.
-    Explanation(("periodic_glitch",), _is("spike"), same_axis),
+    Explanation(("periodic_glitch",), ("spike",), same_axis),
     # Columns that do not hold what they should.
     Explanation(
         ("copied_channel", "gravity_removed", "normalised_force", "bias_removed"),
-        _is(*PERFORMANCE, *MISFITS, *OF_TRIADS),
+        (*PERFORMANCE, *MISFITS, *OF_TRIADS),
         same_sensor,
     ),
-    Explanation(("copied_log",), _is(*PERFORMANCE, *OF_TRIADS, "gap", "time_backwards"), same_log),
+    Explanation(("copied_log",), (*PERFORMANCE, *OF_TRIADS, "gap", "time_backwards"), same_log),
     # Axes, signs, units: they change everything that their sensor reads.
     Explanation(
         ("axis_swap", "sign_flip", "wrong_scale_factor", "wrong_imu_type", "wrong_direction"),
-        _is(*PERFORMANCE, "wrong_scale_factor", "manoeuvre_swapped", "gravity_error"),
+        (*PERFORMANCE, "wrong_scale_factor", "manoeuvre_swapped", "gravity_error"),
         same_sensor,
     ),
-    Explanation(("manoeuvre_swapped",), _is(*PERFORMANCE), same_log),
+    Explanation(("manoeuvre_swapped",), PERFORMANCE, same_log),
     # A clock that is set, or runs wrong, by what its stamps then look like.
     Explanation(
         ("clock_step", "time_backwards", "time_stands_still"),
-        _is("gap", "clock_jitter", "rate_off", "time_backwards", "duplicate"),
+        ("gap", "clock_jitter", "rate_off", "time_backwards", "duplicate"),
         same_log,
     ),
-    Explanation(
-        ("clock_scale", "rate_off"), _is("clock_scale", "rate_off", "wrong_rate"), anywhere
-    ),
-    Explanation(("encoder_scale",), _is("rate_off"), anywhere),
+    Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), anywhere),
+    Explanation(("encoder_scale",), ("rate_off",), anywhere),
     Explanation(
         ("wrong_time_unit",),
-        _is(*PERFORMANCE, *MISFITS, "wrong_scale_factor", "clock_scale", "bias_jump"),
+        (*PERFORMANCE, *MISFITS, "wrong_scale_factor", "clock_scale", "bias_jump"),
         anywhere,
     ),
-    Explanation(
-        ("gravity_error",), _is("wrong_scale_factor", "gravity_error", *MISFITS), same_sensor
-    ),
-    Explanation(("latitude_error",), _is("gravity_error"), anywhere),
+    Explanation(("gravity_error",), ("wrong_scale_factor", "gravity_error", *MISFITS), same_sensor),
+    Explanation(("latitude_error",), ("gravity_error",), anywhere),
     Explanation(
         ("fixture_creep",),
-        _is(*MISFITS, "accel_random_walk", "bias_jump", "table_moving", "position_not_kept"),
+        (*MISFITS, "accel_random_walk", "bias_jump", "table_moving", "position_not_kept"),
         anywhere,
     ),
-    Explanation(("samples_lost",), _is(*MISFITS), same_sensor),
+    Explanation(("samples_lost",), MISFITS, same_sensor),
     Explanation(
         ("position_not_kept",),
-        _is(*MISFITS, "accel_random_walk", "bias_jump"),
+        (*MISFITS, "accel_random_walk", "bias_jump"),
         anywhere,
     ),
     # A rate that is another after each turn looks like a bias that wanders, or that remembers.
     Explanation(
-        ("motion_after_turns",), _is(*MISFITS, "gyro_random_walk", "gyro_hysteresis"), same_sensor
+        ("motion_after_turns",), (*MISFITS, "gyro_random_walk", "gyro_hysteresis"), same_sensor
     ),
     # What was recorded is no turn as planned, at whatever rate it is.
-    Explanation(("incomplete_turn",), _is("wrong_rate"), same_manoeuvre),
+    Explanation(("incomplete_turn",), ("wrong_rate",), same_manoeuvre),
     # A table that moves: the readings are right, the position is not the planned one.
     Explanation(
         ("table_moving", "impact"),
-        _is("bias_jump", "oscillation", *POSITION_OFF, *PERFORMANCE),
+        ("bias_jump", "oscillation", *POSITION_OFF, *PERFORMANCE),
         same_manoeuvre,
     ),
 )
@@ -250,7 +237,7 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether the other finding vanishes where this cause is true."""
     if cause is other or not _same_mount(cause, other) or _set_right_by_another(cause, other):
         return False
-    if _rank(cause) > _rank(other) and _same_cause(cause, other) and same_sensor(cause, other):
+    if rank(cause) > rank(other) and _same_cause(cause, other) and same_sensor(cause, other):
         return True
     if ANOTHER_IMU in (cause.cause, other.cause):  # whatever the model says is of two instruments
         return cause.cause == ANOTHER_IMU and other.stage == MODEL
@@ -266,7 +253,7 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
     if other.named:
         return _explains_named(cause, other)
     return any(
-        cause.cause in rule.causes and rule.which(cause, other) and rule.where(cause, other)
+        cause.cause in rule.causes and other.cause in rule.findings and rule.where(cause, other)
         for rule in EXPLANATIONS
     )
 
@@ -283,11 +270,6 @@ def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
         return cause.cause in SPOILING
     of_one_turn = cause.cause == "samples_lost" and "turn_angle_error" in other.causes
     return of_one_turn or _in_proportion(other)
-
-
-def circumstances(findings: Sequence[Row]) -> Iterator[Row]:
-    """Those of some findings that tell of circumstances, and are no fault."""
-    yield from (row for row in findings if row["cause"] in CIRCUMSTANCES)
 
 
 def is_of_wrong_place(cause: Hypothesis, other: Hypothesis) -> bool:
@@ -320,7 +302,7 @@ def _in_proportion(effect: Hypothesis) -> bool:
     return effect.verdict == LAW or not IN_PROPORTION.isdisjoint(effect.causes)
 
 
-def _rank(hypothesis: Hypothesis) -> int:
+def rank(hypothesis: Hypothesis) -> int:
     """Which of two findings of the same thing represents it: the repaired, then the named one."""
     return (
         8 * (hypothesis.repair is not None)
@@ -387,75 +369,3 @@ def _unresolved(fault: Hypothesis) -> bool:
     """Whether a fault of the recording leaves a mark, and is neither masked nor set right."""
     spoils = int(fault.row["severity"]) >= MIN_SPOILING and fault.stage != MODEL
     return spoils and not fault.masked and (fault.repair is None or bool(fault.rivals))
-
-
-# ---- The competition.
-
-
-@dataclass(frozen=True)
-class ExplainedFindings:
-    """A cause, and the findings that are its consequences, its own among them."""
-
-    cause: Hypothesis
-    consequences: tuple[Hypothesis, ...]
-
-
-def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[ExplainedFindings]:
-    """The causes: the hypotheses that none other explains, each with what it explains.
-
-    A finding that several explain is the consequence of the one that explains most.
-    """
-    hypotheses = [h for h in hypotheses if h.cause not in CIRCUMSTANCES]
-    touched: dict[object, frozenset[str]] = {}
-    for h in hypotheses:
-        touched[_group(h)] = touched.get(_group(h), frozenset()) | h.manoeuvres
-    explained = {
-        h.id: [o for o in hypotheses if explains(h, o) and _reaches(h, o, touched[_group(h)])]
-        for h in hypotheses
-    }
-    by_strength = sorted(hypotheses, key=lambda h: (len(explained[h.id]), _rank(h)), reverse=True)
-    owner: dict[str, str] = {}
-    for cause in by_strength:
-        for other in explained[cause.id]:
-            if other.id not in owner and _root(cause.id, owner) != other.id:
-                owner[other.id] = cause.id
-    for root in (h for h in hypotheses if h.id not in owner):
-        own = tuple(h for h in hypotheses if _root(h.id, owner) == root.id)
-        if len(own) > 1 or not _is_noise(root):
-            yield ExplainedFindings(root, own)
-
-
-def _group(fault: Hypothesis) -> object:
-    """What equal faults have in common."""
-    return fault.stage, fault.cause, fault.mount, fault.sensor
-
-
-def _reaches(cause: Hypothesis, structure: Hypothesis, touched: frozenset[str]) -> bool:
-    """Whether faults touch all of the few manoeuvres that carry a structure of the residuals.
-
-    One that no few carry is not of faults that touch few. `touched`: by all faults that are equal;
-    none: all the log.
-    """
-    if structure.cause != "unknown_structure" or cause.stage == MODEL or not touched:
-        return True
-    if structure.manoeuvres:
-        return structure.manoeuvres <= touched
-    return len(touched) > MAX_CARRYING
-
-
-def _is_noise(finding: Hypothesis) -> bool:
-    """Whether it is a random walk at rest, or one that is not significant: a term of the noise.
-
-    It is in the sigmas and among the terms of the noise; the result lacks nothing by it. Of
-    severity 2 it is none of a sensor.
-    """
-    p_value = finding.row.get("p_value")
-    walk = finding.cause.endswith("_random_walk") and not finding.members[1:]
-    slight = finding.row["severity"] < 2
-    return walk and slight and (p_value is None or p_value >= MAX_WALK_P)
-
-
-def _root(finding: str, owner: dict[str, str]) -> str:
-    while finding in owner:
-        finding = owner[finding]
-    return finding

@@ -6,13 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from inertial.campaign.explanations import (
-    MIN_SPOILING,
-    PER_RUN,
-    ExplainedFindings,
-    has_own_error,
-    is_of_wrong_place,
-)
+from inertial.campaign.competition import ExplainedFindings
+from inertial.campaign.explanations import MIN_SPOILING, PER_RUN, has_own_error, is_of_wrong_place
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from inertial.campaign.explanations import ExplainedFindings
+from inertial.campaign.competition import ExplainedFindings
 from inertial.campaign.hypotheses import MODEL
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.probability import chi2_sf

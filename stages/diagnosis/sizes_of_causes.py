@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from inertial.campaign.competition import ExplainedFindings
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
 from inertial.campaign.effect_sizes import sizes_of_result
-from inertial.campaign.explanations import ExplainedFindings
 from inertial.campaign.hypotheses import Findings
 from inertial.campaign.records import Row, rows_of
 from inertial.effects import KNOWN, TEMPERATURE_MODELS

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import pandas as pd
 
-from inertial.campaign.explanations import compete
+from inertial.campaign.competition import compete
 from inertial.campaign.hypotheses import Findings, hypotheses
 from inertial.campaign.noise_levels import only_noise
 from inertial.campaign.records import Row, performed_of, rows_of

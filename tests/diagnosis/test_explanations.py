@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from inertial.campaign.explanations import compete
+from inertial.campaign.competition import compete
 from inertial.campaign.hypotheses import Hypothesis
 from stages.diagnosis.causes import _may_be_shift
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from inertial.campaign.explanations import circumstances
+from inertial.campaign.competition import circumstances
 from inertial.sensors import SINGULAR
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
