@@ -16,14 +16,9 @@ from inertial.detectors.fixture_creep import FixtureCreep
 from inertial.detectors.gap import Gap
 from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.impact import Impact
-from inertial.detectors.manoeuvres_against_plan import (
-    ManoeuvreMissing,
-    ManoeuvreSwapped,
-    RestsDivided,
-    ShortRest,
-    TurningPointOnce,
-    WrongSpans,
-)
+from inertial.detectors.manoeuvre_missing import ManoeuvreMissing, TurningPointOnce
+from inertial.detectors.manoeuvre_swapped import ManoeuvreSwapped
+from inertial.detectors.manoeuvres_against_plan import RestsDivided, ShortRest, WrongSpans
 from inertial.detectors.misread_axes_and_signs import (
     AxisSwap,
     AxisSwapAgainstPlan,
