@@ -7,14 +7,16 @@ import numpy as np
 
 from commands.draft.sensors import Kind, Part, are_means
 from commands.draft.series import MIN_REST_S, Divided, Still
-from inertial.arrays import Array
+from commands.draft.turns import (
+    MAX_RIPPLE,
+    Turn,
+    about_vertical,
+    face,
+    round_angle,
+    rounded_rate,
+    turns_in,
+)
 
-MAX_FACE_ANGLE = np.radians(15)  # of gravity to an axis, that is meant to be a face
-MAX_AXIS_ANGLE = np.radians(25)  # of a turn to an axis, that is meant to be about it
-MIN_TURN = np.radians(60)  # of an angle, to be a turn
-MIN_STRAIGHT = 0.85  # share of all rotation that is about one axis
-MAX_OFF_ROUND = 0.12  # of an angle by hand to the quarter turns that are meant
-MAX_RIPPLE = 0.02  # of the rate of a table at its steady rate, and of its angle to the round one
 MIN_POSITIONS = 3  # static positions, to be a session of them
 MIN_FACES, MIN_SESSION_TURNS = 5, 2  # of a session beside a journey
 MAX_LEANING = np.radians(25)  # of what is mounted, on slopes
@@ -53,37 +55,6 @@ class Manoeuvre:
         return self.by_table and self.degrees is not None and self.degrees % 360 == 0
 
 
-@dataclass(frozen=True)
-class Turn:
-    """A rotation about one body axis, bins [first, after): net angle, (3,), rad, and its rate.
-
-    straight: share of all rotation that is about this axis; rate: rad/s, in its middle half, and
-    ripple, the scatter of it, relative.
-    """
-
-    first: int
-    after: int
-    net: Array
-    straight: float
-    rate: float
-    ripple: float
-
-    @property
-    def angle(self) -> float:
-        """Without its sign, rad."""
-        return float(np.linalg.norm(self.net))
-
-
-def face(vector: Array, most: float = MAX_FACE_ANGLE) -> str | None:
-    """The signed axis along a vector, (3,), such as a specific force; None where there is none."""
-    if not np.isfinite(vector).all() or not np.linalg.norm(vector):
-        return None
-    i = int(np.argmax(np.abs(vector)))
-    if abs(vector[i]) < np.cos(most) * np.linalg.norm(vector):
-        return None
-    return f"{'+' if vector[i] > 0 else '-'}{'xyz'[i]}"
-
-
 def plan_of(kinds: Sequence[Kind]) -> list[Manoeuvre]:
     """The manoeuvres of all recordings in their order."""
     return [
@@ -114,57 +85,21 @@ def _manoeuvres(part: Part, own: Divided) -> Iterator[Manoeuvre]:
     """What one recording holds: positions, faces and turns in order, or a single manoeuvre."""
     rests = own.rests
     if len(rests) >= MIN_POSITIONS and len(own.series.accel):
-        about_vertical = _about_vertical(own)
-        session = _session(rests, about_vertical)
+        between = about_vertical(own)
+        session = _session(rests, between)
         if not session:
             shortest = min(rest.seconds for rest in rests)
             seconds = max(np.floor(SHARE_OF_SHORTEST * shortest), MIN_REST_S)
             yield Manoeuvre("positions", part, seconds=float(seconds), count=len(rests))
         else:
-            yield from _in_order(part, own, about_vertical, session)
-    elif turns := list(_turns(own)):
+            yield from _in_order(part, own, between, session)
+    elif turns := list(turns_in(own)):
         yield _turn(part, own, max(turns, key=lambda turn: turn.angle))
     elif rests:
         rest = max(rests, key=lambda rest: rest.seconds)
         rows = None if len(rests) == 1 else _rows(part, own, *own.inside(rest))
         up, force = face(rest.accel), tuple(rest.accel)
         yield Manoeuvre("rest", part, up=up, seconds=rest.seconds, rows=rows, force=force)
-
-
-def _turns(own: Divided) -> Iterator[Turn]:
-    """Rotations about one axis; what follows about the same one after a pause belongs to it."""
-    moves = [stretch for stretch in own.stretches if stretch.moves]
-    pause = MIN_REST_S / own.series.bin_seconds()
-    while moves and len(own.series.gyro):
-        first, after = moves[0].first, moves[0].after
-        turn = _rotation(own, first, after)
-        used = 1
-        for stretch in moves[1:]:
-            if stretch.first - after >= pause:
-                break
-            further = _rotation(own, stretch.first, stretch.after)
-            if further.net @ turn.net < np.cos(MAX_AXIS_ANGLE) * further.angle * turn.angle:
-                break
-            after, used = stretch.after, used + 1
-            turn = _rotation(own, first, after)
-        moves = moves[used:]
-        large = turn.angle > MIN_TURN or (first == 0 and after == own.series.bins)
-        if turn.straight > MIN_STRAIGHT and large and face(turn.net, MAX_AXIS_ANGLE):
-            yield turn
-
-
-def _rotation(own: Divided, first: int, after: int) -> Turn:
-    """What the gyros have between two bins, and what is slow just before and after."""
-    step = own.series.bin_seconds()
-    rates = (own.rates - own.level)[max(first - 2, 0) : after + 2]
-    net = rates.sum(axis=0) * step
-    axis = net / (np.linalg.norm(net) or 1.0)
-    path = float(np.linalg.norm(rates, axis=1).sum() * step)
-    k = len(rates)
-    middle = (rates @ axis)[k // 4 : max(k - k // 4, k // 4 + 1)]
-    rate = float(middle.mean())
-    ripple = float(middle.std() / abs(rate)) if rate and len(middle) > 3 else 1.0
-    return Turn(first, after, net, float(np.linalg.norm(net)) / (path or 1.0), rate, ripple)
 
 
 def _session(rests: Sequence[Still], turns: Mapping[int, Turn]) -> range:
@@ -204,20 +139,6 @@ def _trimmed(
     while edge + step in own and min(edge, edge + step) in turns:
         edge += step
     return range(own.start, edge + 1) if at_end else range(edge, own.stop)
-
-
-def _about_vertical(own: Divided) -> dict[int, Turn]:
-    """The turns about the vertical, by the number of the rest before each."""
-    rests = own.rests
-    turns = {}
-    for turn in _turns(own):
-        before = sum(rest.after <= turn.first + 1 for rest in rests) - 1
-        behind = sum(rest.first < turn.after - 1 for rest in rests)
-        if before >= 0 and behind == before + 1 < len(rests):
-            up = face(rests[before].accel)
-            if up and up == face(rests[behind].accel) and up[1] == _axis(turn.net)[1]:
-                turns[before] = turn
-    return turns
 
 
 def _in_order(
@@ -266,7 +187,7 @@ def _turn(
     """A turn with its round angle, and its rate where a table keeps it."""
     if before is None:
         before = next((r for r in reversed(own.rests) if r.after <= turn.first + 1), None)
-    about = _axis(turn.net)
+    about = turn.axis
     up = face(before.accel if before else own.forces.mean(axis=0))
     about = up if up is not None and up[1] == about[1] else "+" + about[1]
     along = float(turn.net["xyz".index(about[1])])
@@ -274,13 +195,13 @@ def _turn(
     seen = sign * float(np.degrees(turn.angle))
     by_table = turn.ripple < MAX_RIPPLE
     steady = by_table and turn.first == 0 and turn.after == own.series.bins
-    rate = _rounded(abs(float(np.degrees(turn.rate)))) if by_table else None
+    rate = rounded_rate(abs(float(np.degrees(turn.rate)))) if by_table else None
     return Manoeuvre(
         "turn",
         part,
         up=up,
         about=about,
-        degrees=None if steady else _round_angle(seen, by_table),
+        degrees=None if steady else round_angle(seen, by_table),
         seen=seen,
         rate=rate if not steady or rate is None else sign * rate,
         steady=steady,
@@ -288,28 +209,6 @@ def _turn(
         seconds=(turn.after - turn.first) * own.series.bin_seconds(),
         rows=rows,
     )
-
-
-def _axis(net: Array) -> str:
-    return face(net, np.pi) or "+z"
-
-
-def _round_angle(seen: float, by_table: bool) -> float:
-    """The angle that was meant: a multiple of 90°, or of 5° where none is near."""
-    quarters = np.round(seen / 90) or np.sign(seen)
-    off = abs(seen / (90 * quarters) - 1)
-    if off < (MAX_RIPPLE if by_table else MAX_OFF_ROUND):
-        return float(90 * quarters)
-    return float(5 * np.round(seen / 5))
-
-
-def _rounded(rate: float) -> float:
-    """A rate as one sets it, to one or two digits where that is near, °/s."""
-    for digits in (1, 2):
-        plain = float(f"{rate:.{digits}g}")
-        if abs(plain / rate - 1) < MAX_RIPPLE / 2:
-            return plain
-    return float(f"{rate:.3g}")
 
 
 def _rows(part: Part, own: Divided, first: int, after: int) -> tuple[int, int]:
