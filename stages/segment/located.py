@@ -56,6 +56,11 @@ class Division:
     binned: Binned
     ways: Sequence[tuple[Sequence[BinStretch], Sequence[Observation]]]
 
+    @property
+    def log(self) -> str:
+        """The log that the window is of."""
+        return self.binned.window.log
+
 
 @dataclass(frozen=True)
 class Located:

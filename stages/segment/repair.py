@@ -6,6 +6,7 @@ is, and than anything else. Where others explain as much, none is applied.
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -21,27 +22,28 @@ from inertial.signal.plan_detector import Misread, Rescaled, Reversed, SpansOff,
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from inertial.text.typography import capital
-from stages.segment.detection import Undone, in_order, misread_in, swapped_in
 from stages.segment.located import AS_PLANNED
+from stages.segment.plan_and_recording import Undone
 from stages.segment.recording_explanations import (
     ExplainedRecording,
     explained_of,
-    turned_back,
+    in_order,
+    misread_in,
     unlike,
 )
 from stages.segment.repair_readings import (
-    Scale,
     axes_by_gravity,
     misread_by_gravity,
     rates_of,
     scales_of,
     step_of,
 )
+from stages.segment.repaired_plan import at_other_rate, exchanged_back, place_of, turned_back
 from stages.segment.steps import (
-    Exchanged,
     Step,
     axes_in_words,
     axes_step,
+    count_size_step,
     exchange_in_words,
     exchange_step,
     sense_in_words,
@@ -148,19 +150,28 @@ class _Campaign:
             self._spans_off,
             self._rivals,
         )
-        return SetRight(
-            self._plan,
-            self._level,
-            self._explained,
-            self._rows,
-            self._channels,
-            undone,
-        )
+        found = (self._plan, self._level, self._explained)
+        return SetRight(*found, self._rows, self._channels, undone)
 
     @property
     def _applied(self) -> set[str]:
         """The repairs that were applied so far."""
         return {row["id"] for row in self._rows if row["state"] in APPLIED}
+
+    def _decide(
+        self,
+        step: Step,
+        condition: str,
+        fitting: tuple[int, int, int] | None = None,
+        log: str = "",
+        *,
+        rival: bool = False,
+        **more: Any,
+    ) -> bool:
+        """State a repair in the table, with `more` columns of it; whether it is applied."""
+        state = self._basis.state(step, rival=rival)
+        self._rows.append(_row(step, state, condition, fitting, log) | more)
+        return state in APPLIED
 
     def _logs(self, log: str) -> Sequence[str]:
         return [log] if log else self._basis.logs
@@ -180,9 +191,9 @@ class _Campaign:
         """Take another plan, whose manoeuvres may stand in other windows."""
         self._plan = list(plan)
         for k, one in enumerate(self._binned):
-            place = _place(one.window.manoeuvres[0])
+            place = place_of(one.window.manoeuvres[0])
             names = {m.name for m in one.window.manoeuvres}
-            there = [m for m in plan if _place(m) == place]
+            there = [m for m in plan if place_of(m) == place]
             # Two may be planned in one stretch: each has a window of its own.
             own = [m for m in there if m.name in names] or there
             self._binned[k] = replace(one, window=replace(one.window, manoeuvres=own))
@@ -193,9 +204,8 @@ class _Campaign:
         """Spans by another clock than that of their log, which the plan has moved by now."""
         for each in off:
             step = spans_step(each.log)
-            state = self._basis.state(step)
-            row = _row(step, state, spans_in_words(each), log=each.log)
-            self._rows.append(row | {"value": 0.0, "stated": each.late, "unit": "s"})
+            words = spans_in_words(each)
+            self._decide(step, words, log=each.log, value=0.0, stated=each.late, unit="s")
             self._spans_off.append(replace(each, repair=step.id))
 
     # ---- sizes of counts
@@ -205,9 +215,7 @@ class _Campaign:
         basis = self._basis
         channels: list[Row] = []
         for scale in scales_of(self._explained, self._level, basis.given, basis.counts):
-            step = _scale_step(scale)
-            state = basis.state(step, rival=bool(scale.others))
-            before, after, seen = scale.fitting
+            step = count_size_step(scale.sensor, scale.log)
             condition = _(
                 "the {sensor} read {ratio} times what they should, {where}: {why}",
                 sensor=PLURAL[scale.sensor],
@@ -215,12 +223,12 @@ class _Campaign:
                 where=where(scale.log),
                 why=scale.why,
             )
-            row = _row(step, state, condition, (before, after, seen), scale.log)
-            self._rows.append(row | {"value": 1 / scale.factor, "stated": 1.0, "unit": "1"})
-            if state not in APPLIED:
+            by, rival = 1 / scale.factor, bool(scale.others)
+            found = (scale.fitting, scale.log)
+            if not self._decide(step, condition, *found, rival=rival, value=by, stated=1.0):
                 continue
             channels += [
-                _channel(step.id, log, scale.sensor, axis, axis, 1 / scale.factor)
+                _channel(step.id, log, scale.sensor, axis, axis, by)
                 for log in self._logs(scale.log)
                 for axis in tables.AXES
             ]
@@ -249,15 +257,12 @@ class _Campaign:
             gyros_confirmed=self._by_gravity,
         )[1]
         first = len(self._rows)
-        fitting = explained.fitting
-        channels = list(self._axes_everywhere(explained, fitting))
-        channels += self._axes_of_logs(explained, fitting)
-        plan = self._plan_as_found(explained, fitting)
+        channels = [*self._axes_everywhere(explained), *self._axes_of_logs(explained)]
+        plan = self._plan_as_found(explained)
         for taken, steps in explained.rivals.items():
-            for step in steps:
-                row = _row(step, self._basis.state(step, rival=True), self._in_words(step))
-                self._rows.append(row | {"finding": taken})
             self._rivals[taken] = [(step.id, self._in_words(step)) for step in steps]
+            for step in steps:
+                self._decide(step, self._in_words(step), rival=True, finding=taken)
         moved = any(a is not b for a, b in zip(plan, self._plan, strict=True))
         if channels or moved:
             self._read_again(channels)
@@ -278,9 +283,7 @@ class _Campaign:
         own = [m for m in self._plan if m.name in step.turns.names]
         return sense_in_words(step.turns, own)
 
-    def _axes_everywhere(
-        self, explained: ExplainedRecording, fitting: tuple[int, int, int]
-    ) -> Iterator[Row]:
+    def _axes_everywhere(self, explained: ExplainedRecording) -> Iterator[Row]:
         """Axes that are others in all logs."""
         axes = explained.everywhere
         turned = _by_mounting(explained)
@@ -289,21 +292,16 @@ class _Campaign:
             for sensor, own in unlike(axes, AS_PLANNED)
             if axes_step(sensor, own).id in explained.rivals
         }
+        both = axes.accel == axes.gyro and bool(rivals)
         for each in misread_in(self._plan, replace(explained, misread={})):
             step = axes_step(each.sensor, each.axes)
-            both = axes.accel == axes.gyro and bool(rivals)
-            state = self._basis.state(step, rival=turned or both or each.sensor in rivals)
-            condition = axes_in_words(each)
-            if turned:
-                condition += f"; {MOUNTING}"
-            self._rows.append(_row(step, state, condition, fitting))
-            if state in APPLIED:
+            condition = axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
+            rival = turned or both or each.sensor in rivals
+            if self._decide(step, condition, explained.fitting, rival=rival):
                 self._misread.append(replace(each, undone=True))
                 yield from self._axes(step, each, each.axes)
 
-    def _axes_of_logs(
-        self, explained: ExplainedRecording, fitting: tuple[int, int, int]
-    ) -> Iterator[Row]:
+    def _axes_of_logs(self, explained: ExplainedRecording) -> Iterator[Row]:
         """Axes that are others in single logs."""
         for each in misread_in(self._plan, explained):
             if not each.log:
@@ -313,10 +311,8 @@ class _Campaign:
             turned = own.accel == own.gyro and determinant(own.accel) > 0
             common = getattr(explained.everywhere, each.sensor)
             unsure = common != AS_NAMED and axes_step(each.sensor, common).id not in self._applied
-            state = self._basis.state(step, rival=turned or unsure)
             condition = axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
-            self._rows.append(_row(step, state, condition, fitting, each.log))
-            if state in APPLIED:
+            if self._decide(step, condition, explained.fitting, each.log, rival=turned or unsure):
                 self._misread.append(replace(each, undone=True))
                 yield from self._axes(step, each, composed(each.axes, common.inverse))
 
@@ -326,30 +322,22 @@ class _Campaign:
                 source, sign = tables.AXES[axes.sources[i]], float(axes.signs[i])
                 yield _channel(step.id, log, misread.sensor, axis, source, sign)
 
-    def _plan_as_found(
-        self, explained: ExplainedRecording, fitting: tuple[int, int, int]
-    ) -> list[Manoeuvre]:
+    def _plan_as_found(self, explained: ExplainedRecording) -> list[Manoeuvre]:
         """The plan with exchanged manoeuvres in their places, and turns the other way."""
-        plan = list(self._plan)
-        pairs = zip(explained.exchanged, swapped_in(self._plan, explained), strict=True)
-        for exchanged, swapped in pairs:
-            step = exchange_step(exchanged)
-            state = self._basis.state(step, rival=step.id in explained.rivals)
-            row = _row(step, state, exchange_in_words(swapped), fitting)
-            self._rows.append(row | {"manoeuvre": swapped.names[0]})
-            if state in APPLIED:
+        plan, fitting = list(self._plan), explained.fitting
+        for exchanged in explained.exchanged:
+            step, swapped = exchange_step(exchanged), in_order(exchanged, self._plan)
+            place, rival = {"manoeuvre": swapped.names[0]}, step.id in explained.rivals
+            if self._decide(step, exchange_in_words(swapped), fitting, rival=rival, **place):
                 self._swapped.append(replace(swapped, undone=True))
-                plan = _exchanged_back(plan, exchanged)
+                plan = exchanged_back(plan, exchanged)
         for turns in explained.other_sense:
             step = sense_step(turns)
-            state = self._basis.state(step, rival=step.id in explained.rivals)
-            self._rows.append(_row(step, state, self._in_words(step), fitting))
-            if state in APPLIED:
-                why = self._in_words(step)
-                self._reversed.append(
-                    Reversed(step.id, turns.names, turns.about, why, self._by_gravity)
-                )
-                plan = [turned_back(m) if m.name in turns.names else m for m in plan]
+            why = self._in_words(step)
+            if self._decide(step, why, fitting, rival=step.id in explained.rivals):
+                told = (turns.about, why, self._by_gravity)
+                self._reversed.append(Reversed(step.id, turns.names, *told))
+                plan = turned_back(plan, turns.names)
         return plan
 
     def set_axes_by_gravity(self) -> None:
@@ -361,11 +349,8 @@ class _Campaign:
         chosen = [each for each in found if each.repair in self._basis.accepted] or found
         channels: list[Row] = []
         for each in chosen:
-            step = step_of(each)
-            state = self._basis.state(step, rival=len(chosen) > 1)
-            row = _row(step, state, words[step.id], log="")
-            self._rows.append(row | {"finding": chosen[0].repair})
-            if state in APPLIED:
+            step, rival = step_of(each), len(chosen) > 1
+            if self._decide(step, words[step.id], rival=rival, finding=chosen[0].repair):
                 channels += self._axes(step, each, each.axes)
         if chosen:
             rivals = [(other.repair, words[other.repair]) for other in chosen[1:]]
@@ -382,7 +367,6 @@ class _Campaign:
         if restated is None:
             return
         step = Step("stated_rate", "stated_rate", "gyro")
-        state = self._basis.state(step)
         number = len(restated.names)
         turns = [m for m in self._plan if m.do == "turn" and m.rate]
         condition = _(
@@ -391,12 +375,10 @@ class _Campaign:
             turns=counted(number, "turn"),
         )
         fitting = (len(turns) - number, len(turns), len(turns))
-        row = _row(step, state, condition, fitting)
-        self._rows.append(row | {"value": restated.ratio, "stated": 1.0, "unit": "1"})
-        if state in APPLIED:
+        if self._decide(step, condition, fitting, value=restated.ratio, stated=1.0):
             why = _("the plan states another rate than the table was set to")
             self._restated.append(Rescaled(restated.ratio, why, "", restated.names, step.id))
-            self._plan_again([_at(m, restated.ratio, restated.names) for m in self._plan])
+            self._plan_again(at_other_rate(self._plan, restated.ratio, restated.names))
             self._explain()
 
 
@@ -429,7 +411,7 @@ def _row(
         "fitting_after": after,
         "observations": total,
         "condition": condition,
-        "sentence": f"{capital(condition)}. {done}" if condition else done,
+        "sentence": f"{capital(condition)}. {done}",
     }
 
 
@@ -442,11 +424,6 @@ def _channel(repair: str, log: str, sensor: str, axis: str, from_axis: str, fact
         "from_axis": from_axis,
         "factor": factor,
     }
-
-
-def _scale_step(scale: Scale) -> Step:
-    place = [scale.log] if scale.log else []
-    return Step("/".join(["count_size", scale.sensor, *place]), "count_size", scale.sensor)
 
 
 def _by_mounting(explained: ExplainedRecording) -> bool:
@@ -470,39 +447,3 @@ def _by_mounting(explained: ExplainedRecording) -> bool:
     if axes.gyro == AS_NAMED:
         return not turns and not any(explained.gyro_signs)
     return axes.accel == AS_NAMED and not ups
-
-
-def _place(m: Manoeuvre) -> tuple[object, ...]:
-    """Where the plan has it: its log, and what it selects of that."""
-    return m.log, m.from_s, m.to_s, m.from_row, m.to_row, m.label
-
-
-def _placed(m: Manoeuvre, like: Manoeuvre) -> Manoeuvre:
-    return replace(
-        m,
-        log=like.log,
-        from_s=like.from_s,
-        to_s=like.to_s,
-        from_row=like.from_row,
-        to_row=like.to_row,
-        label=like.label,
-    )
-
-
-def _exchanged_back(plan: Sequence[Manoeuvre], exchanged: Exchanged) -> list[Manoeuvre]:
-    """The plan with manoeuvres in each other's log or stretch, or in each other's turn."""
-    half = len(exchanged.names) // 2
-    number = {m.name: i for i, m in enumerate(plan)}
-    made = list(plan)
-    for one, two in zip(exchanged.names[:half], exchanged.names[half:], strict=True):
-        a, b = plan[number[one]], plan[number[two]]
-        if _place(a) == _place(b):
-            made[number[one]], made[number[two]] = b, a
-        else:
-            made[number[one]], made[number[two]] = _placed(a, b), _placed(b, a)
-    return made
-
-
-def _at(m: Manoeuvre, ratio: float, names: Sequence[str]) -> Manoeuvre:
-    """A turn at the rate at which it was recorded."""
-    return replace(m, rate=m.rate * ratio) if m.rate and m.name in names else m

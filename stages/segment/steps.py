@@ -63,6 +63,12 @@ def axes_step(sensor: str, axes: Permutation, log: str = "") -> Step:
     return Step("/".join([kind, sensor, *([log] if log else [])]), kind, sensor, axes)
 
 
+def count_size_step(sensor: str, log: str = "") -> Step:
+    """That the counts of a sensor are of another size, in a log or in all."""
+    kind = "count_size"
+    return Step("/".join([kind, sensor, *([log] if log else [])]), kind, sensor)
+
+
 def sense_step(turns: OtherSense) -> Step:
     """That the plan counts turns the other way."""
     kind = "sense_of_table"

@@ -1,0 +1,277 @@
+"""Plan and recording of each manoeuvre, as the detectors that know the plan compare them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeVar
+
+import numpy as np
+import pandas as pd
+
+from inertial.arrays import Array
+from inertial.campaign.records import Manoeuvre, Performed
+from inertial.signal.detector import Given
+from inertial.signal.plan_detector import (
+    Misread,
+    Recorded,
+    Rescaled,
+    Reversed,
+    SpansOff,
+    StaticMeans,
+    Swapped,
+)
+from inertial.tables import ACCEL, GYRO, STATIC_PHASES
+from stages.segment.located import Located
+from stages.segment.matching import motion
+from stages.segment.recording_explanations import ExplainedRecording, in_order, misread_in
+
+UNKNOWN = np.full(3, np.nan)
+MAX_OF_ROUND = 0.01  # by which a whole number of rounds may be off
+QUARTERS = 4  # of the steady part of a turn
+Place = tuple[int, int, float, float]  # records [first, after), from and to, s
+NOWHERE: Place = (-1, -1, np.nan, np.nan)
+
+
+@dataclass(frozen=True)
+class Undone:
+    """What was set right, for the findings that tell of it; as in Recorded.
+
+    rivals : for the id of a repair that is not applied those of others that explain as much.
+    """
+
+    misread: Sequence[Misread] = ()
+    swapped: Sequence[Swapped] = ()
+    rescaled: Sequence[Rescaled] = ()
+    restated: Sequence[Rescaled] = ()
+    reversed: Sequence[Reversed] = ()
+    spans_off: Sequence[SpansOff] = ()
+    rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """What the samples show of the plan.
+
+    performed : by manoeuvre
+    segments, blocks : the tables; temperatures of blocks as recorded
+    counts : rad, what a count of the gyros is, by log; NaN where not stated
+    stated_angles : rad, by manoeuvre, those of the plan before an encoder's took their place
+    angle_sigma, rate_sigma : of the table, rad, and relative, NaN where not stated
+    """
+
+    performed: Mapping[str, Performed]
+    segments: pd.DataFrame
+    blocks: pd.DataFrame
+    counts: Mapping[str, float]
+    stated_angles: Mapping[str, float | None]
+    angle_sigma: float
+    rate_sigma: float
+
+
+def recorded_of(
+    plan: Sequence[Manoeuvre],
+    explained: ExplainedRecording,
+    undone: Undone,
+    recording: Recording,
+    given: Given,
+    tolerance: float,
+) -> Recorded:
+    """Plan and recording of each manoeuvre.
+
+    Parameters
+    ----------
+    explained : what is still not as planned, undone : what was set right
+    tolerance : accepted difference of a turn's angle or rate from the plan's, 1
+    """
+    where = {
+        m.name: located for located in explained.located for m in located.binned.window.manoeuvres
+    }
+    parts = _parts(recording.segments)
+    done = [recording.performed[m.name] for m in plan]
+    observations = [_shown(m, where[m.name]) for m in plan]
+    warm = recording.blocks.groupby("manoeuvre")["temperature"].mean().to_dict()
+    places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
+    swapped = [in_order(exchanged, plan) for exchanged in explained.exchanged]
+    first, after, from_s, to_s = np.array(places).reshape(-1, 4).T
+    return Recorded(
+        given=given,
+        tolerance=tolerance,
+        name=[m.name for m in plan],
+        log=[m.log for m in plan],
+        position=[m.position for m in plan],
+        tumble=[m.tumble for m in plan],
+        do=[m.do for m in plan],
+        steady=np.array([m.recorded == "steady" for m in plan], bool),
+        up=_vectors([m.up for m in plan]),
+        about=_vectors([m.about for m in plan]),
+        angle=_numbers([m.angle for m in plan]),
+        stated_angle=_numbers([recording.stated_angles.get(m.name) for m in plan]),
+        angle_sigma=recording.angle_sigma,
+        rate_sigma=recording.rate_sigma,
+        rate=_numbers([m.rate for m in plan]),
+        seconds=_numbers([m.seconds for m in plan]),
+        found=np.array([d.found for d in done], bool),
+        complete=np.array([d.complete for d in done], bool),
+        lost=np.array([d.lost for d in done], bool),
+        said=[d.sentence for d in done],
+        force=_vectors([force for force, _ in observations]),
+        turned=_vectors([turned for _, turned in observations]),
+        moved=_numbers([d.angle for d in done]),
+        speed=_numbers([d.rate for d in done]),
+        unsteady=_unsteady(plan, recording.blocks),
+        after_stop=_after_stop(plan, recording.blocks),
+        static_means=_static_means(plan, recording.blocks),
+        lacking=_numbers([d.missing_angle for d in done]),
+        lacking_s=_numbers([d.missing_s for d in done]),
+        duration=_numbers([d.seconds for d in done]),
+        first=first.astype(np.int64),
+        after=after.astype(np.int64),
+        from_s=from_s,
+        to_s=to_s,
+        gyros=np.array([np.isfinite(where[m.name].binned.rates).any(axis=0) for m in plan], bool),
+        count=_numbers([recording.counts.get(m.log) for m in plan]),
+        temperature=_numbers([warm.get(m.name) for m in plan]),
+        stated_temperature=_numbers([m.temperature for m in plan]),
+        temperature_sigma=_numbers([m.temperature_sigma for m in plan]),
+        gyro_signs=explained.gyro_signs,
+        misread=[*undone.misread, *(_beside(each, undone) for each in misread_in(plan, explained))],
+        swapped=[*undone.swapped, *(_beside(each, undone) for each in swapped)],
+        rescaled=undone.rescaled,
+        restated=undone.restated,
+        reversed=undone.reversed,
+        spans_off=undone.spans_off,
+        divided=[names for located in explained.located for names in located.divided],
+    )
+
+
+Left = TypeVar("Left", Misread, Swapped)
+
+
+def _beside(left: Left, undone: Undone) -> Left:
+    """What is not set right, with what explains as much."""
+    return replace(left, rivals=undone.rivals.get(left.repair, ()))
+
+
+def _unsteady(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
+    """What the mean rates of quarters of the steady part of each turn scatter by, relative.
+
+    0 where it has less than a block for each.
+    """
+    steady = blocks[blocks["phase"] == "steady"].groupby("manoeuvre")
+    rates = {name: own[list(GYRO)].to_numpy(np.float64) for name, own in steady}
+    scatter = np.zeros(len(plan))
+    for i, m in enumerate(plan):
+        if m.about is not None and len(rates.get(m.name, ())) >= QUARTERS:
+            quarters = np.array_split(rates[m.name] @ m.about, QUARTERS)
+            means = [quarter.mean() for quarter in quarters]
+            scatter[i] = np.std(means) / abs(np.mean(means))
+    return scatter
+
+
+def _after_stop(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
+    """By what each turn, a whole number of rounds, goes on in the rest after it, rad.
+
+    By the rate there beyond that in the rest before it, about its axis and in its sense; NaN where
+    one of the two rests is not recorded. The earth's rate about the axis is the same in both.
+    """
+    angle = np.full(len(plan), np.nan)
+    rests = {
+        key: (own[list(GYRO)].to_numpy(np.float64), own["seconds"].to_numpy(np.float64))
+        for key, own in blocks.groupby(["manoeuvre", "phase"])
+    }
+    for i, m in enumerate(plan):
+        rounds = 0.0 if m.angle is None else m.angle / (2 * np.pi)
+        before, after = (rests.get((m.name, f"rest-{side}")) for side in ("before", "after"))
+        if m.about is None or not round(rounds) or abs(rounds - round(rounds)) > MAX_OF_ROUND:
+            continue
+        if before and after:
+            earlier, later = (
+                float(np.average(rates @ m.about, weights=seconds))
+                for rates, seconds in (before, after)
+            )
+            angle[i] = np.sign(rounds) * (later - earlier) * after[1].sum()
+    return angle
+
+
+def _static_means(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> StaticMeans:
+    """The means of all rests with readings of all three accelerometers, in the order of time."""
+    places = {m.name: i for i, m in enumerate(plan)}
+    own = blocks[blocks["phase"].isin(STATIC_PHASES) & blocks["manoeuvre"].isin(places)]
+    known = np.isfinite(own[[*ACCEL, "time"]].to_numpy(np.float64)).all(axis=1)
+    own = own[known & (own["seconds"].to_numpy(np.float64) > 0)]
+    rests = [
+        (
+            places[str(name)],
+            str(phase) == "rest-after",
+            np.average(rest[list(ACCEL)], axis=0, weights=rest["seconds"]),
+            float(np.average(rest["time"], weights=rest["seconds"])),
+            float(rest["seconds"].sum()),
+        )
+        for (name, phase), rest in own.groupby(["manoeuvre", "phase"], sort=False)
+    ]
+    rests.sort(key=lambda rest: (rest[0], rest[1]))
+    number, after, force, time, seconds = zip(*rests, strict=True) if rests else ((),) * 5
+    return StaticMeans(
+        np.array(number, np.int64),
+        np.array(after, bool),
+        np.array(force, np.float64).reshape(-1, 3),
+        np.array(time, np.float64),
+        np.array(seconds, np.float64),
+    )
+
+
+def _parts(segments: pd.DataFrame) -> dict[str, Place]:
+    """For each manoeuvre the records and times of its rest, or of all its motion."""
+    own = segments[~segments["phase"].isin(("rest-before", "rest-after"))]
+    return {
+        str(name): (
+            int(rows["from_record"].min()),
+            int(rows["to_record"].max()),
+            float(rows["from_s"].iloc[0]),
+            float(rows["to_s"].iloc[-1]),
+        )
+        for name, rows in own.groupby("manoeuvre")
+    }
+
+
+def _candidate(m: Manoeuvre, located: Located) -> int | None:
+    """The stretch of a manoeuvre; of one that is not found, what a log of its own has instead."""
+    place = located.place(m)
+    if place is not None or not located.binned.window.alone:
+        return place
+    alike = [k for k, what in enumerate(located.observed) if what.moves is (m.do != "rest")]
+    return max(alike, key=lambda k: located.observed[k].seconds, default=None)
+
+
+def _instead(m: Manoeuvre, located: Located) -> Place:
+    place = _candidate(m, located)
+    if place is None:
+        return NOWHERE
+    binned, stretch = located.binned, located.stretches[place]
+    times = binned.first_s[stretch.first], binned.last_s[stretch.after - 1]
+    records = binned.edges[stretch.first], binned.edges[stretch.after]
+    return int(records[0]), int(records[1]), float(times[0]), float(times[1])
+
+
+def _shown(m: Manoeuvre, located: Located) -> tuple[Array | None, Array | None]:
+    """The mean force at its rest, or at that before its turn, and the angles of its motion."""
+    place = _candidate(m, located)
+    if m.do == "positions" or place is None:
+        return None, None
+    if m.do == "rest":
+        return located.observed[place].force, None
+    before = located.rest_before(m)
+    turned = located.observed[place].turned
+    if located.binned.window.alone:
+        first, after = motion(located.binned, located.stretches, place)
+        pairs = zip(located.stretches, located.observed, strict=True)
+        own = [w.turned for s, w in pairs if first <= s.first and s.after <= after]
+        turned = np.asarray(np.sum(own, axis=0))
+    return None if before is None else located.observed[before].force, turned
+
+
+def _vectors(values: Sequence[Array | None]) -> Array:
+    return np.array([UNKNOWN if value is None else value for value in values]).reshape(-1, 3)
+
+
+def _numbers(values: Sequence[float | None]) -> Array:
+    return np.array([np.nan if value is None else value for value in values], np.float64)
