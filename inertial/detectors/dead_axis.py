@@ -71,39 +71,22 @@ class DeadAxis(Detector):
 
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         channels = [_Channel.of(*readings_of(piece, log, i)) for i in range(6)]
-        noise = [channel.noise for channel in channels]
-        loudest = max(np.nan_to_num(noise))
-        for sensor, axes in COLUMNS.items():
-            changing = [own for own in channels[axes] if np.isfinite(own.noise)]
-            for i in range(axes.start, axes.stop):
-                own = channels[i]
-                chance = np.ones(len(own.length))
-                if changing:
-                    always = own not in changing
-                    usual = min(each.jitter for each in changing) if always else own.noise
-                    chance = own.chance_by_noise(usual, 6 * log.records)
-                    long = np.flatnonzero((own.length > BLOCK) & (chance > MAX_CHANCE)).tolist()
-                    if sensor == "gyro" and long:
-                        turned = _turned(piece, i - axes.start, channels[axes])
-                        for k in long:
-                            stays = 6 * log.records * turned.chance_of(*own.records(k))
-                            chance[k] = min(chance[k], stays)
-                elif len(own.values) >= MIN_COMMON_RUN and loudest > MIN_NOISE_COUNTS:
-                    chance[:] = np.nan  # the whole sensor stands still, and the other does not
-                named = ~(chance > MAX_CHANCE) & (own.length >= MIN_RUN)
-                for k in np.flatnonzero(named).tolist():
-                    number = int(own.length[k])
-                    yield piece.event(
-                        *own.records(k),
-                        float(number),
-                        channel=i,
-                        p_value=float(chance[k]) if np.isfinite(chance[k]) else None,
-                        facts=Stillness(
-                            float(own.values[own.start[k]]),
-                            bool(log.least[i] == log.most[i]),
-                            number * log.step,
-                        ),
-                    )
+        for i, own in enumerate(channels):
+            chance = _chances(piece, channels, i, 6 * log.records)
+            named = ~(chance > MAX_CHANCE) & (own.length >= MIN_RUN)
+            for k in np.flatnonzero(named).tolist():
+                number = int(own.length[k])
+                yield piece.event(
+                    *own.records(k),
+                    float(number),
+                    channel=i,
+                    p_value=float(chance[k]) if np.isfinite(chance[k]) else None,
+                    facts=Stillness(
+                        float(own.values[own.start[k]]),
+                        bool(log.least[i] == log.most[i]),
+                        number * log.step,
+                    ),
+                )
 
     def describe(self, event: Event, name: str) -> Description:
         assert event.channel is not None
@@ -236,6 +219,27 @@ class _Channel:
             alike = self.equal_elsewhere(k) ** self.length[k]
             chance[k] = tests[k] * max(_chance(self.length[k : k + 1], beside)[0], alike)
         return np.asarray(chance)
+
+
+def _chances(piece: Piece, channels: Sequence[_Channel], i: int, readings: int) -> Array:
+    """The chance of each run of channel i, (k,), in so many readings of a log.
+
+    NaN, not known, where its whole sensor stands still and the other one does not.
+    """
+    axes = COLUMNS["accel" if i < 3 else "gyro"]
+    own, changing = channels[i], [each for each in channels[axes] if np.isfinite(each.noise)]
+    if not changing:
+        loudest = max(np.nan_to_num([channel.noise for channel in channels]))
+        still = len(own.values) >= MIN_COMMON_RUN and loudest > MIN_NOISE_COUNTS
+        return np.full(len(own.length), np.nan if still else 1.0)
+    usual = own.noise if own in changing else min(each.jitter for each in changing)
+    chance = own.chance_by_noise(usual, readings)
+    long = np.flatnonzero((own.length > BLOCK) & (chance > MAX_CHANCE)).tolist()
+    if i >= 3 and long:
+        turned = _turned(piece, i - axes.start, channels[axes])
+        for k in long:
+            chance[k] = min(chance[k], readings * turned.chance_of(*own.records(k)))
+    return chance
 
 
 def _turned(piece: Piece, axis: int, gyros: Sequence[_Channel]) -> FreeRotation:
