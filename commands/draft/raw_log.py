@@ -209,6 +209,14 @@ class RawLog:
         """How many data rows."""
         return max((len(values) for values in self.columns.values()), default=0)
 
+    def column(self, name: Name, rows: tuple[Name, str] | None = None) -> Array:
+        """A column, or its rows in which another column holds a word: `rows`, both of these."""
+        values = self.columns[name]
+        if rows is None:
+            return values
+        other, word = rows
+        return np.asarray(values[np.array(self.words[other])[: len(values)] == word])
+
 
 def finite(values: Array) -> Array:
     """Those that are numbers; one zero where none is."""

@@ -108,7 +108,7 @@ def timing_of(
     )
     if column is None:
         return _without_time(None, None, stated, _("no column is a time"))
-    counters = [_finite(_selected(log, column, rows)) for log in logs]
+    counters = [_finite(log.column(column, rows)) for log in logs]
     steps = [np.diff(counter) for counter in counters]
     ticks = float(np.median([_step(counter) for counter in counters]))
     if ticks == 1 and all(np.mean(own == 1) > 0.95 for own in steps):
@@ -186,14 +186,6 @@ def _period(counters: Sequence[Array]) -> int | None:
             periods.add(period if abs(back + period - usual) < MAX_STEP * usual else np.nan)
     period = periods.pop() if len(periods) == 1 else np.nan
     return int(period) if period > MIN_PERIOD else None
-
-
-def _selected(log: RawLog, column: Name, rows: tuple[Name, str] | None) -> Array:
-    values = log.columns[column]
-    if rows is None:
-        return values
-    name, word = rows
-    return np.asarray(values[np.array(log.words[name])[: len(values)] == word])
 
 
 def _finite(values: Array) -> Array:

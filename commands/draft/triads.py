@@ -64,10 +64,7 @@ class Triad:
     def of(self, together: Sequence[RawLog]) -> Array:
         """The readings, (n, 3), of rows without a gap."""
         log = together[self.file]
-        values = np.column_stack([log.columns[column] for column in self.columns])
-        if self.rows is not None:
-            column, word = self.rows
-            values = values[np.array(log.words[column])[: len(values)] == word]
+        values = np.column_stack([log.column(name, self.rows) for name in self.columns])
         if self.bits is not None:
             values = signed(values, self.bits)
         return np.asarray(values[np.isfinite(values).all(axis=1)])
