@@ -55,6 +55,12 @@ def same_log(cause: Hypothesis, other: Hypothesis) -> bool:
     return (log is not None and log == other.row["log"]) or same_manoeuvre(cause, other)
 
 
+def by_single_readings(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In a manoeuvre, of whose turn readings here and there lack little."""
+    whole = other.cause == "incomplete_turn" and _size(other) > MAX_OF_READINGS
+    return same_manoeuvre(cause, other) and not whole
+
+
 # ---- Which findings.
 
 
@@ -69,7 +75,7 @@ _KIND = {
     name: kind
     for kind, names in {
         "bias jump": ("bias_jump", "gyro_bias_jump", "accel_bias_jump", "mounting_shift"),
-        "periodic": ("oscillation", "table_ripple", "table_eccentricity", "table_wobble"),
+        "periodic": ("oscillation", "table_ripple", "table_eccentricity"),
         "temperature": (
             "temperature_drift",
             *(f"{s}_{what}" for s in SENSORS for what in ("warm_up", "bias_ramp", "scale_ramp")),
@@ -141,6 +147,7 @@ IN_PROPORTION = frozenset(
     }
 )
 POSITION_OFF = ("table_position_error", "table_axis_error")
+MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
 LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
 
 
@@ -158,8 +165,6 @@ EXPLANATIONS = (
     Explanation(
         (
             "saturation",
-            "spike",
-            "periodic_glitch",
             "impact",
             *LOST_RECORDS,
             "status_invalid",
@@ -168,6 +173,7 @@ EXPLANATIONS = (
         PERFORMANCE,
         same_manoeuvre,
     ),
+    Explanation(("spike", "periodic_glitch"), PERFORMANCE, by_single_readings),
     Explanation(
         ("dead_axis", "saturation"),
         (*PERFORMANCE, "oscillation", "quantisation", *MISFITS),
