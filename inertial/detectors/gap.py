@@ -96,8 +96,14 @@ class Gap(Detector):
         if not lost.turning:
             return Description(
                 sentence,
-                _("A mean of a rest hardly changes by it."),
-                _("Nothing is taken in its place."),
+                _(
+                    "A mean of a rest hardly changes by it. Or no sample is missing, and the clock "
+                    "was set forward: readings at rest do not tell these apart."
+                ),
+                _(
+                    "Find what loses samples, such as a buffer, a cable or a disk, or sets the "
+                    "clock."
+                ),
             )
         if not lost.steady:
             return Description(
@@ -127,7 +133,8 @@ class Gap(Detector):
             ),
             _(
                 "The joint fit interpolates gaps with at least 1 s of steady rate (or the length "
-                "of the gap, if shorter) on both sides; whole-turn formulas do not use this turn."
+                "of the gap, if shorter) on both sides; whole-turn formulas do not use this turn. "
+                "Find what loses samples, such as a buffer, a cable or a disk."
             ),
         )
 

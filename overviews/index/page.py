@@ -107,7 +107,7 @@ def _campaigns(
 ) -> outline.Section:
     def parts(_tables: Tables) -> Iterator[outline.Part]:
         newest_first = sorted(
-            campaigns.items(), key=lambda item: item[1].row("campaign")["date"], reverse=True
+            campaigns.items(), key=lambda item: _day(item[1].row("campaign")["date"]), reverse=True
         )
         yield outline.Table(
             _("Campaigns with a result, the newest first."),
@@ -158,6 +158,11 @@ def _campaigns(
         (),
         parts,
     )
+
+
+def _day(date: str) -> str:
+    """A date to be sorted by; nothing where it is not known."""
+    return date if date[:1].isdigit() else ""
 
 
 def _row(name: str, tables: Tables, due: str | None, reports: Path) -> outline.Row:

@@ -138,7 +138,7 @@ class BiasOfRun(_BiasChange):
 
 
 def per_log_name(sensor: str) -> str:
-    """The name of biases of a sensor that are others in each run."""
+    """The name of biases of a sensor that differ from run to run."""
     return f"{sensor}_bias_per_log"
 
 

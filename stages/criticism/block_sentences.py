@@ -69,11 +69,10 @@ CONSEQUENCE_WITHOUT_LAW = _(
 
 PER_LOG = {
     "gyro_bias_per_log": _(
-        "The biases of the gyros are others in each run: they differ by up to {size}.{others}"
+        "The biases of the gyros differ from run to run, by up to {size}.{others}"
     ),
     "accel_bias_per_log": _(
-        "The biases of the accelerometers are others in each run: they differ by up to {size}."
-        "{others}"
+        "The biases of the accelerometers differ from run to run, by up to {size}.{others}"
     ),
 }
 DRIFT = _("The biases drift in a way that no effect of the catalogue explains{nearest}.")
@@ -102,7 +101,7 @@ SPLIT_TOO_WEAK = _(
 
 
 def per_log_sentence(cause: Cause, difference: float, sigma: float, si: str) -> str:
-    """Of biases that are others in each run; `difference`: the largest, in its SI unit `si`."""
+    """Of biases that differ from run to run; `difference`: the largest, in its SI unit `si`."""
     others = _others(cause)
     unit = quantity("bias", si).laboratory
     return PER_LOG[cause.effect].format(

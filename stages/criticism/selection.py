@@ -104,7 +104,7 @@ class Selection:
         """The same with structure in the residuals of these sensors, so no certain name there.
 
         Nor of an effect of both sensors that would not be named without their readings. That
-        biases are others in each run is no law, and stays.
+        biases differ from run to run is no law, and stays.
         """
         if not sensors:
             return self

@@ -67,7 +67,7 @@ ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
 IN_COVARIANCE = _("The covariance of the result includes it.")
 NO_JUMP = _("The biases of the {sensors} did not change when those of the others did.")
 ONE_CHANGE = _(
-    "The biases of the {sensors} changed at that place alone, and are not others in each run."
+    "The biases of the {sensors} changed at that place alone, and do not differ from run to run."
 )
 OF_GYROS = _("The asymmetry is that of the gyros, and not of the table.")
 STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
