@@ -15,6 +15,7 @@ from commands.no_result import no_results
 from inertial.estimation.triad import linear_names
 from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal
+from laboratory.rawimu import Samples, log_bytes
 
 MAX_SIGMA = 4.5  # of some twenty parameters with Gaussian errors, in 1 of 6000 campaigns
 
@@ -360,3 +361,13 @@ def test_bytes_that_are_no_log_are_refused(seed, tmp_path, capsys):
     log.write_bytes(np.random.default_rng(seed).bytes(50_000))
     error = refused(capsys, [str(log), "--name", "june", "--data", str(tmp_path / "data")])
     assert "log.csv" in error and "cure:" in error
+
+
+def test_a_few_messages_of_a_receiver_are_refused_by_their_number(tmp_path):
+    counts = np.arange(21, dtype=np.int64).reshape(7, 3)
+    log = tmp_path / "few.bin"
+    log.write_bytes(
+        log_bytes(Samples(10_000_000 * np.arange(7), counts, counts), "RAWIMUSXB", "77")
+    )
+    with pytest.raises(Refusal, match="7 messages of an IMU"):
+        draft([log], "few", tmp_path / "data")

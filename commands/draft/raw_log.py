@@ -21,7 +21,7 @@ from inertial.formats.gps_time import NANOSECONDS
 from inertial.formats.novatel import novatel_reader
 from inertial.sensors import CHANNELS
 from inertial.tables.errors import Refusal
-from inertial.text.messages import _
+from inertial.text.messages import _, plural
 
 HEAD_BYTES = 1 << 17  # of the log, by which its layout is judged
 MINNUMBERS = 3  # in a row of data
@@ -176,6 +176,7 @@ def _names(line: str, delimiter: str | None, length: int) -> list[str]:
 # ---- The log.
 
 Name = str | int
+MIN_MESSAGES = 20  # of a receiver: fewer show no manoeuvre
 MAX_WORDS = 50  # different ones in a column that labels rows
 SENT = (2, 1, 0, 5, 4, 3)  # a receiver sends z, −y, x
 SENT_SIGNS = (1, -1, 1, 1, -1, 1)
@@ -287,6 +288,14 @@ def _receiver_log(path: Path) -> RawLog | None:
         counts.append(reading.records.counts)
     if not stamps:
         return None
+    if (number := sum(map(len, stamps))) < MIN_MESSAGES:
+        raise Refusal(
+            path.name,
+            "",
+            plural("{count} message of an IMU", "{count} messages of an IMU", number),
+            _("at least {least}, of a rest or a turn", least=MIN_MESSAGES),
+            _("leave it out, or record for longer"),
+        )
     body = np.concatenate(counts)[:, SENT] * np.array(SENT_SIGNS)
     columns: dict[Name, Array] = {"time": np.concatenate(stamps)}
     columns |= {name: body[:, i].astype(np.float64) for i, name in enumerate(CHANNELS)}

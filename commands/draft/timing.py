@@ -203,7 +203,7 @@ def _step(values: Array) -> float:
     if np.median(steps) == 0 and np.mean(steps[new] == tick) > MIN_SINGLE_TICKS:
         single = steps[new[1:]] == tick
         return tick / float(np.diff(new)[single].mean())
-    places = np.linspace(0, len(values) - 1, CLOCK_PARTS + 1).astype(int)
+    places = np.unique(np.linspace(0, len(values) - 1, CLOCK_PARTS + 1).astype(int))
     step = float(np.median(np.diff(values[places]) / np.diff(places)))
     whole = float(np.median(steps))
     return whole if abs(whole - step) < 1e-3 * step else step

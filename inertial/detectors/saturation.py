@@ -118,7 +118,14 @@ class Saturation(Detector):
         assert largest.channel is not None
         number = round(sum(event.size for _, event in events))
         where = _("{name} from line {line} on", name=name, line=largest.line)
-        if len({log for log, _ in events}) > 1:
+        if len({log for log, _ in events}) == 1 < len(events):
+            where = _(
+                "{count} places of {name}, the longest from line {line} on",
+                count=len(events),
+                name=name,
+                line=largest.line,
+            )
+        elif len(events) > 1:
             where = _("{logs}, most of them in {where}", logs=names_of_logs(events), where=where)
         what, unit = (_("velocity"), "m/s") if largest.channel < 3 else (_("angle"), "°")
         scale, _unit = read_in(largest.channel)

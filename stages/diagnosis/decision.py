@@ -32,7 +32,7 @@ DOUBTFUL = _(
     "findings are not explained ({causes})."
 )
 NO_EFFECT = _("The joint result of the {sensors} counts: they show no effect that was named.")
-KEPT = _("The joint result of the {sensors} counts, though {effects} was named: {reason}.")
+KEPT = _("The joint result of the {sensors} counts, without {effects} in its model: {reason}.")
 NOT_EXPLAINED = _("beside it some findings are not explained ({causes})")
 CARRIED = _("{manoeuvre} alone carries {effect}, for without it the others do not show it")
 NOT_VALIDATED = _(

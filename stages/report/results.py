@@ -24,12 +24,12 @@ METHOD = {
     JOINT: _("joint fit of all manoeuvres"),
     EXTENDED: WITH_EFFECTS,
     MIXTURE: _("mean over the members of a class, by their probability"),
-    "six_position": _("six positions, S0"),
+    "six_position": _("six positions, closed formula"),
     "free_positions": _("static positions of unknown attitude, by |f| = g"),
     "up_and_down": _("two positions with tilt, S1"),
     "pooled_positions": _("static positions at one attitude pooled, S3"),
-    "static": _("static positions up and down, S0"),
-    "turns": _("turns forward and backward, S0"),
+    "static": _("static positions up and down, closed formula"),
+    "turns": _("turns forward and backward, closed formula"),
     "turn_and_stop": _("turn and stop, S3: M, and the bias by turns"),
     "stops": _("turn and stop, S3: the bias by static positions"),
     "rate_table": _("rate table, S4"),
@@ -116,7 +116,7 @@ class Estimate:
             return (
                 _(
                     "noise alone does not describe the data ({p_is}), noise and a random walk of "
-                    "the bias do",
+                    "the bias, which this χ² allows for, do",
                     p_is=p_is,
                 )
             ), "fair"
@@ -124,8 +124,8 @@ class Estimate:
         scatter = f"{numbers.significant(unit.of(fit['scatter']), 2)} {unit.name}"
         return (
             _(
-                "with a scatter of the manoeuvres by {scatter}, which the σ include; noise alone "
-                "does not describe the data ({p_is})",
+                "with a scatter of the manoeuvres by {scatter}, which this χ² and the σ allow for; "
+                "noise alone does not describe the data ({p_is})",
                 p_is=p_is,
                 scatter=scatter,
             )

@@ -76,7 +76,7 @@ def _hindrance(moving: pd.DataFrame, holes: Integers, inside: Booleans) -> str:
         before = float(seconds[:hole][steady[:hole]].sum())
         after = float(seconds[hole:][steady[hole:]].sum())
         if min(before, after) < enough - step / 2:
-            side = "before" if before < after else "after"
+            side = _("before") if before < after else _("after")
             return _(
                 "only {before:.2f} s of steady rate are recorded {side} them, of {enough:.2f} s "
                 "that are needed",
@@ -179,8 +179,8 @@ def _cut_off(
     """
     reasons: list[str] = []
     remark = ""
-    edges = [("begins", about[0])] if first == 0 else []
-    edges += [("ends", about[-1])] if after == binned.bins else []
+    edges = [(_("begins"), about[0])] if first == 0 else []
+    edges += [(_("ends"), about[-1])] if after == binned.bins else []
     for what, edge in edges:
         if abs(edge) * binned.bin_seconds / 2 < (m.angle_sigma or 0.0):
             remark += _(

@@ -136,7 +136,7 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
     return outline.Table(
         _(
             "Duration of each static position for a required σ of the bias, if it were computed by "
-            "the formulas of S0 (not the result of this report, whose σ is in “Parameters”)."
+            "the closed formulas (not the result of this report, whose σ is in “Parameters”)."
         ),
         (
             outline.Column(_("Bias")),
@@ -149,7 +149,7 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
             outline.Column(_("duration"), "number", _("Required")),
         ),
         [_wanted_row(row) for row in rows],
-        _("None: no formula of S0 gives a bias here."),
+        _("None: no closed formula gives a bias here."),
         _(
             "σ² = N²/T + floor², with the white noise N of the bias and positions of duration T. "
             "The floor is what averaging does not reduce: tilts of the positions, gravity, an "

@@ -200,7 +200,7 @@ def _or(name: str, row: Record) -> str:
 
 
 def _sensors(rows: Sequence[Record]) -> str:
-    return _distinct(PLURAL.get(row["sensor"] or "", "readings") for row in rows)
+    return _distinct(PLURAL.get(row["sensor"] or "", _("readings")) for row in rows)
 
 
 # ---- what an effect in the model improves

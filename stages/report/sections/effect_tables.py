@@ -191,9 +191,9 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             outline.Column(_("parameter"), "symbol", _("Detection limit (5 σ)")),
             outline.Column(_("best axis"), "number", _("Detection limit (5 σ)")),
             outline.Column(_("unit"), "unit", _("Detection limit (5 σ)")),
-            outline.Column("σ", "number", _("Undetected, it moves")),
-            outline.Column(_("parameter"), "symbol", _("Undetected, it moves")),
-            outline.Column(_("sensor"), "text", _("Undetected, it moves")),
+            outline.Column("σ", "number", _("Shift by an undetected effect")),
+            outline.Column(_("parameter"), "symbol", _("Shift by an undetected effect")),
+            outline.Column(_("sensor"), "text", _("Shift by an undetected effect")),
             outline.Column("p", "number"),
         ),
         [
@@ -208,9 +208,9 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
                     "this significant (corrected for the number of tests, so it is often 1)."
                 ),
                 _(
-                    "Undetected, it moves: the parameter that an effect as large as its detection "
-                    "limit moves most, by how many of its sigmas, which hold no effect that is not "
-                    "named (external reliability, Baarda 1968)."
+                    "Shift by an undetected effect: the parameter that an effect as large as its "
+                    "detection limit moves most, by how many of its sigmas, which hold no effect "
+                    "that is not named (external reliability, Baarda 1968)."
                 ),
                 *_remarks(seen, by_name),
             ]
@@ -404,6 +404,9 @@ def channel(row: Record) -> str:
     return _("{axis} {sensor}", axis=row["axis"], sensor=SINGULAR.get(row["sensor"], row["sensor"]))
 
 
+SMOOTH = _("smooth")  # a structure along the whole of time or angle
+
+
 def place(row: Record) -> str:
     """Where along time or angle the structure is."""
     at = row["scan_value"]
@@ -412,11 +415,11 @@ def place(row: Record) -> str:
     if row["kind"] == "change":
         return _("at {fixed} min", fixed=numbers.fixed(at / 60, 1))
     if row["kind"] == "angle":
-        return _("{at} times in a turn", at=numbers.significant(at, 3)) if at > 0 else "smooth"
+        return _("{at} times in a turn", at=numbers.significant(at, 3)) if at > 0 else SMOOTH
     if row["kind"] == "time":
         return (
             _("every {significant} s", significant=numbers.significant(1 / at, 3))
             if at > 0
-            else "smooth"
+            else SMOOTH
         )
     return "—"

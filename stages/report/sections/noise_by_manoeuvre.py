@@ -42,7 +42,8 @@ SECTION = outline.Section(
     _("The white noise of each channel, estimated from the data of each manoeuvre alone."),
     _(
         "A channel that is noisier in one attitude than in another responds to vibration of table "
-        "or building. The data sheet is shown for comparison only and is used nowhere."
+        "or building. The white noise of the data sheet is shown for comparison only and is used "
+        "nowhere."
     ),
     ("noise", "sensors"),
     parts,

@@ -21,7 +21,7 @@ from stages.report.drawing import Array
 from stages.report.linked import gains
 from stages.report.outline import Figure
 from stages.report.sections.effect_sentences import FITTED, HELD_OUT, about_effect
-from stages.report.sections.effect_tables import TESTS, channel, place
+from stages.report.sections.effect_tables import SMOOTH, TESTS, channel, place
 from stages.report.tables import Record, Tables, once
 
 UNIT = {"gyro": DEGREES_PER_HOUR, "accel": MICRO_G}
@@ -240,7 +240,7 @@ def structures(tables: Tables, finding: Record, mount: str, key: str) -> Iterato
 
 def _structure(row: Record, points: Sequence[Record], key: str) -> Figure:
     along, at = TESTS[row["kind"]], place(row)
-    where = f" ({at})" if at not in ("—", "smooth") else ""
+    where = f" ({at})" if at not in ("—", SMOOTH) else ""
     return Figure(
         _(
             "Residuals of the {channel} against {along}{where}: points ± σ, one for "

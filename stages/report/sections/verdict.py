@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator
 from math import degrees
 
+from inertial.campaign.hypotheses import JUMP_NOT_TESTABLE
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import (
@@ -69,6 +70,7 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         _("All parameters are determined, and no fault was detected."),
     ),
 }
+NOT_TESTABLE = _("not testable with this plan: whether it happened is not known")
 SURE = {
     "found": _("identified: no other cause explains these data as well"),
     "one_of_class": _("one of a class whose members these data do not distinguish"),
@@ -156,7 +158,7 @@ def _sentence(text: str) -> str:
 
 def _sure(tables: Tables, row: Record) -> str:
     """The degree of certainty, the members of a class, and the significance."""
-    words = SURE[row["verdict"]]
+    words = NOT_TESTABLE if row["cause"] == JUMP_NOT_TESTABLE else SURE[row["verdict"]]
     own = members(tables, row)
     shares = [one["probability"] is not None for one in own]
     if own:
