@@ -370,7 +370,12 @@ def stretch_between(
 
 
 def _ends(time: Array, seconds: Array) -> tuple[float, float]:
-    """Start and end of consecutive blocks, from their middles, s."""
+    """Start and end of consecutive blocks, from their middles, s.
+
+    NaN where the time goes back: nothing tells when that was.
+    """
+    if (np.diff(time) <= 0).any():
+        return np.nan, np.nan
     return float(time[0] - seconds[0] / 2), float(time[-1] + seconds[-1] / 2)
 
 

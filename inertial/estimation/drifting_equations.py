@@ -216,6 +216,8 @@ class DriftLikelihood:
     def _of(self, factor: Array) -> Deviance:
         """As a function of the size of drifts `factor` · independent ones; the axes are alike."""
         n, q = factor.shape
+        if not q:
+            return lambda size: self.constant
         half = np.tensordot(factor.T, self.information.reshape(n, -1), 1)  # (q, 3 · 3n)
         whole = half.reshape(q, 3, n, 3).transpose(0, 1, 3, 2) @ factor  # (q, 3, 3, q)
         information = whole.transpose(0, 1, 3, 2).reshape(3 * q, 3 * q)

@@ -1,5 +1,6 @@
 """White noise of every channel in every manoeuvre, and all terms of the noise at rest."""
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import chain, pairwise, product
 
@@ -160,24 +161,30 @@ def _unbroken(
 ) -> Iterator[tuple[str, Integers, Array, bool]]:
     """Records of one log without a gap or a masked record between them.
 
-    Log, numbers, values, and whether they continue those before.
+    Log, numbers, values, and whether they continue those before. A record that repeats an earlier
+    one took no time: those beside it follow each other.
     """
     columns = ["record", *tables.CHANNELS]
-    before: tuple[str, int, bool, bytes] | None = None  # log, next record, masks
+    before: tuple[str, int, bool, bytes] | None = None  # log, next sample, masks
+    repeated: dict[str, int] = defaultdict(int)  # records of each log so far
     for log, piece in pieces(recorded.samples, columns, recorded.repairs):
         record = piece["record"]
         values = np.column_stack([piece[channel] for channel in tables.CHANNELS])
         starts = gaps.loc[gaps["log"] == log, "record"].to_numpy(np.int64)
         masked = recorded.masked.of(log, record)
         values[masked.channels] = np.nan
-        bad, here = masked.whole, masked.channels
-        breaks = (np.diff(record) != 1) | np.isin(record[1:], starts) | np.diff(bad)
+        sample = record - repeated[log] - np.cumsum(masked.repeated)
+        repeated[log] += int(masked.repeated.sum())
+        once = ~masked.repeated
+        record, sample, values = record[once], sample[once], values[once]
+        bad, here = masked.lost[once], masked.channels[once]
+        breaks = (np.diff(sample) != 1) | np.isin(record[1:], starts) | np.diff(bad)
         breaks |= (here[1:] != here[:-1]).any(axis=1)
-        edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(record)]
+        edges = [0, *(np.flatnonzero(breaks) + 1).tolist(), len(record)] if len(record) else []
         for first, after in pairwise(edges):
-            start = (log, int(record[first]), bool(bad[first]), here[first].tobytes())
-            continues = start == before and start[1] not in starts
-            before = (log, int(record[after - 1]) + 1, *start[2:])
+            start = (log, int(sample[first]), bool(bad[first]), here[first].tobytes())
+            continues = start == before and int(record[first]) not in starts
+            before = (log, int(sample[after - 1]) + 1, *start[2:])
             if not bad[first]:
                 yield log, record[first:after], values[first:after], continues
 

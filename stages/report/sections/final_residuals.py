@@ -69,7 +69,7 @@ def final_residuals(tables: Tables) -> dict[str, list[Residual]]:
 
 def parts(tables: Tables) -> Iterator[Part]:
     """A figure of each sensor, and how the residuals compare with the noise."""
-    if tables.frame("residuals").empty:
+    if not any(final_residuals(tables).values()):
         yield Paragraph(_("None: no result counts, or no attitude is known."), "fair")
         return
     for sensor, shown in final_residuals(tables).items():
