@@ -183,9 +183,12 @@ class Campaign:
         return self.with_random_walks((0.0, 0.0))
 
     def without_drift_at_rest(self, sensors: Collection[str] = SENSORS) -> "Campaign":
-        """The same without the drift that the noise at rest shows of some; switch-ons remain."""
+        """The same without the drift that the noise at rest shows of some.
+
+        Switch-ons remain, and the bias instability of the data sheet.
+        """
         drifts = {
-            sensor: drift.between_switch_ons if sensor in sensors else drift
+            sensor: drift.as_stated if sensor in sensors else drift
             for sensor, drift in self.drifts.items()
         }
         return replace(self, drifts=drifts)

@@ -178,7 +178,8 @@ class NoiseLevels:
         instability, walk = np.nan_to_num(sizes).T
         stated = self._stated(sensor)
         expected = not walk.any() and bool(np.all(instability <= MAX_STATED_RATIO * stated))
-        return MeasuredDrift(instability, walk, expected=expected)
+        known = np.where(walk > 0, stated, np.minimum(instability, stated))
+        return MeasuredDrift(instability, walk, expected=expected, stated=known)
 
     def stated_drift(self, sensor: str) -> MeasuredDrift:
         """The same by the data sheet alone: by hand what drifts at rest is the support as well."""

@@ -19,7 +19,7 @@ Source: IEEE Std 952-2020, rate random walk.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -57,21 +57,23 @@ class MeasuredDrift:
 
     `instability`: B, unit of the readings; `walk`: K, the same per √s; `switch_on`: by what the
     bias differs from one switch-on to the next, (3,), unit of the readings, none: not yet known;
-    `expected`: it is no more than the data sheet states.
+    `expected`: it is no more than the data sheet states; `stated`: of B what that states, (3,).
     """
 
     instability: Array
     walk: Array
     switch_on: Array | None = None
     expected: bool = False
+    stated: Array = field(default_factory=lambda: np.zeros(3))
 
     def __bool__(self) -> bool:
         return bool(self.instability.any() or self.walk.any())
 
     @property
-    def between_switch_ons(self) -> "MeasuredDrift":
-        """The same without what the noise within static stretches says."""
-        return replace(NO_DRIFT, switch_on=self.switch_on)
+    def as_stated(self) -> "MeasuredDrift":
+        """The same without what the noise within static stretches shows beyond the data sheet."""
+        walk = np.zeros_like(self.walk)
+        return replace(self, instability=self.stated, walk=walk, expected=True)
 
     def differs(self, stretches: Sequence[Stretch]) -> bool:
         """Whether the bias differs from one switch-on to the next in some stretches."""

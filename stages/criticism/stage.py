@@ -95,7 +95,7 @@ def _of_mount(
                 {
                     "mount": mount,
                     "sensor": sensor,
-                    "kept": bool(campaign.drifts[sensor]),
+                    "kept": campaign.drifts[sensor] is drift,
                 },
             )
     if scatter is not None:
