@@ -67,7 +67,7 @@ def test_it_holds_text(tmp_path: Path) -> None:
     done = subprocess.run(["pdftotext", "-layout", file, "-"], capture_output=True, check=True)
     text = " ".join(done.stdout.decode().split())
     assert "Not usable" in text
-    assert "Six positions, S0" in text
+    assert "Six positions, closed formula" in text
     assert "z-backward.asc" in text
     assert "made-up · NovAtel SPAN-CPT · serial SIM-001 · simulated" in text  # on every page
     assert re.search(r"\b2 ?/ ?\d+", text)
