@@ -206,6 +206,8 @@ EXPLANATIONS = (
     ),
     Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), anywhere),
     Explanation(("encoder_scale",), ("rate_off",), anywhere),
+    Explanation(("clock_scale", "rate_off"), ("table_rate_off",), anywhere),
+    Explanation(("table_rate_off",), ("wrong_rate",), anywhere),
     Explanation(
         ("wrong_time_unit",),
         (*PERFORMANCE, *MISFITS, "wrong_scale_factor", "clock_scale", "bias_jump"),

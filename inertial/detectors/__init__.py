@@ -49,6 +49,7 @@ from inertial.detectors.temperatures import (
 from inertial.detectors.time_of_turns import (
     LostSamplesOfTurns,
     SampleRateByTurns,
+    TableRateByGravity,
     WrongTimeUnitOfTurns,
 )
 from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate
@@ -112,6 +113,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     WrongScaleOfTurns(),
     WrongTimeUnitOfTurns(),
     SampleRateByTurns(),
+    TableRateByGravity(),
     WrongSpans(),
     ManoeuvreSwapped(),
     ManoeuvreMissing(),

@@ -136,6 +136,7 @@ class Recorded:
     force: (m, 3), mean of its rest, or of that before its turn; of one that is not found, of what
     its log holds instead; turned: (m, 3), angles of its motion; NaN where not recorded.
     moved: (m,), angle about `about`; speed: (m,), mean rate of its steady part about `about`;
+    gravity_rate: (m, 2), rad/s, by the accelerometers in it, and its sigma, NaN where not level;
     unsteady: (m,), what quarters of that scatter by, relative, 0 where not known;
     static_means: of all rests;
     after_stop: (m,), rad, what it turns farther in the rest after it, NaN where not known;
@@ -179,6 +180,7 @@ class Recorded:
     turned: Array
     moved: Array
     speed: Array
+    gravity_rate: Array
     unsteady: Array
     after_stop: Array
     static_means: StaticMeans

@@ -109,6 +109,7 @@ NAMES = {
     "manoeuvre_missing": _("missing manoeuvre"),
     "manoeuvre_swapped": _("exchanged manoeuvres"),
     "rate_off": _("another sample rate"),
+    "table_rate_off": _("another rate of the table"),
     "rests_divided": _("rests that only the plan divides"),
     "turning_point_once": _("turning point of a tumble recorded once"),
     "sign_flip": _("reversed sign"),

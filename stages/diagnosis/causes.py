@@ -46,7 +46,7 @@ GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
 ENCODER_SCALE = "encoder_scale"
-RATE_OFF = "rate_off"
+RATE_OFF, TABLE_RATE_OFF = "rate_off", "table_rate_off"
 QUANTISATION = "quantisation"
 MOUNTING_SHIFT = "mounting_shift"  # turns the axes of both sensors, whichever shows it
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
@@ -453,7 +453,7 @@ def _moved_by_measure(cause: Hypothesis, own: Sequence[SensorResult]) -> float |
     for a wrong sampling interval.
     """
     size = abs(cause.row["size"] or 0.0)
-    if cause.cause == RATE_OFF and cause.stage == PLAN:
+    if cause.cause in (RATE_OFF, TABLE_RATE_OFF) and cause.stage == PLAN:
         shares = [(abs(size - 1), result.scale_sigma) for result in own]
     elif cause.cause == ENCODER_SCALE:
         shares = [(size, result.scale_sigma) for result in own]

@@ -12,7 +12,14 @@ COUNTS = frozenset({"samples", "records", "readings", "days", "manoeuvres", "pos
 RATIO = units.Unit("(ratio)", 1.0)
 # Faults whose size is a factor; other sizes without a dimension are small, in ppm.
 FACTORS = frozenset(
-    {"wrong_scale_factor", "wrong_scale_of_turns", "rate_off", "wrong_rate", "gyro_count_size"}
+    {
+        "wrong_scale_factor",
+        "wrong_scale_of_turns",
+        "rate_off",
+        "table_rate_off",
+        "wrong_rate",
+        "gyro_count_size",
+    }
     | {"wrong_time_unit"}
 )
 # From these sizes on the larger unit is read more easily.

@@ -19,6 +19,7 @@ from inertial.signal.plan_detector import (
     StaticMeans,
     Swapped,
 )
+from inertial.signal.rate_of_gravity import rate_of_gravity
 from inertial.tables import ACCEL, GYRO, STATIC_PHASES
 from stages.segment.located import Located
 from stages.segment.matching import motion
@@ -117,6 +118,7 @@ def recorded_of(
         turned=_vectors([turned for _, turned in observations]),
         moved=_numbers([d.angle for d in done]),
         speed=_numbers([d.rate for d in done]),
+        gravity_rate=_gravity_rates(plan, recording.blocks),
         unsteady=_unsteady(plan, recording.blocks),
         after_stop=_after_stop(plan, recording.blocks),
         static_means=_static_means(plan, recording.blocks),
@@ -149,6 +151,18 @@ Left = TypeVar("Left", Misread, Swapped)
 def _beside(left: Left, undone: Undone) -> Left:
     """What is not set right, with what explains as much."""
     return replace(left, rivals=undone.rivals.get(left.repair, ()))
+
+
+def _gravity_rates(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
+    """The rate of gravity in the steady part of each turn, and its sigma, rad/s, (m, 2)."""
+    steady = dict(list(blocks[blocks["phase"] == "steady"].groupby("manoeuvre")))
+    rates = np.full((len(plan), 2), np.nan)
+    for i, m in enumerate(plan):
+        if m.rate and m.name in steady:
+            own = steady[m.name]
+            forces, time = own[list(ACCEL)].to_numpy(np.float64), own["time"].to_numpy(np.float64)
+            rates[i] = rate_of_gravity(forces, time, m.rate)
+    return rates
 
 
 def _unsteady(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:

@@ -58,3 +58,23 @@ def test_without_an_effect_nothing_is_named_and_a_limit_is_stated():
     assert not named(tables)
     limits = tables["criticism/detection_limits"].query("effect == 'gyro_scale_cubic'")
     assert np.isfinite(limits["limit"]).all()
+
+
+@pytest.mark.parametrize("off", [0.0, 2000.0])
+def test_a_table_whose_rate_is_off_is_told_by_gravity_in_turns_about_level_axes(off):
+    """The scale factors of gyros are by the stated rate: all would be 2000 ppm too large."""
+    document = chain.short(seed=6, effects={"table_speed_error": {"rate_ppm": off}} if off else {})
+    campaign = document["campaign"]
+    campaign["table"] |= {"rate_sigma_ppm": 100}
+    turn = {"do": "turn", "seconds": 20, "recorded": "steady"}
+    campaign["plan"] = campaign["plan"][:6] + [
+        turn | {"id": f"{up}{about}{rate}", "up": up, "about": about, "rate_deg_s": rate}
+        for up, about in (("+x", "+x"), ("+y", "+y"), ("+z", "+z"), ("+z", "+x"), ("+x", "+y"))
+        for rate in (36, -36)
+    ]
+    for each in campaign["plan"]:
+        each["log"] = f"{each['id']}.asc"
+    results = chain.in_memory_of(document, "segment")
+    findings = results["segment/findings"]
+    ratios = findings.loc[findings["cause"] == "table_rate_off", "size"].tolist()
+    assert ratios == ([pytest.approx(1 + 1e-6 * off, abs=5e-5)] if off else [])

@@ -280,7 +280,7 @@ def test_a_model_that_does_not_fit_says_so_plainly() -> None:
 def test_a_scatter_that_the_sigmas_include_is_stated() -> None:
     made = synthetic.brief()
     made["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
-    words = "With a scatter of the manoeuvres by 0.50 °/h, which this χ² and the σ allow for; noise alone"
+    words = "With a scatter of the manoeuvres by 0.50 °/h, which this χ² and the σ allow for; noise"
     assert words in fits_of(parameters_of(made))
 
 
