@@ -24,8 +24,8 @@ OFF_RATE, OFF_ANGLE = "wrong_rate", "turn_angle_error"
 CURES = {
     "bias": _("neither a rest nor a turn there and back shows it: add a rest"),
     "matrix": _(
-        "no whole turn about {axis}, its angle known to a few degrees, was recorded: add one of "
-        "360° about {axis}"
+        "this gyro recorded no whole turn about {axis}, its angle known to a few degrees: add one "
+        "of 360° about {axis}"
     ),
 }
 
