@@ -13,6 +13,7 @@ from inertial.campaign.hypotheses import (
     LAW,
     MODEL,
     POSITIONS,
+    RECORDING,
     Hypothesis,
 )
 from inertial.sensors import SENSORS
@@ -245,7 +246,7 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether the other finding vanishes where this cause is true."""
     if cause is other or not _same_mount(cause, other) or _set_right_by_another(cause, other):
         return False
-    if rank(cause) > rank(other) and _same_cause(cause, other) and same_sensor(cause, other):
+    if _represents(cause, other) and _same_cause(cause, other) and same_sensor(cause, other):
         return True
     if ANOTHER_IMU in (cause.cause, other.cause):  # whatever the model says is of two instruments
         return cause.cause == ANOTHER_IMU and other.stage == MODEL
@@ -308,6 +309,12 @@ def _size(finding: Hypothesis) -> float:
 def _in_proportion(effect: Hypothesis) -> bool:
     """Whether it changes readings in proportion, or by a law that may be any change of one log."""
     return effect.verdict == LAW or not IN_PROPORTION.isdisjoint(effect.causes)
+
+
+def _represents(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Whether it stands for another finding of the same thing: of two alike the one of the logs."""
+    by_logs = cause.stage == RECORDING != other.stage
+    return rank(cause) > rank(other) or (by_logs and rank(cause) == rank(other))
 
 
 def rank(hypothesis: Hypothesis) -> int:

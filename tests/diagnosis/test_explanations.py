@@ -225,3 +225,18 @@ def test_a_turn_that_was_not_recorded_has_no_rate_of_its_own():
     other = finding("segment", "wrong_rate", "gyro", **of("x-back"))
     assert causes(cut, rate) == {"incomplete_turn": {"wrong_rate"}}
     assert set(causes(cut, other)) == {"incomplete_turn", "wrong_rate"}
+
+
+def test_what_the_logs_and_the_turns_show_alike_is_told_once():
+    """Stamps in another unit: by the stated rate of the samples, and by turns 1000 times as far."""
+    stamps = finding("quality", "wrong_time_unit", None, 3)
+    turns = finding("segment", "wrong_time_unit", "gyro", 3)
+    assert len([*compete([stamps, turns])]) == len([*compete([turns, stamps])]) == 1
+
+
+@pytest.mark.parametrize(("missing", "explained"), [(-5.0, True), (-356.7, False)])
+def test_single_readings_explain_no_turn_of_which_most_is_missing(missing, explained):
+    glitch = finding("quality", "periodic_glitch", "gyro", 1, **of("x+360"))
+    turn = finding("segment", "incomplete_turn", "gyro", 2, **of("x+360"))
+    turn = replace(turn, row=turn.row | {"size": missing})
+    assert ("incomplete_turn" not in causes(glitch, turn)) == explained
