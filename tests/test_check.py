@@ -26,7 +26,7 @@ READ = (
     *("quality/masks", "quality/gaps", "segment/segments", "segment/performed"),
     *("segment/blocks", "plan/manoeuvres", "decode/accounts"),
     *("accelerometer/parameters", "gyroscope/parameters"),
-    *("accelerometer/findings", "gyroscope/findings", "noise/terms"),
+    *("accelerometer/findings", "gyroscope/findings", "noise/findings", "noise/terms"),
 )
 
 

@@ -227,3 +227,15 @@ def test_a_rest_in_one_attitude_is_a_recording_of_its_noise_and_no_calibration()
     assert verdicts["sentence"].str.contains("No calibration, noise only").all()
     result = results["diagnosis/result"].set_index("parameter")["value"]
     assert result.drop(["bias_x", "bias_y", "bias_z"]).isna().all()  # of gyros, ± earth's rate
+
+
+@pytest.mark.parametrize(
+    ("times", "told"), [(2.0, []), (6.0, ["noise/noise_above_data_sheet/gyro"])]
+)
+def test_noise_at_rest_that_is_far_above_the_data_sheet_is_told_with_its_ratio(times, told):
+    document = chain.short(seed=8)
+    stated = IMU["gyro"]["angle_random_walk_deg_sqrt_h"]
+    document["noise"]["angle_random_walk_deg_sqrt_h"] = times * stated
+    findings = chain.in_memory_of(document, "noise")["noise/findings"]
+    assert findings["id"].tolist() == told
+    assert findings["size"].tolist() == [pytest.approx(times, rel=0.2)] * len(told)

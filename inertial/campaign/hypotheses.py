@@ -16,6 +16,7 @@ LAW = "law"  # of no effect of the catalogue
 SENSE_OF_TURNS = "sense_of_turns"  # an asymmetry of the gyros that may be the table's
 JUMP_NOT_TESTABLE = "jump_not_testable"  # a jump that only the other sensor can show
 RECORDING, PLAN, POSITIONS, MODEL = "quality", "segment", "accelerometer", "criticism"
+NOISE = "noise"
 COUNTS = "gyroscope"  # the stage that finds counts of another size than stated
 RIVAL = "rival"  # state of a repair that others explain as well
 PLANNED = "plan"  # the stage that repairs what the campaign file states
@@ -81,6 +82,7 @@ class Findings:
 
     quality_findings: pd.DataFrame
     segment_findings: pd.DataFrame
+    noise_findings: pd.DataFrame
     accelerometer_findings: pd.DataFrame
     gyroscope_findings: pd.DataFrame
     criticism_findings: pd.DataFrame
@@ -100,6 +102,7 @@ class Findings:
         return {
             RECORDING: rows_of(self.quality_findings),
             PLAN: rows_of(self.segment_findings),
+            NOISE: rows_of(self.noise_findings),
             POSITIONS: rows_of(self.accelerometer_findings),
             COUNTS: rows_of(self.gyroscope_findings),
             MODEL: rows_of(self.criticism_findings),

@@ -108,6 +108,7 @@ NAMES = {
     "latitude_sign": _("latitude of the other hemisphere"),
     "manoeuvre_missing": _("missing manoeuvre"),
     "manoeuvre_swapped": _("exchanged manoeuvres"),
+    "noise_above_data_sheet": _("noise above the data sheet"),
     "rate_off": _("another sample rate"),
     "table_rate_off": _("another rate of the table"),
     "rests_divided": _("rests that only the plan divides"),

@@ -7,6 +7,7 @@ DECLARED = Declared(
     reads={
         "quality_findings": From("quality", tables.FINDINGS),
         "segment_findings": From("segment", tables.FINDINGS),
+        "noise_findings": From("noise", tables.FINDINGS),
         "accelerometer_findings": From("accelerometer", tables.FINDINGS),
         "gyroscope_findings": From("gyroscope", tables.FINDINGS),
         "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),

@@ -22,6 +22,7 @@ DECLARED = Declared(
         "allan": tables.ALLAN,
         "spectra": tables.SPECTRA,
         "terms": tables.NOISE_TERMS,
+        "findings": tables.FINDINGS,
     },
     streams=("samples",),
 )

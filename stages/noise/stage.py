@@ -9,12 +9,14 @@ import pandas as pd
 
 from inertial import tables
 from inertial.arrays import Array, Integers
+from inertial.campaign.findings import table_of
 from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Row, clocks_of, rows_of
 from inertial.sensors import COLUMNS
 from inertial.signal.scatter import smallest_step
 from inertial.tables.stage import Stage, Tables
+from stages.noise.data_sheet import louder
 from stages.noise.declared import DECLARED
 from stages.noise.rounding import Level, count_sizes, rounding_levels
 from stages.noise.spectra import Spectra, shapes_of
@@ -81,12 +83,14 @@ def noise(
     if of_means:
         own = pd.DataFrame(of_means, columns=levels.columns)
         levels = pd.concat([levels, own]) if rows else own
+    terms = [row for each in noises for row in each.term_rows(sheet)]
     return {
         "noise": measured,
         "levels": levels,
         "allan": [row for each in noises for row in each.allan_rows()],
         "spectra": [row for each in noises for row in each.spectrum_rows()],
-        "terms": [row for each in noises for row in each.term_rows(sheet)],
+        "terms": terms,
+        "findings": table_of(list(louder(terms))),
     }
 
 

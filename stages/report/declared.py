@@ -39,6 +39,7 @@ DECLARED = Declared(
         "accelerometer_fit": From("accelerometer", tables.FIT),
         "accelerometer_switch_ons": From("accelerometer", tables.SWITCH_ONS),
         "accelerometer_fit_manoeuvres": From("accelerometer", tables.FIT_MANOEUVRES),
+        "noise_findings": From("noise", tables.FINDINGS),
         "accelerometer_findings": From("accelerometer", tables.FINDINGS),
         "gyroscope_findings": From("gyroscope", tables.FINDINGS),
         "accelerometer_averaging": From("accelerometer", tables.AVERAGING),

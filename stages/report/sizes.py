@@ -17,6 +17,7 @@ FACTORS = frozenset(
         "wrong_scale_of_turns",
         "rate_off",
         "table_rate_off",
+        "noise_above_data_sheet",
         "wrong_rate",
         "gyro_count_size",
     }

@@ -51,6 +51,7 @@ def of_the_model(
         "extended_fit_manoeuvres": rows_as(tables.FIT_MANOEUVRES, _extended_manoeuvres()),
         "accelerometer_findings": tables.FINDINGS.empty(),
         "gyroscope_findings": tables.FINDINGS.empty(),
+        "noise_findings": tables.FINDINGS.empty(),
         "compensation_findings": tables.FINDINGS.empty(),
     }
 

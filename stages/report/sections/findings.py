@@ -27,12 +27,16 @@ from stages.report.sections.evidence import evidence
 from stages.report.sizes import size_in_words
 from stages.report.tables import Record, Tables, once
 
-FINDING_TABLES = (
+FINDINGS = (
     "quality_findings",
     "segment_findings",
+    "noise_findings",
     "accelerometer_findings",
     "gyroscope_findings",
     "criticism_findings",
+)
+FINDING_TABLES = (
+    *FINDINGS,
     "causes",
     "cause_members",
     "consequences",
@@ -83,7 +87,7 @@ def findings_by_id(tables: Tables) -> dict[str, Record]:
     """All findings by their identifiers, each with its stage."""
     return {
         row["id"]: row | {"stage": DECLARED.reads[name].stage}
-        for name in FINDING_TABLES[:5]
+        for name in FINDINGS
         for row in tables.rows(name)
     }
 
