@@ -35,7 +35,15 @@ class Campaign(click.ParamType[str]):
                 "small letters a-z, digits and hyphens, a letter or digit first"
             )
         if value not in (known := campaigns(_folder(ctx))):
-            self.fail(f"there is no campaign {value}; there are: {', '.join(known) or 'none'}")
+            there = (
+                f"there are: {', '.join(known)}"
+                if known
+                else (
+                    "there is none in this folder: draft one of its logs by "
+                    "`turntable-calibration draft LOG…`, or change the folder by --folder"
+                )
+            )
+            self.fail(f"there is no campaign {value}; {there}")
         return value
 
     def shell_complete(
