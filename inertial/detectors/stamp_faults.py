@@ -127,7 +127,7 @@ class TimeBackwards(Detector):
         else:
             sentence = _(
                 "{name}: at line {line} time goes back by {size:.6f} s, from {before} s to "
-                "{from_s} s; after it: {records}.",
+                "{from_s} s; the stamps of {records} are then below those before.",
                 name=name,
                 line=event.line,
                 size=event.size,
