@@ -595,6 +595,7 @@ def test_a_table_set_a_degree_further_between_two_turns_moves():
         still + np.outer(0.3 * np.sin(2 * np.pi * 1.3 * time), [1, 0, 0]),  # vibrates
         still + np.outer(0.2 * np.exp(-time / 10), [1, 0, 0]),  # warms up
         still + np.outer(0.1 * (time > 20), [0, 0, 1]),  # its bias jumps
+        np.where((time > 12) & (time < 15), np.nan, still.T).T,  # readings are masked
     ):
         assert slow_motion(np.radians(quiet), step) is None
 

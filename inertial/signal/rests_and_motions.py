@@ -173,7 +173,7 @@ def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
     ----------
     rates : (k, 3), rad/s, NaN where not recorded
     """
-    recorded = np.nan_to_num(rates[:, np.isfinite(rates).any(axis=0)])
+    recorded = bridged(rates[:, np.isfinite(rates).any(axis=0)])
     if len(recorded) < 2 or not recorded.size:
         return None
     change = MAD_TO_SIGMA * np.median(np.abs(np.diff(recorded, axis=0)), axis=0) / np.sqrt(2)
