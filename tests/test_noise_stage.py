@@ -74,6 +74,7 @@ def of_stretches(values: np.ndarray, **changes: Any) -> dict[str, Any]:
         "mean_sigmas": tables.MEAN_SIGMAS.empty(),
         "blocks": tables.BLOCKS.empty(),
         "segments": pd.DataFrame(segments),
+        "manoeuvres": tables.MANOEUVRES.empty(),
         "clocks": pd.DataFrame([clock]),
         "gaps": pd.DataFrame({"log": [], "record": []}),
         "masks": tables.MASKS.empty(),

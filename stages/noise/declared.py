@@ -10,6 +10,7 @@ DECLARED = Declared(
         "blocks": From("segment", tables.BLOCKS),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
         "segments": From("segment", tables.SEGMENTS),
+        "manoeuvres": From("segment", tables.MANOEUVRES),
         "clocks": From("decode", tables.CLOCKS),
         "gaps": From("quality", tables.GAPS),
         "masks": From("quality", tables.MASKS),

@@ -30,6 +30,7 @@ LEAST_SIGMA = {"accel": 1e-6, "gyro": 1e-8}  # m/s² and rad/s: no mean is known
 def noise(
     masked_samples: MaskedSamples,
     segments: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
     clocks: pd.DataFrame,
     gaps: pd.DataFrame,
     sensors: pd.DataFrame,
@@ -90,8 +91,13 @@ def noise(
         "allan": [row for each in noises for row in each.allan_rows()],
         "spectra": [row for each in noises for row in each.spectrum_rows()],
         "terms": terms,
-        "findings": table_of(list(louder(terms))),
+        "findings": table_of([] if _by_hand(manoeuvres) else list(louder(terms))),
     }
+
+
+def _by_hand(manoeuvres: pd.DataFrame) -> bool:
+    """Whether positions are set by hand: what shakes at rest is the support as well."""
+    return bool((manoeuvres["do"] == "positions").any())
 
 
 def _quiet(segments: pd.DataFrame) -> list[Row]:
