@@ -381,6 +381,7 @@ def test_runs_are_not_usable_until_it_is_stated_that_the_biases_are_others(tmp_p
     document = deepcopy(
         chain.laboratory.read(chain.ROOT / "data/simulated/power-cycles.yaml").document
     )
+    document["start"]["pause_s"] = 86_400.0
     document["receiver"] |= {"message": "columns", "line_end": "lf"}
     document["campaign"]["instrument"] = {"name": "made up", "rate_hz": 100}
     document["handling"]["change_s"] = 10

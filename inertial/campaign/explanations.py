@@ -273,6 +273,8 @@ def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
         return False
     if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
         return other.cause == "oscillation" and _size(other) < _size(cause)
+    if cause.cause == "bias_removed":  # at rest, and with it the earth's rate
+        return "earth_rate_omitted" in other.causes
     if cause.cause in ("position_not_kept", "fixture_creep"):
         return other.cause in ("position_scatter", "mounting_shift", *POSITION_OFF)
     if cause.cause not in OF_ANGLES:

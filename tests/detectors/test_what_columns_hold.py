@@ -145,6 +145,7 @@ def test_a_counter_of_16_bits_that_begins_again_is_told_and_spoils_nothing():
 def zeroed(folder: Path, records: int | None) -> chain.Results:
     """A campaign whose gyros were zeroed by the first records of each log, or all, and run."""
     document = hidden_plans.positions(seed=5)
+    document["start"]["pause_s"] = 86_400.0  # so that each log has a clock of its own
     document["receiver"] |= {"message": "columns", "line_end": "lf"}
     document["campaign"]["instrument"] = {"name": "made up", "rate_hz": 100}
     laboratory.write(laboratory.perform(laboratory.specify(document)), folder / "raw")
