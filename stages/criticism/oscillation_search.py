@@ -478,9 +478,8 @@ def shifts(
     for one in oscillations:
         others = [other for other in oscillations if other is not one]
         blocks = without_lines(data.blocks, data.plan, turns, others)
-        with_it = campaign_of(replace(data, blocks=blocks))
-        alike = replace(with_it, solution=quiet.solution, drifts=quiet.drifts)
-        present = _estimate(alike)
+        made = campaign_of(replace(data, blocks=blocks))
+        present = _estimate(replace(made, solution=quiet.solution, drifts=quiet.drifts))
         largest.append(None if present is None else _largest(without, present))
     return largest
 
