@@ -41,6 +41,7 @@ from inertial.detectors.stamp_faults import ArrivalStamps, ClockStep, TimeBackwa
 from inertial.detectors.stamps_misstated import RateOff, WrongDay, WrongTimeUnit
 from inertial.detectors.status_invalid import StatusInvalid
 from inertial.detectors.table_moving import TableMoving
+from inertial.detectors.table_rate import TableRateByGravity
 from inertial.detectors.temperatures import (
     TemperatureDrift,
     TemperatureMisstated,
@@ -49,7 +50,6 @@ from inertial.detectors.temperatures import (
 from inertial.detectors.time_of_turns import (
     LostSamplesOfTurns,
     SampleRateByTurns,
-    TableRateByGravity,
     WrongTimeUnitOfTurns,
 )
 from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate

@@ -64,7 +64,6 @@ class WrongTimeUnitOfTurns(PlanDetector):
 
 
 MIN_ALIKE_TURNS = 3  # that show another rate of the samples: two may be cut off alike
-MIN_LEVEL_TURNS = 2  # about level axes: one of them by itself is a rate of its own
 MIN_RATE_SIGMAS = 5.0  # of the table's rate, and of the scatter of its turns and within them
 MAX_TIME_SPREAD = 0.02  # of the ratios of the times of turns to their plan, and of their rates
 
@@ -101,68 +100,6 @@ def slight_time_ratio(recorded: Recorded) -> float | None:
     sigma = np.hypot(recorded.rate_sigma, scatter)
     within = abs(ratio - 1) <= recorded.tolerance
     return ratio if within and abs(ratio - 1) > MIN_RATE_SIGMAS * sigma else None
-
-
-def gravity_ratio(recorded: Recorded) -> float | None:
-    """The rate of gravity in the turns at a stated rate about level axes, by that rate.
-
-    None where it is that rate, within what the table keeps it to.
-    """
-    rate, sigma = recorded.gravity_rate.T
-    known = recorded.steady & np.isfinite(rate)
-    if np.count_nonzero(known) < MIN_LEVEL_TURNS or not np.isfinite(recorded.rate_sigma):
-        return None
-    ratios = rate[known] / np.abs(recorded.rate[known])
-    ratio = float(np.median(ratios))
-    own = float(np.hypot(np.median(sigma[known] / rate[known]), np.std(ratios)))
-    return ratio if abs(ratio - 1) > MIN_RATE_SIGMAS * np.hypot(recorded.rate_sigma, own) else None
-
-
-class TableRateByGravity(PlanDetector):
-    """All turns at a stated rate about level axes go by another one, as gravity turns in the case.
-
-    The scale factors of the gyros are by the stated rate, and gravity shows the one there was.
-
-    Cause: the drive of the table is set, or calibrated, otherwise; or the clock of the logs is off.
-    """
-
-    name = "table_rate_off"
-    source = "IEEE Std 1293-2018: an accelerometer on a turning table reads a sine of its angle"
-    unit = "1"
-    severity = 3
-    sensor = "gyro"
-
-    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        if (ratio := gravity_ratio(recorded)) is not None:
-            number = int(
-                np.count_nonzero(recorded.steady & np.isfinite(recorded.gravity_rate[:, 0]))
-            )
-            yield Deviation(None, "", ratio, self.sensor, count=number)
-
-    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
-        assert deviation.size is not None
-        ppm = significant(1e6 * (deviation.size - 1), 4)
-        return Description(
-            _(
-                "In {count} turns about level axes gravity turns by {ppm} ppm more than the stated "
-                "rate, which the table keeps to {sigma} ppm: either the table turns that much "
-                "faster, or a second of the logs is that much longer.",
-                count=deviation.count,
-                ppm=ppm,
-                sigma=significant(1e6 * recorded.rate_sigma),
-            ),
-            _(
-                "If it is the table, the scale factors of all gyros are too large by {ppm} ppm, "
-                "for they are by the stated rate; if it is the logs, those of gyros that read "
-                "rates stand.",
-                ppm=ppm,
-            ),
-            _(
-                "Nothing is changed. Time some rounds of the table by another clock, and correct "
-                "rate_deg_s of the plan, or rate_hz of the instrument; or state rate_sigma_ppm of "
-                "the table as large as its rate is uncertain."
-            ),
-        )
 
 
 class SampleRateByTurns(PlanDetector):

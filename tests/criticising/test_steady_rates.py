@@ -60,7 +60,7 @@ def test_without_an_effect_nothing_is_named_and_a_limit_is_stated():
     assert np.isfinite(limits["limit"]).all()
 
 
-@pytest.mark.parametrize("off", [0.0, 2000.0])
+@pytest.mark.parametrize("off", [0.0, 2000.0, -2000.0])
 def test_a_table_whose_rate_is_off_is_told_by_gravity_in_turns_about_level_axes(off):
     """The scale factors of gyros are by the stated rate: all would be 2000 ppm too large."""
     document = chain.short(seed=6, effects={"table_speed_error": {"rate_ppm": off}} if off else {})
