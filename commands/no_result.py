@@ -12,7 +12,7 @@ from inertial.campaign.noise_levels import only_noise
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
 from inertial.text.numbers import counted
-from inertial.text.parameters import SENSOR_OF
+from inertial.text.parameters import SENSOR_OF, sign_of
 
 TWELVE = linear_names()
 MIN_NEW_POSITION_DEG = 5.0  # degrees: less than this from the rest before is no new position
@@ -92,7 +92,7 @@ def _undetermined(sensors: str, parameters: pd.DataFrame) -> Iterator[NoResult]:
         else _(
             "{count} of 12 parameters are not determined: {names}.",
             count=len(lacking),
-            names=", ".join(lacking["parameter"]),
+            names=", ".join(map(sign_of, lacking["parameter"])),
         )
     )
     reasons = lacking["reason"].value_counts(sort=False).index[:MAX_REASONS]

@@ -364,6 +364,6 @@ def test_what_is_not_determined_is_named_and_the_biases_bound_what_they_can():
         for name in names
     ]
     sentence = why_not(rows, G)
-    assert "of the gyros scale_x are not determined (no whole turn about x)" in sentence
+    assert "of the gyros s_x are not determined (no whole turn about x)" in sentence
     assert "12″" in sentence and "0.35 m" in sentence and "0.18 m" in sentence
     assert "accelerometers" not in sentence

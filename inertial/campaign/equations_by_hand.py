@@ -68,6 +68,12 @@ class ByHand:
         sizes = {"gyro": self.scatter != NONE, "accel": self.force_scatter > 0}
         return tuple(sensor for sensor, there in sizes.items() if there)
 
+    @property
+    def scatter_seconds(self) -> float | None:
+        """Of a rest with the scatter of the gyros, as in `ScatterFit`."""
+        usual = float(np.median([stop.seconds for stop in self.handled.stops]))
+        return usual if self.scatter.sways else None
+
     def without_scatter(self) -> "ByHand":
         """The same with noise alone."""
         return replace(self, scatter=NONE, force_scatter=0.0)

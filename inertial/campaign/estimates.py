@@ -179,6 +179,7 @@ class Estimates:
                 "degrees": fitted.estimate.degrees,
                 "p_value": fitted.p_value,
                 "scatter": fitted.scatter,
+                "scatter_seconds": fitted.scatter_seconds,
                 "unit": UNIT[self.stage],
                 "random_walk": fitted.random_walk,
                 "random_walk_sigma": fitted.random_walk_sigma,

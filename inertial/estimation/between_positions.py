@@ -126,7 +126,8 @@ def fit(
         firsts = [passages[i].first for i in places]
         worst = contradicting(residuals, range(len(stops)), firsts)
         if not worst:
-            return found, sorted(left_out)
+            usual = data.usual if scatter.sways else None
+            return replace(found, scatter_seconds=usual), sorted(left_out)
         for number in worst:
             if number < len(stops):
                 stops[number] = replace(stops[number], mean=np.full(3, np.nan))

@@ -39,8 +39,9 @@ MIN_STRETCHES = 4  # for a random walk
 class ScatterFit:
     """An estimate with its variance components, and the p-value of the fit with noise alone.
 
-    `scatter`, in the unit of the readings; `random_walk`: of the bias, per √s, and its sigma;
-    `switch_ons`: what biases differ by between them, None where the sensor ran on.
+    `scatter`, in the unit of the readings; `scatter_seconds`: of the rest that has it, where it is
+    the less the longer a rest is, None where all have it; `random_walk`: of the bias, per √s, and
+    its sigma; `switch_ons`: what biases differ by between them, None where the sensor ran on.
     """
 
     estimate: Estimate
@@ -49,6 +50,7 @@ class ScatterFit:
     random_walk: float = 0.0
     random_walk_sigma: float = 0.0
     switch_ons: SwitchOns | None = None
+    scatter_seconds: float | None = None
 
 
 @dataclass(frozen=True)

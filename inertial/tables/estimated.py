@@ -168,7 +168,7 @@ COVARIANCE = Table(
 )
 FIT = Table(
     "fit",
-    7,
+    8,
     (
         MOUNT,
         SENSOR,
@@ -185,6 +185,14 @@ FIT = Table(
             "scatter", DOUBLE, "as unit", "what manoeuvres differ by beyond noise; 0 where p ≥ 1 %"
         ),
         Column("unit", TEXT, "", "unit of the scatter"),
+        Column(
+            "scatter_seconds",
+            DOUBLE,
+            "s",
+            "length of a rest with this scatter, which is in inverse proportion to it: the hand "
+            "sways; none: the same in all",
+            nullable=True,
+        ),
         Column(
             "random_walk",
             DOUBLE,

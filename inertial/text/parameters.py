@@ -38,6 +38,8 @@ BIAS, SCALE, CROSS, MOUNTING, SYMMETRIC = (
     for kind in ("bias", "scale", "cross", "mounting", "symmetric")
 )
 
+# What the parameters of a triad are written with where a person reads them.
+SIGNS = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
 # Letters that parameters of effects are written with where a person reads them.
 LETTERS = {
     **{"theta": "θ", "phi": "φ", "tau": "τ", "delta": "δ"},
@@ -52,6 +54,9 @@ SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}
 
 
 def sign_of(parameter: str) -> str:
-    """A parameter of an effect as it is written: θ_x for theta_x, Δφ for dphi."""
+    """A parameter as it is written: m_xy for cross_xy, θ_x for theta_x, Δφ for dphi."""
+    if parameter in PARTS:
+        kind, axes = PARTS[parameter]
+        return f"{SIGNS[kind]}_{axes}"
     letter, underscore, axes = parameter.partition("_")
     return LETTERS.get(letter, letter) + underscore + axes

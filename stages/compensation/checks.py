@@ -27,6 +27,7 @@ from inertial.tables import GYRO
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import decimals_of, fixed, with_own_sigma
+from inertial.text.parameters import sign_of
 from inertial.text.units import DEGREES, DEGREES_PER_HOUR, ICE_POINT, MICRO_G, SECONDS_OF_ARC, Unit
 from stages.compensation.correction import UNKNOWN
 
@@ -165,7 +166,8 @@ def _not_determined(result: SensorResult, sensor: str) -> str:
         (reason,) = result.missing  # one for all twelve
         told = reason.removesuffix(".")
         return _("The {sensor}s are not compensated: {reason}.", sensor=sensor, reason=told)
-    reasons = "; ".join(f"{', '.join(names)}: {why}" for why, names in result.missing.items())
+    missing = {", ".join(map(sign_of, names)): why for why, names in result.missing.items()}
+    reasons = "; ".join(f"{names}: {why}" for names, why in missing.items())
     return _(
         "The {sensor}s are not compensated, for not all of M and bias is determined. {value}.",
         sensor=sensor,

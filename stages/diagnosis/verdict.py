@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from inertial.campaign.hypotheses import MODEL
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed, significant
+from inertial.text.parameters import sign_of
 from inertial.text.units import ICE_POINT
 from stages.diagnosis.causes import (
     CURVE,
@@ -128,7 +129,7 @@ def _coarse(result: SensorResult) -> str:
     return _(
         " Known to {percent} % (σ) only: {names}.",
         percent=significant(100 * max(coarse.values()), 2),
-        names=", ".join(sorted(coarse)),
+        names=", ".join(map(sign_of, sorted(coarse))),
     )
 
 
@@ -182,7 +183,7 @@ def _lacking(sensors: str, names: Sequence[str], own: Sequence[Cause]) -> str:
             causes=causes,
         )
         return sentence + _others(own, lost)
-    shown = ", ".join(names[:MOST_NAMES])
+    shown = ", ".join(map(sign_of, names[:MOST_NAMES]))
     sentence = _(
         "{sensors}: {causes}Not usable as a whole: {count} of 12 parameters are not determined "
         "({names}{more}).",

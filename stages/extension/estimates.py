@@ -86,7 +86,9 @@ class Solved:
             columns=[column.name for column in tables.COVARIANCE.columns],
         )
 
-    def fit_row(self, noise_degrees: float, scatter: float) -> dict[str, Any]:
+    def fit_row(
+        self, noise_degrees: float, scatter: float, scatter_seconds: float | None
+    ) -> dict[str, Any]:
         """How well the model describes the data, with a scatter beyond noise."""
         return {
             "mount": self.mount,
@@ -96,6 +98,7 @@ class Solved:
             "degrees": self.estimate.degrees,
             "p_value": self.estimate.p_value(noise_degrees),
             "scatter": scatter,
+            "scatter_seconds": scatter_seconds,
             "unit": UNIT[self.stage],
             "random_walk": self.random_walk,
             "random_walk_sigma": None,

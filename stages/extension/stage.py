@@ -154,7 +154,7 @@ class Extension:
     ) -> None:
         self.data, self.named, self.joint, self.bands = data, named, joint, bands
         self.random_walks, self.replaced = random_walks, replaced
-        self.scatters: dict[str, float] = {}
+        self.scatters: dict[str, tuple[float, float | None]] = {}
         self.switch_ons: dict[str, SwitchOns] = {}
 
     def rows(self, simulated: Stream) -> Iterator[tuple[str, Any]]:
@@ -232,7 +232,10 @@ class Extension:
         if campaign.by_hand:
             campaign = scattered(campaign, known, self.data.noise.degrees)
         if by_hand := campaign.by_hand:
-            self.scatters = {"gyro": by_hand.scatter.rate, "accel": by_hand.force_scatter}
+            self.scatters = {
+                "gyro": (by_hand.scatter.rate, by_hand.scatter_seconds),
+                "accel": (by_hand.force_scatter, None),
+            }
         return campaign
 
     def _solved(
@@ -285,8 +288,8 @@ class Extension:
             reason = lacking[row["parameter"]]["reason"] if of_plan else row["reason"]
             yield "parameters", {**row, "reason": reason}
         between = switch_on_columns(self.switch_ons.get(sensor))
-        scatter = self.scatters.get(sensor, 0.0)
-        yield "fit", solution.fit_row(self.data.noise.degrees, scatter) | between
+        scatter, seconds = self.scatters.get(sensor, (0.0, None))
+        yield "fit", solution.fit_row(self.data.noise.degrees, scatter, seconds) | between
         for row in self.joint[sensor].manoeuvres:
             yield "fit_manoeuvres", {**row, "method": solution.method}
         if solution.method == EXTENDED:

@@ -24,7 +24,7 @@ from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.parameters import BIAS
+from inertial.text.parameters import BIAS, sign_of
 from stages.navigation.corridor import Uncertain, uncertain
 from stages.navigation.declared import DECLARED
 from stages.navigation.navigator import Navigator, reason_rows
@@ -147,7 +147,7 @@ def why_not(rows: Sequence[Row], gravity: float) -> str:
             str(own[key]["reason"] or "").removesuffix(".") for key in missing if key in own
         )
         why = "; ".join(list(filter(None, reasons))[:2])
-        listed = ", ".join(missing[:MOST_NAMED])
+        listed = ", ".join(map(sign_of, missing[:MOST_NAMED]))
         if len(missing) > MOST_NAMED:
             listed += _(" and {count} more", count=len(missing) - MOST_NAMED)
         parts.append(_("of {sensor} {listed} are not determined", sensor=name, listed=listed))

@@ -42,7 +42,6 @@ KIND = {
     "symmetric": _("Non-orthogonality: the symmetric part P of M = P R"),
 }
 KIND_IN_A_SENTENCE = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
-SYMBOL = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
 CALIBRATION = frozenset(
     name for name, parts in PARTS.items() if parts.kind in ("bias", "scale", "cross")
 )
@@ -122,6 +121,12 @@ class Estimate:
             ), "fair"
         unit = units.quantity("bias", fit["unit"]).shown
         scatter = f"{numbers.significant(unit.of(fit['scatter']), 2)} {unit.name}"
+        if fit["scatter_seconds"]:
+            scatter = _(
+                "{scatter} in a rest of {seconds} s and less in a longer one",
+                scatter=scatter,
+                seconds=numbers.significant(fit["scatter_seconds"], 2),
+            )
         return (
             _(
                 "with a scatter of the manoeuvres by {scatter}, which this χ² and the σ allow for; "
@@ -293,10 +298,7 @@ def by_kind(rows: Iterable[Record]) -> list[Record]:
 
 def symbol(parameter: str) -> str:
     """The parameter's sign with its axes: b_x, s_x, m_xy; its name where it has none."""
-    if parameter not in PARTS:
-        return term(sign_of(_without_effect(parameter)))
-    kind, axes = PARTS[parameter]
-    return f"{SYMBOL[kind]}_{axes}"
+    return term(sign_of(_without_effect(parameter)))
 
 
 def quantity_of(row: Record) -> units.Quantity:

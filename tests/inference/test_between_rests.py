@@ -196,7 +196,8 @@ def test_an_imu_that_sways_in_the_hand_is_known_by_it():
     fitted, left_out = fit(stops, passages, GIVEN)
     estimate = fitted.estimate
     assert not left_out and fitted.p_value < 1e-10
-    assert fitted.scatter * 3 == pytest.approx(sway, rel=0.2)  # rad/s for the usual 3 s
+    assert fitted.scatter_seconds == 3  # the usual rest
+    assert fitted.scatter * 3 == pytest.approx(sway, rel=0.2)  # rad/s
     assert estimate.chi_squared == pytest.approx(estimate.degrees, rel=0.2)
     pulls = (estimate.values[:UNKNOWNS] - imu.rates) / estimate.sigma[:UNKNOWNS]
     assert np.abs(pulls).max() < 3.5

@@ -70,6 +70,7 @@ def fit(stage: str, other: str) -> Rows:
     p_value = 2.4e-9 if stage == "gyroscope" else 0.41
     chi_squared = 812.4 if stage == "gyroscope" else 603.1
     noise = {"scatter": 0.0, "random_walk": 0.0, "random_walk_sigma": 0.0, "switch_ons": 1}
+    noise |= {"scatter_seconds": None}
     noise |= {"unit": tables.UNITS["accel" if stage == "accelerometer" else "gyro"]}
     row = {"chi_squared": chi_squared, "degrees": 594, "p_value": p_value}
     plain = {"chi_squared": 5.1, "degrees": 6, "p_value": 0.53}

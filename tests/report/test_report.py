@@ -282,6 +282,9 @@ def test_a_scatter_that_the_sigmas_include_is_stated() -> None:
     made["gyroscope_fit"]["scatter"] = 0.5 * np.pi / 180 / 3600
     words = "With a scatter of the manoeuvres by 0.50 °/h, which this χ² and the σ allow for; noise"
     assert words in fits_of(parameters_of(made))
+    made["gyroscope_fit"]["scatter_seconds"] = 32.4
+    words = "by 0.50 °/h in a rest of 32 s and less in a longer one, which this χ²"
+    assert words in fits_of(parameters_of(made))
 
 
 def test_mounts_stand_apart() -> None:

@@ -70,7 +70,13 @@ def final_residuals(tables: Tables) -> dict[str, list[Residual]]:
 def parts(tables: Tables) -> Iterator[Part]:
     """A figure of each sensor, and how the residuals compare with the noise."""
     if not any(final_residuals(tables).values()):
-        yield Paragraph(_("None: no result counts, or no attitude is known."), "fair")
+        yield Paragraph(
+            _(
+                "None: there is no final result, or no attitude is known to predict readings by. "
+                "In positions of unknown attitude “Compensation” compares |f| with gravity."
+            ),
+            "fair",
+        )
         return
     for sensor, shown in final_residuals(tables).items():
         if shown:
