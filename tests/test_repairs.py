@@ -225,6 +225,42 @@ def test_two_turns_the_other_way_may_be_two_in_the_other_order():
     assert "or they were done in the other order, which gives the same" in row["condition"]
 
 
+def planned_other_way_up(*names: str) -> Edit:
+    """The plan has manoeuvres upside down, so that a table turns about the other direction."""
+
+    def edit(document: Document) -> None:
+        plan = {one["id"]: one for one in document["campaign"]["plan"]}
+        ups = {name: plan[name]["up"].translate(str.maketrans("+-", "-+")) for name in names}
+        misstated(plan={name: {"up": up} for name, up in ups.items()})(document)
+
+    return edit
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rests", [[], ["y-up", "y-down"]])
+def test_turns_that_stood_the_other_way_up_are_taken_so(rests):
+    """And no axis of both sensors is reversed, which would be left-handed: gravity shows it."""
+    turns = ["y-forward", "y-backward"]
+    results = recorded(in_one_log, planned_other_way_up(*turns, *rests))
+    assert np.abs(pulls(results)).max() < MAX_PULL
+    told = repairs(results)
+    expected = ["other_way_up/y"] + (["exchanged_manoeuvres/y-down/y-up"] if rests else [])
+    assert sorted(told.index) == sorted(expected) and set(told["state"]) == {"applied"}
+    condition = "in y-forward, y-backward the IMU stood the other way up than planned"
+    assert told.loc["other_way_up/y", "condition"] == condition
+    plan = results["segment/manoeuvres"].set_index("manoeuvre")
+    assert plan.loc["y-forward", ["up_y", "about_y"]].tolist() == [1, 1]
+
+
+@pytest.mark.slow
+def test_where_gravity_does_not_turn_a_reversed_axis_may_be_another_attitude():
+    results = recorded(faults(flip("gyro", "y"), flip("accelerometer", "y")))
+    told = repairs(results)
+    assert set(told.index) == {"signs/accel", "signs/gyro"}
+    both = "or the IMU stood the other way up than planned wherever this axis was vertical"
+    assert all(both in condition for condition in told["condition"])
+
+
 def y_turns_exchanged(of_one_log: bool) -> Edit:
     """A turn of 360° and one of 1080° the same way, recorded in each other's place."""
 

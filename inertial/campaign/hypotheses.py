@@ -182,6 +182,7 @@ _CAUSE_OF_REPAIR = {
     "signs": "sign_flip",
     "count_size": "wrong_scale_factor",
     "sense_of_table": "wrong_direction",
+    "other_way_up": "wrong_direction",
     "exchanged_manoeuvres": "manoeuvre_swapped",
     "stated_rate": "wrong_rate",
     "stated_spans": "wrong_spans",

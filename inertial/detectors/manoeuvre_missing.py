@@ -104,12 +104,13 @@ def _instead(recorded: Recorded, i: int) -> str:
             return ""
         direction = force / np.linalg.norm(force)
         away = np.degrees(np.arccos(np.clip(direction @ up, -1, 1)))
-        sentence = _(
-            " Its log rests {away:.0f}° from there, with {direction} up.",
-            away=away,
-            direction=_axis(direction),
-        )
-        if float(np.abs(direction).max()) > MIN_SAME_COSINE:
+        alone = recorded.log.count(recorded.log[i]) == 1
+        sentence = (
+            _(" Its log rests {away:.0f}° from there, with {direction} up.")
+            if alone
+            else _(" In its place the log rests {away:.0f}° from there, with {direction} up.")
+        ).format(away=away, direction=_axis(direction))
+        if alone and float(np.abs(direction).max()) > MIN_SAME_COSINE:
             sentence += _(
                 " Either the IMU had this attitude, or two axes or a sign of the accelerometers are"
             )

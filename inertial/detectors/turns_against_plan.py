@@ -209,12 +209,18 @@ def _the_other_way(turns: Reversed, recorded: Recorded) -> Description:
             seen=seen,
         )
     )
+    wrong = (
+        _("the directions of `up` of these turns")
+        if turns.upended
+        else _("the signs of degrees or rate")
+    )
     return Description(
         sentence,
         _("Taken as planned, the scale errors of their gyros would be −200 %."),
         _(
-            "They are taken the other way, on this condition. Correct the signs of degrees or rate "
-            "in the plan; or confirm it by accept: [{repair}].",
+            "They are taken the other way, on this condition. Correct {wrong} in the plan; or "
+            "confirm it by accept: [{repair}].",
+            wrong=wrong,
             repair=turns.repair,
         ),
     )

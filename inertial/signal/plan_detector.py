@@ -82,7 +82,7 @@ class Reversed:
     """Turns that the plan counts the other way, which is undone; why: in words.
 
     about: a body axis, or negative; empty: all turns; by_gravity: whether gravity shows that the
-    signs of the gyros are right.
+    signs of the gyros are right; upended: whether the IMU stood the other way up in them instead.
     """
 
     repair: str
@@ -90,6 +90,7 @@ class Reversed:
     about: str
     why: str
     by_gravity: bool
+    upended: bool = False
 
 
 @dataclass(frozen=True)

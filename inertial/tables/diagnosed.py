@@ -17,8 +17,8 @@ REPAIRS = Table(
             "repair",
             TEXT,
             "",
-            "gravity, axes, signs, count_size, sense_of_table, exchanged_manoeuvres, stated_rate,"
-            " stated_spans",
+            "gravity, axes, signs, count_size, sense_of_table, other_way_up, exchanged_manoeuvres,"
+            " stated_rate, stated_spans",
         ),
         Column(
             "state",

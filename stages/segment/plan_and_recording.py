@@ -248,12 +248,27 @@ def _parts(segments: pd.DataFrame) -> dict[str, Place]:
 
 
 def _candidate(m: Manoeuvre, located: Located) -> int | None:
-    """The stretch of a manoeuvre; of one that is not found, what a log of its own has instead."""
-    place = located.place(m)
-    if place is not None or not located.binned.window.alone:
+    """The stretch of a manoeuvre; of one that is not found, what the log has instead.
+
+    That is the longest of its kind in a log of its own; in one of several the longest rest that is
+    nothing else, at least half as long as planned, between the second found before it and the
+    second behind it.
+    """
+    place, seen = located.place(m), located.observed
+    if place is not None:
         return place
-    alike = [k for k, what in enumerate(located.observed) if what.moves is (m.do != "rest")]
-    return max(alike, key=lambda k: located.observed[k].seconds, default=None)
+    first, after, least = 0, len(seen), 0.0
+    if not located.binned.window.alone:
+        if m.do != "rest":
+            return None
+        here = [other.name for other in located.plan].index(m.name)
+        places = [located.place(other) for other in located.plan]
+        before, behind = ([k for k in p if k is not None] for p in (places[:here], places[here:]))
+        first, after = [-1, *before][-2:][0] + 1, [*behind, after][:2][-1]
+        least = (m.seconds or 0.0) / 2
+    own = [k for k in range(first, after) if seen[k].moves is (m.do != "rest")]
+    own = [k for k in own if seen[k].seconds >= least and k not in located.matched.values()]
+    return max(own, key=lambda k: seen[k].seconds, default=None)
 
 
 def _instead(m: Manoeuvre, located: Located) -> Place:

@@ -55,6 +55,7 @@ from stages.segment.steps import (
 from stages.segment.windows import Binned
 
 MOUNTING = _("the IMU may be mounted turned against the plan, which reads the same")
+UPENDED = _("or the IMU stood the other way up than planned wherever this axis was vertical")
 
 
 @dataclass(frozen=True)
@@ -132,6 +133,7 @@ class _Campaign:
         self._reversed: list[Reversed] = []
         self._spans_off: list[SpansOff] = []
         self._by_gravity = False  # whether gravity shows the gyros to be as they are named
+        self._gravity_turns = False  # whether it shows what they are named by at all
         self._rivals: dict[str, list[tuple[str, str]]] = {}
         self._explain()
 
@@ -247,6 +249,7 @@ class _Campaign:
         if right == total and not self._explained.exchanged:
             return
         seen = axes_by_gravity(self._binned, self._level)
+        self._gravity_turns = seen is not None and seen.axes is not None
         self._by_gravity = seen is not None and seen.axes == AS_NAMED
         explained = explained_of(
             self._binned,
@@ -292,10 +295,13 @@ class _Campaign:
             for sensor, own in unlike(axes, AS_PLANNED)
             if axes_step(sensor, own).id in explained.rivals
         }
-        both = axes.accel == axes.gyro and bool(rivals)
+        alike = axes.accel == axes.gyro
+        both = alike and bool(rivals)
         for each in misread_in(self._plan, replace(explained, misread={})):
             step = axes_step(each.sensor, each.axes)
             condition = axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
+            if alike and not turned and each.axes.in_place and not self._gravity_turns:
+                condition += f"; {UPENDED}"
             rival = turned or both or each.sensor in rivals
             if self._decide(step, condition, explained.fitting, rival=rival):
                 self._misread.append(replace(each, undone=True))
@@ -335,9 +341,9 @@ class _Campaign:
             step = sense_step(turns)
             why = self._in_words(step)
             if self._decide(step, why, fitting, rival=step.id in explained.rivals):
-                told = (turns.about, why, self._by_gravity)
+                told = (turns.about, why, self._by_gravity, turns.upended)
                 self._reversed.append(Reversed(step.id, turns.names, *told))
-                plan = turned_back(plan, turns.names)
+                plan = turned_back(plan, turns)
         return plan
 
     def set_axes_by_gravity(self) -> None:

@@ -24,6 +24,7 @@ from inertial.signal.scale_factor import (
     MAX_SCALE_ERROR,
     factors_near,
 )
+from inertial.tables import AXES
 from inertial.text.messages import _
 from stages.segment.located import Located
 from stages.segment.matching import motion
@@ -282,19 +283,14 @@ def rates_of(explained: ExplainedRecording, level: Array, tolerance: float) -> R
 def plan_as_taken(stated: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFrame:
     """The table of the manoeuvres with what the repairs have changed."""
     table = stated.set_index("manoeuvre").loc[[m.name for m in plan]].reset_index()
-    for name in (
-        "log",
-        "from_s",
-        "to_s",
-        "from_row",
-        "to_row",
-        "label",
-        "angle",
-        "rate",
-        "rate_sigma",
-    ):
+    places = ("log", "from_s", "to_s", "from_row", "to_row", "label")
+    for name in (*places, "angle", "rate", "rate_sigma"):
         values = pd.Series([getattr(m, name) for m in plan], dtype=object)
         table[name] = values.where(values.notna(), None)
+    for name in ("up", "about"):
+        vectors = [getattr(m, name) for m in plan]
+        for i, axis in enumerate(AXES):
+            table[f"{name}_{axis}"] = [None if vector is None else vector[i] for vector in vectors]
     return table[list(stated.columns)]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from inertial.campaign.records import Manoeuvre
-from stages.segment.steps import Exchanged
+from stages.segment.steps import Exchanged, OtherSense
 
 PLACE = ("log", "from_s", "to_s", "from_row", "to_row", "label")  # a log, and a selection of it
 
@@ -32,9 +32,14 @@ def _placed(m: Manoeuvre, like: Manoeuvre) -> Manoeuvre:
     return replace(m, **{key: getattr(like, key) for key in PLACE})
 
 
-def turned_back(plan: Sequence[Manoeuvre], names: Collection[str]) -> list[Manoeuvre]:
-    """The plan with some of its turns the other way."""
-    return [_turned_back(m) if m.name in names else m for m in plan]
+def turned_back(plan: Sequence[Manoeuvre], turns: OtherSense) -> list[Manoeuvre]:
+    """The plan with some of its turns the other way, or the other way up."""
+    other = _other_way_up if turns.upended else _turned_back
+    return [other(m) if m.name in turns.names else m for m in plan]
+
+
+def _other_way_up(m: Manoeuvre) -> Manoeuvre:
+    return replace(m, **{key: -getattr(m, key) for key in ("up", "about")})
 
 
 def _turned_back(m: Manoeuvre) -> Manoeuvre:

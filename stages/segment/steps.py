@@ -36,10 +36,14 @@ class Exchanged:
 
 @dataclass(frozen=True)
 class OtherSense:
-    """Turns that the plan counts the other way: all, about one axis, or about NEGATIVE axes."""
+    """Turns that the plan counts the other way: all, about one axis, or about NEGATIVE axes.
+
+    `upended`: they are as planned, but the IMU stood the other way up in them.
+    """
 
     names: tuple[str, ...]
     about: str = ""
+    upended: bool = False
 
 
 @dataclass(frozen=True)
@@ -70,8 +74,8 @@ def count_size_step(sensor: str, log: str = "") -> Step:
 
 
 def sense_step(turns: OtherSense) -> Step:
-    """That the plan counts turns the other way."""
-    kind = "sense_of_table"
+    """That the plan counts turns the other way, or has them the other way up."""
+    kind = "other_way_up" if turns.upended else "sense_of_table"
     return Step("/".join([kind, *([turns.about] if turns.about else [])]), kind, turns=turns)
 
 
@@ -153,6 +157,9 @@ def spans_in_words(off: SpansOff) -> str:
 
 def sense_in_words(turns: OtherSense, own: Sequence[Manoeuvre]) -> str:
     """That the plan, or the table, counts its `own` turns the other way."""
+    if turns.upended:
+        names = ", ".join(turns.names)
+        return _("in {names} the IMU stood the other way up than planned", names=names)
     if turns.about == NEGATIVE:
         return _("the plan counts the turns about the negative axes as if about the positive ones")
     if turns.about:

@@ -5,14 +5,20 @@ from dataclasses import dataclass, replace
 from itertools import combinations, groupby
 from typing import Any
 
+import numpy as np
+
+from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import AS_NAMED, PERMUTATIONS, Permutation
+from inertial.signal.misread_axes import determinant
+from inertial.tables import AXES
 from stages.segment.located import AS_PLANNED, Axes, Division, Located, locate
-from stages.segment.matching import MAX_WHOLE_DIFFERENCE, MIN_SCALE_RATIO
+from stages.segment.matching import MAX_WHOLE_DIFFERENCE, MIN_SCALE_RATIO, points
 from stages.segment.repaired_plan import turned_back
 from stages.segment.rest_readings import earth_seen
 from stages.segment.steps import (
     ALL_REVERSED,
+    OWN_AXIS_SHARE,
     Exchanged,
     OtherSense,
     Step,
@@ -80,6 +86,8 @@ def suppositions(case: Case, with_sense: bool, gyros_confirmed: bool) -> Iterato
     if with_sense:
         for turns in _senses(case, by_axis=gyros_confirmed):
             yield _with_other_sense(case, turns)
+        for turns in _upended(case):
+            yield _with_other_sense(case, turns)
     yield from _exchanges(case, lacking)
     for permutation in PERMUTATIONS:
         for change in ({"accel": permutation}, {"gyro": permutation}):
@@ -88,7 +96,9 @@ def suppositions(case: Case, with_sense: bool, gyros_confirmed: bool) -> Iterato
                 continue
             if getattr(case.everywhere, next(iter(change))) == AS_NAMED:
                 yield _by_axes(case, replace(case.everywhere, **change))
-        if case.everywhere.as_named:
+        # Gravity would show both triads to be left-handed, for the gyros' readings are axial.
+        left_handed = determinant(permutation) < 0
+        if case.everywhere.as_named and not (gyros_confirmed and left_handed):
             yield _by_axes(case, Axes(permutation, permutation))
 
 
@@ -143,8 +153,33 @@ def _senses(case: Case, *, by_axis: bool) -> Iterator[OtherSense]:
     yield from (group for group in groups if group.names and not taken & {*group.names})
 
 
+def _upended(case: Case) -> Iterator[OtherSense]:
+    """The turns about each axis before which gravity points the other way than planned.
+
+    With those of the same direction up that are not found: one the other way may be where the plan
+    has its opposite.
+    """
+    taken = {name for each in case.other_sense for name in each.names}
+    turns, shown = list[tuple[Manoeuvre, Array]](), list[Array]()
+    for located in case.located:
+        for m in located.plan:
+            if m.do != "turn" or m.up is None or m.name in taken:
+                continue
+            before = located.rest_before(m)
+            if located.place(m) is None:
+                turns.append((m, m.up))
+            elif before is not None and points(located.observed[before].force, -m.up):
+                turns.append((m, m.up))
+                shown.append(m.up)
+    upended = [m for m, up in turns if any(np.allclose(up, other) for other in shown)]
+    for i, axis in enumerate(AXES):
+        names = tuple(m.name for m in upended if abs(m.axis[i]) > OWN_AXIS_SHARE)
+        if names:
+            yield OtherSense(names, axis, upended=True)
+
+
 def _with_other_sense(case: Case, turns: OtherSense) -> Case:
-    plans = tuple(turned_back(plan, turns.names) for plan in case.plans)
+    plans = tuple(turned_back(plan, turns) for plan in case.plans)
     other_sense = (*case.other_sense, turns)
     return _supposing(case, sense_step(turns), plans, other_sense=other_sense)
 
@@ -175,9 +210,9 @@ def _exchanging(case: Case, plans: Sequence[Sequence[Manoeuvre]], exchanged: Exc
 
 def _by_axes(case: Case, axes: Axes) -> Case:
     # What two names had explained, they explain by these axes as well, or not at all.
-    back = {name for turns in case.other_sense for name in turns.names}
-    planned = (window.binned.window.manoeuvres for window in case.windows)
-    plans = tuple(turned_back(plan, back) for plan in planned)
+    plans: Plans = tuple(window.binned.window.manoeuvres for window in case.windows)
+    for turns in case.other_sense:
+        plans = tuple(turned_back(plan, turns) for plan in plans)
     sensor = "accel" if axes.accel != case.everywhere.accel else "gyro"
     step = axes_step(sensor, getattr(axes, sensor))
     return _supposing(case, step, plans, everywhere=axes, exchanged=())

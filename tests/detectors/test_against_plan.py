@@ -473,6 +473,16 @@ def test_what_the_log_has_instead_is_told():
     assert "seen in y-up" in finding["consequence"]
 
 
+def test_what_a_log_of_several_has_in_the_place_of_a_rest_is_told():
+    document = chain.short(handling={"still_s": 10, "change_s": 10})
+    for one in document["campaign"]["plan"]:
+        one["log"] = "session.asc"
+    document["misstated"] = {"plan": {"z-down": {"up": "+z"}}}
+    told = chain.in_memory_of(document, "segment")["segment/findings"]
+    (missing,) = told.query("cause == 'manoeuvre_missing'").to_dict("records")
+    assert "In its place the log rests 180° from there, with −z up." in missing["sentence"]
+
+
 def test_two_planned_rests_that_are_one_in_the_log_lose_nothing():
     """As where a tumble goes back, and nothing need move before the first rest of the way back."""
 
