@@ -164,6 +164,7 @@ MISTAKES = {
         ["plan[1]", "degrees_sigma"],
     ),
     "a day that is none": ("2026-11-02", "2026-13-45", ["date", "2026-13-45", "YYYY-MM-DD"]),
+    "a day that is none, unquoted": ('"2026-11-02"', "2026-13-45", ["date", "YYYY-MM-DD"]),
     "rate with a sign": ("rate_deg_s: 10", "rate_deg_s: -10", ["plan[1].rate_deg_s", "magnitude"]),
     "a turn that cannot last so long": (
         "accel_deg_s2: 5",
@@ -382,6 +383,11 @@ def test_by_hand_the_table_may_be_left_out_where_no_position_is_set(tmp_path):
     assert made["campaign"]["table"].item() == "by hand"
     position = made["known"].set_index("quantity").loc["position"]
     assert not position["assumed"] and "no position is set" in position["origin"]
+
+
+def test_a_date_needs_no_quotation_marks(tmp_path):
+    made = planned(tmp_path, BY_HAND.replace("date: unknown", "date: 2026-11-02"))
+    assert made["campaign"]["date"].item() == "2026-11-02"
 
 
 def test_the_rate_of_the_instrument_counts_rows_without_time(tmp_path):

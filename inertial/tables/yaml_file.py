@@ -17,6 +17,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.resolver import VersionedResolver
 from ruamel.yaml.scalarbool import ScalarBoolean
+from ruamel.yaml.tag import Tag
 
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
@@ -31,6 +32,7 @@ MOST_KEYS = 8  # that a refusal lists; of more those near to the unknown one and
 MAX_NUMBER = 1e15  # nothing that a laboratory writes down is larger, in whichever unit
 FOLDER = Path(__file__).parent
 QUOTES = "'\""
+TEXT = Tag(suffix="tag:yaml.org,2002:str")
 
 
 class _DatesAreText(VersionedResolver):
@@ -38,7 +40,7 @@ class _DatesAreText(VersionedResolver):
 
     def resolve(self, kind: Any, value: Any, implicit: Any) -> Any:
         tag = super().resolve(kind, value, implicit)
-        return "tag:yaml.org,2002:str" if str(tag).endswith(":timestamp") else tag
+        return TEXT if str(tag).endswith(":timestamp") else tag
 
 
 FORMATS = jsonschema.FormatChecker(formats=())

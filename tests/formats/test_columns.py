@@ -113,6 +113,12 @@ def test_an_unknown_column_is_refused_with_those_that_exist(log):
     )
 
 
+def test_a_number_beyond_the_columns_is_refused_with_those_that_exist(log):
+    layout = NAMED | {"gyro": {"columns": ["gx", 6, 8], "unit": "deg/s"}}
+    with pytest.raises(Refusal, match=r"gyro.columns\n .*no column '8'\n .*one of t, ax"):
+        everything(log(HEADER + b"10,1,2,3,4,5,6\n"), layout)
+
+
 def test_a_name_that_stands_twice_is_refused(log):
     with pytest.raises(Refusal, match="the header has 2 columns 'ax'"):
         everything(log(b"t,ax,ax,az,gx,gy,gz\n10,1,2,3,4,5,6\n"), NAMED)

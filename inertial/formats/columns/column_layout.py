@@ -132,18 +132,24 @@ def ticks_per_second(layout: Mapping[str, Any]) -> float:
 
 
 def column_layout(
-    layout: Mapping[str, Any], names: Sequence[str], file: str, *, container: bool = False
+    layout: Mapping[str, Any],
+    names: Sequence[str],
+    file: str,
+    *,
+    container: bool = False,
+    most: float = math.inf,
 ) -> ColumnLayout:
     """The layout applied to a file that gives its columns these names.
 
-    A `container` names every column that it has; the header of a text may name none.
+    A `container` names every column that it has; the header of a text may name none. `most`: how
+    many columns the rows of a text have.
 
     Raises
     ------
     Refusal
         where the layout names a column that the file has not, or has twice
     """
-    finder = _Finder(names, file, container)
+    finder = _Finder(names, file, container, len(names) if container else most)
     time = layout.get("time")
     return ColumnLayout(
         accelerometer=finder.triad("accelerometer", layout.get("accelerometer")),
@@ -163,8 +169,8 @@ def column_layout(
 class _Finder:
     """Finds the columns that the keys of the layout name."""
 
-    def __init__(self, names: Sequence[str], file: str, container: bool) -> None:
-        self._names = names
+    def __init__(self, names: Sequence[str], file: str, container: bool, most: float) -> None:
+        self._names, self._most = names, most
         self._file = file
         self._container = container
         self.by_name = False
@@ -217,11 +223,6 @@ class _Finder:
             shown.append(_("and {names} more", names=len(self._names) - len(shown)))
         there = _("one of {shown}", shown=", ".join(shown)) if shown else "a number, from 1"
         raise self._refusal(key, _("no column '{name}'", name=name), there)
-
-    @property
-    def _most(self) -> float:
-        """The largest number that a column may have."""
-        return len(self._names) if self._container else math.inf
 
     def _refusal(self, key: str, found: str, expected: str) -> Refusal:
         cure = (

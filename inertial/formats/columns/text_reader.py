@@ -79,8 +79,10 @@ def read(
     # A file without data rows lacks no columns.
     columns = column_layout(layout if lengths else {}, names, path.name)
     fields = _usual_length(columns, lengths)
-    if columns.by_name and not (fields == len(names) + 1 and closed[fields] == lengths[fields]):
+    if columns.by_name and not (fields == len(names) + 1 and closed[fields] == lengths[fields] > 0):
         fields = len(names)
+    if columns.by_name:  # then numbers are of these columns too
+        columns = column_layout(layout, names, path.name, most=fields)
 
     records = 0
     sorter = _sorter(layout)
