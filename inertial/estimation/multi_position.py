@@ -1,7 +1,7 @@
 """The accelerometers from static positions of unknown attitude, by the magnitude of gravity."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
@@ -14,6 +14,7 @@ from inertial.estimation.least_squares import (
     Estimate,
     Stepped,
     counted,
+    in_order,
     remaining,
     solve_stepped,
 )
@@ -29,6 +30,7 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))  # elements of P in the
 # rotates the readings by σ/g, must not seem to determine it.
 PRIOR = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
 PRIOR_SIGMA = np.array([1.0, 1.0, 1.0, 0.05, 0.05, 0.05, 10.0, 10.0, 10.0])
+HELD = 1e-3  # of its prior's sigma, for what is not determined while all else is estimated
 SCATTER_RANGE = (1e-7, 1.0)  # m/s², between static positions beyond the noise
 DIRECTION_SIGMA = 1.0  # rad, prior of a direction about that of the readings
 MIN_COMPONENT = 0.3  # of an unobservable combination: a parameter with less is not listed
@@ -95,10 +97,18 @@ def free_positions(
 
     Noise across gravity lengthens a reading, |f|² = g² + …: this bias, σ²/g for equal channels, is
     subtracted, see `lengthened`. `scatter`, m/s²: between rests, beyond noise.
+
+    What the rests do not determine is held at its prior while the sum of squares is made smallest:
+    where no rest is inclined to an axis, a scale factor near 0 of it would fit any noise.
     """
     data = _Rests.of(rests, (gravity, gravity_sigma), scatter)
     start = np.concatenate([PRIOR, np.zeros(2 * len(rests)), [gravity]])
-    estimate = solve_stepped(data.linearised, data.squares, start)
+    held = data.holding(unobservable(data.linearised(start)[0].solve()))
+    estimate = solve_stepped(held.linearised, held.squares, start)
+    if held is not data:
+        order = held.linearised(start)[1]
+        vague_too = data.linearised(in_order(estimate, order))[0].solve()
+        estimate = replace(vague_too, values=estimate.values)
     directions = dict.fromkeys(estimate.names[FREE + 1 :], DIRECTION_SIGMA)
     vague = dict(zip(estimate.names, PRIOR_SIGMA.tolist(), strict=False))
     return counted(estimate, {**vague, **directions})
@@ -116,6 +126,16 @@ class _Rests:
     up: Upward
     gravity: tuple[float, float]
     scatter: float
+    prior_sigma: Array = field(default_factory=PRIOR_SIGMA.copy)
+
+    def holding(self, combinations: "Sequence[Unobservable]") -> "_Rests":
+        """The same with the parameters that represent these combinations at their priors."""
+        if not combinations:
+            return self
+        sigma = self.prior_sigma.copy()
+        for combination in combinations:
+            sigma[NAMES.index(combination.names[0])] *= HELD
+        return replace(self, prior_sigma=sigma)
 
     @classmethod
     def of(
@@ -129,7 +149,7 @@ class _Rests:
         _own, rest, sigma = _about(self.rests, self.up, self.scatter, around)
         prior = np.concatenate([PRIOR, np.zeros(2 * len(self.rests)), self.gravity[:1]])
         away = (around - prior) / np.concatenate(
-            [PRIOR_SIGMA, np.full(2 * len(self.rests), DIRECTION_SIGMA), self.gravity[1:]]
+            [self.prior_sigma, np.full(2 * len(self.rests), DIRECTION_SIGMA), self.gravity[1:]]
         )
         return float(np.sum((rest / sigma) ** 2) + away @ away)
 
@@ -150,7 +170,7 @@ class _Rests:
             left,
             eliminated,
             prior,
-            np.append(PRIOR_SIGMA, self.gravity[1]),
+            np.append(self.prior_sigma, self.gravity[1]),
             FREE,
             (*parameters, ("gravity", "")),
         )

@@ -136,6 +136,19 @@ def test_one_rest_tells_nothing_and_a_prior_is_no_estimate():
     assert ("symmetric_xx", "bias_x") in named(estimate)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_rests_in_one_plane_tell_no_scale_factor_across_it(seed):
+    """A scale factor near 0 would fit any noise there, and seem to be known to half a percent."""
+    angles = np.linspace(0.3, 12, 24)
+    plane = np.column_stack([np.cos(angles), np.zeros(24), np.sin(angles)])
+    imu = Imu(np.random.default_rng(seed), noise=MPU6050)
+    estimate = solved(rests(imu, plane, 10, 0.0))
+    assert not estimate.determined[NAMES.index("symmetric_yy")]
+    assert "symmetric_yy" in [name for each in unobservable(estimate) for name in each.names]
+    pulls = (estimate.values[:FREE] - imu.free) / estimate.sigma[:FREE]
+    assert np.abs(pulls).max() < 3.5
+
+
 @pytest.mark.parametrize("tilt", [0.0, 1.0, 3.0])
 def test_two_positions_with_an_unknown_tilt(tilt):
     # S1: one axis up, then down, its tilt not known. Two readings tell its bias and scale factor as
