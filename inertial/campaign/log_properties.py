@@ -21,6 +21,7 @@ WINDOW = 1.0  # s
 MIN_COMMON_LOGS = 3  # logs that can have an interval in common
 HELD_WINDOW = 256  # records
 MIN_HELD_SHARE = 0.1  # of the records of nine in ten windows
+MAX_HELD_TIMES = 20.0  # the median of how long a reading is held: what stands still is longer
 MAX_EQUAL_ALONE = 0.3  # share of an axis of other records: its counts are not coarse
 
 
@@ -213,10 +214,11 @@ class _Channels:
         if len({len(step) for step in steps}) != 1:
             return None
         new = np.logical_or.reduce([step > 0 for step in steps])
-        held = len(new) - np.count_nonzero(new)
+        own = new[~_standing_still(new)]
+        held = len(own) - np.count_nonzero(own)
         self.held[sensor] += held
-        whole = len(new) // HELD_WINDOW * HELD_WINDOW
-        self.windows[sensor].append(1 - new[:whole].reshape(-1, HELD_WINDOW).mean(axis=1))
+        whole = len(own) // HELD_WINDOW * HELD_WINDOW
+        self.windows[sensor].append(1 - own[:whole].reshape(-1, HELD_WINDOW).mean(axis=1))
         return new if held > MIN_HELD_SHARE * len(new) and new.any() else None
 
     def held_share(self) -> Array:
@@ -244,6 +246,20 @@ class _Channels:
         noise = np.where(held, self.noise_of_new, self.noise)
         recorded = np.isfinite(noise).any(axis=0)
         return np.where(recorded, np.nanmedian(np.where(recorded, noise, 0.0), axis=0), np.nan)
+
+
+def _standing_still(new: Booleans) -> Booleans:
+    """Which records, (n,), hold a reading for so long that no slower sensor does.
+
+    `new`: which records have a reading of their own.
+    """
+    first = np.flatnonzero(np.append(new, True))
+    length = np.diff(first)
+    still = np.zeros(len(new), bool)
+    if len(length):
+        for k in np.flatnonzero(length > MAX_HELD_TIMES * np.median(length)):
+            still[first[k] + 1 : first[k + 1]] = True
+    return still
 
 
 def _noise(change: Array) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import erf
+from scipy.special import comb, erf
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import COLUMNS
@@ -21,7 +21,13 @@ from inertial.signal.detector import (
 )
 from inertial.signal.free_rotation import FreeRotation
 from inertial.signal.held_readings import readings_of
-from inertial.signal.scatter import BLOCK, MIN_NOISE_COUNTS, roughness, smallest_step
+from inertial.signal.scatter import (
+    BLOCK,
+    MAD_TO_SIGMA,
+    MIN_NOISE_COUNTS,
+    roughness,
+    smallest_step,
+)
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
@@ -30,6 +36,7 @@ MAX_CHANCE = 1e-4  # chance of so long a run of equal readings in a log
 MIN_RUN = 4  # equal readings; fewer may be spikes
 MIN_LEAP_RATIO = 20.0  # times the changes beside a run, by which the readings leap to it and back
 MAX_LEAP_CHANCE = 1e-6  # chance that they do so by themselves
+MIN_ROUGH_TURNS = 1.5  # counts: readings that alternate between two counts have 1.05
 SMOOTH = 6  # order of the differences that are left of a smooth motion
 SIDE_READINGS = 8  # readings before a run and after it
 MIN_COMMON_RUN = 1000  # equal readings of all axes, where nothing is known of their noise
@@ -150,7 +157,8 @@ class DeadAxis(Detector):
             _(
                 "The readings are masked; what cannot do without them must be recorded again. "
                 "Axes that stop together have one cause: the logger, the link, or a fill value."
-            ),
+            )
+            + _other_cause(largest.facts),
         )
 
 
@@ -300,9 +308,27 @@ def _runs(values: Array) -> tuple[Integers, Integers]:
 
 
 def _noise(values: Array, start: Integers, end: Integers) -> float:
-    """The roughness of a channel in counts, without its longest run; NaN where it has no other."""
+    """The roughness of a channel in counts, without its longest run; NaN where it has no other.
+
+    Or, where that is clearly more, what is left of a smooth motion of it between all its long runs:
+    a channel that stands still in every rest has its noise in the turns alone.
+    """
     if len(start) < 2:
         return np.nan
-    longest = int(np.argmax(end - start))
+    count, length = smallest_step(values), end - start
+    longest = int(np.argmax(length))
     rest = np.delete(values, slice(start[longest], end[longest]))
-    return roughness(rest) / smallest_step(values)
+    usual = roughness(rest) / count
+    long = np.flatnonzero(length > BLOCK)
+    stretches = zip([0, *end[long]], [*start[long], len(values)], strict=True)
+    between = [
+        _typical(values[first:after]) / count for first, after in stretches if after - first > BLOCK
+    ]
+    least = min(between, default=0.0)
+    return max(usual, least) if least > MIN_ROUGH_TURNS else usual
+
+
+def _typical(values: Array) -> float:
+    """The scatter of readings in a smooth motion, of which ramps begin and end here and there."""
+    change = np.abs(np.diff(values, SMOOTH))
+    return float(MAD_TO_SIGMA * np.median(change) / np.sqrt(comb(2 * SMOOTH, SMOOTH)))

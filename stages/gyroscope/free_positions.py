@@ -55,7 +55,12 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     recorded = np.isfinite(np.array([stop.mean for stop in stops]).reshape(-1, 3)).any(axis=0)
     if not recorded.any():
         if left_out or positions:
-            estimates.add_nothing(FREE, omissions(left_out) or _("no gyro is recorded"))
+            none = (
+                _("in no position has a gyro readings that can be used")
+                if data.blocks[list(GYRO)].notna().any(axis=None)
+                else _("no gyro is recorded")
+            )
+            estimates.add_nothing(FREE, omissions(left_out) or none)
         return []
     moving, broken = passages_of(positions, data.blocks, data.noise, data.clocks)
     between = fitted_to(data, positions).scatter

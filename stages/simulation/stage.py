@@ -125,8 +125,10 @@ def _turn(
     for row in rows_of(segments[segments["manoeuvre"] == m.name]):
         phase[(record >= row["from_record"]) & (record < row["to_record"])] = row["phase"]
     readings = np.column_stack([read[channel] for channel in tables.CHANNELS])
-    edges = [blocks[name].to_numpy(np.int64) for name in ("from_record", "to_record")]
-    readings[~inside(record, *edges)] = np.nan
+    edges = blocks[["from_record", "to_record"]].to_numpy(np.int64)
+    for i, channel in enumerate(tables.CHANNELS):
+        known = np.isfinite(blocks[channel].to_numpy(np.float64))
+        readings[~inside(record, *edges[known].T), i] = np.nan
     increments = readings[:, len(GYRO) :] * step
     steady = phase == "steady"
     motion, how = in_samples(data, m, increments, step, steady, read["time"])

@@ -56,6 +56,24 @@ def test_an_axis_that_never_changes_is_measured_by_the_other_axes():
     assert "limit of the range" in DeadAxis().describe(event, "up.asc").action
 
 
+def motions_and_rests(repeats):
+    """Turns with noise and the rests between them, and where the rests are."""
+    parts = [part for _ in range(repeats) for part in (rest(800), turn()[1000:2000])]
+    still = np.concatenate([np.full(len(part), k % 2 == 0) for k, part in enumerate(parts)])
+    return np.concatenate(parts), still
+
+
+@pytest.mark.parametrize("axes", [[5], [3, 4, 5]])
+def test_gyros_that_read_zero_in_every_rest_stand_still_there(axes):
+    """Most readings are 0 then: their noise shows in the turns alone."""
+    values, still = motions_and_rests(6)
+    for axis in axes:
+        values[still, axis] = 0.0
+    found_there = {(first, after) for channel, first, after in stretches(values) if channel == 5}
+    edges = np.flatnonzero(np.diff(still.astype(int), prepend=0, append=0))
+    assert found_there == set(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
+
 def test_a_sensor_that_never_changes_is_dead_where_the_other_is_not():
     values = rest(3000)
     values[:, 3:] = 0.0

@@ -50,6 +50,13 @@ def test_it_is_known_by_the_records_that_repeat_it_all_the_time(readings, column
     np.testing.assert_allclose(table["noise"], NOISE, rtol=0.05)  # of a reading, not of a record
 
 
+def test_a_sensor_that_stands_still_for_long_is_no_slower_one():
+    """Zeros in rests of three seconds, two thirds of the records, and readings of its own else."""
+    values = rest(RECORDS)
+    values[np.arange(RECORDS) % 300 < 200, 3:] = 0.0
+    assert (statistics(values)["held_share"] == 0).all()
+
+
 def coarse_rest_in_motion() -> np.ndarray:
     """Coarse counts: at rest all axes repeat themselves by chance, in motion none does."""
     values = rest(RECORDS, 3, 0.2 * MEMS, MEMS)
