@@ -8,7 +8,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.physics.effect import Constant, Effect, Parameter, Reading, Truth, by_grade
-from inertial.physics.laws import LAWS, OWN, functions, unknown
+from inertial.physics.laws import LAWS, OWN, functions, powers, unknown
 from inertial.physics.motion import Motion
 from inertial.sensors import SENSORS
 from inertial.text.messages import _
@@ -56,7 +56,8 @@ class Law(Effect):
     def _terms(self) -> Sequence[str]:
         """What distinguishes the functions of one axis."""
         if self.family == "polynomial":
-            return [str(k) for k in range(1, round(self.shape[0] if self.shape else 2) + 1)]
+            degree = self.shape[0] if self.shape else 2
+            return [str(k) for k in powers(self.state, degree)]
         return ("_cos", "_sin") if self.family == "harmonic" else ("",)
 
     @property

@@ -16,6 +16,7 @@ NODES, WEIGHTS = (part / 2 for part in np.polynomial.legendre.leggauss(5))  # of
 RATE = 10 * DEGREE  # rad/s
 MINUTE = 60.0  # s
 SLOPE_SECONDS = 20.0  # s, over which the rate of a temperature is taken
+OWN_SHARE = 0.01  # of the square of an odd function of the rate, that no scale factor has
 MAX_CYCLES, RAMPS, STEPS = 20.0, 24, 360  # of a campaign
 OF_FORCE = ("power", "odd_power", "polynomial", "hysteresis")
 OF_STATE = {
@@ -94,10 +95,10 @@ def temperature_rate(motion: Motion) -> Array:
 def functions(family: str, name: str, shape: tuple[float, ...], motion: Motion, axis: int) -> Array:
     """The functions of a family of one state: means over the stretches, (n, k), 0 where not known.
 
-    polynomial (d): x … x^d; power (p): |x|^p; odd_power (p): sign(x) |x|^p; harmonic (ν):
-    cos νx and sin νx; exponential (c): e^(x/c); ramp (x₀): x − x₀ where above 0; telegraph
-    (x₁, x₂ …): 1 between x₁ and x₂, x₃ and x₄, …; hysteresis (w): the play operator of half
-    width w in the order of time; product: the state itself.
+    polynomial (d): x … x^d, of the rate without x, which is the scale factor; power (p): |x|^p;
+    odd_power (p): sign(x) |x|^p; harmonic (ν): cos νx and sin νx; exponential (c): e^(x/c); ramp
+    (x₀): x − x₀ where above 0; telegraph (x₁, x₂ …): 1 between x₁ and x₂, x₃ and x₄, …; hysteresis
+    (w): the play operator of half width w in the order of time; product: the state itself.
     """
     x = state(name, motion, axis)
     if family == "telegraph":
@@ -107,7 +108,7 @@ def functions(family: str, name: str, shape: tuple[float, ...], motion: Motion, 
     if family == "hysteresis":
         return _known(play(x[:, len(NODES) // 2], motion.time, shape[0])[:, None])
     if family == "polynomial":
-        values = [x**k for k in range(1, round(shape[0]) + 1)]
+        values = [x**k for k in powers(name, shape[0])]
     elif family == "power":
         values = [np.abs(x) ** shape[0]]
     elif family == "odd_power":
@@ -119,6 +120,11 @@ def functions(family: str, name: str, shape: tuple[float, ...], motion: Motion, 
     else:
         values = [x]
     return _known(np.column_stack([value @ WEIGHTS for value in values]))
+
+
+def powers(name: str, degree: float) -> range:
+    """Those of a polynomial of a state."""
+    return range(2 if name == "rate" else 1, round(degree) + 1)
 
 
 def _known(values: Array) -> Array:
@@ -168,11 +174,17 @@ def grid(family: str, name: str, motion: Motion) -> list[tuple[float, ...]]:
     x = np.stack([state(name, motion, axis) for axis in range(len(AXES))])
     low, high = float(np.nanmin(x)), float(np.nanmax(x))
     span = high - low
+    if (
+        name == "rate"
+        and family in ("polynomial", "odd_power")
+        and _proportional(x, motion.seconds)
+    ):
+        return []  # what is odd in it is the scale factor, but for the rate of the earth
     if family == "polynomial":
         return [(float(d),) for d in range(2, 6)]
     if family in ("power", "odd_power"):
-        powers = (0.25, 0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0, 5.0)
-        return [(p,) for p in powers if (name, p) != ("own_force", 2.0)]
+        exponents = (0.25, 0.5, 0.75, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0, 4.0, 5.0)
+        return [(p,) for p in exponents if (name, p) != ("own_force", 2.0)]
     if family == "harmonic" and name == "angle":
         return [(order,) for order in np.arange(0.25, 12.01, 0.125).tolist()]
     if family == "harmonic":
@@ -185,6 +197,19 @@ def grid(family: str, name: str, motion: Motion) -> list[tuple[float, ...]]:
     if family == "hysteresis":
         return [(share * span / 2,) for share in (0.25, 0.5, 0.75, 0.9)]
     return [()]
+
+
+def _proportional(rates: Array, seconds: Array) -> bool:
+    """Whether what is odd in the rates, (3, n, 5), is all but in proportion to them.
+
+    So it is where the table turns at one rate, to either side: the cube, weighted by the duration
+    of the stretches, (n,), has little of its own beside the rate.
+    """
+    weight = np.sqrt(np.broadcast_to(seconds[:, None] * WEIGHTS, rates.shape)).ravel()
+    first = np.nan_to_num(rates).ravel() * weight
+    third = np.nan_to_num(rates**3).ravel() * weight
+    own = third - first * (first @ third) / max(float(first @ first), np.finfo(float).tiny)
+    return bool(own @ own <= OWN_SHARE * (third @ third))
 
 
 def unknown(name: str, motion: Motion) -> str:

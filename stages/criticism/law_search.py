@@ -147,6 +147,8 @@ def columns_with(
             if law == TELEGRAPH or not laws.known(law[1], motion, i):
                 continue
             shapes[law] = laws.grid(*law, motion)
+            if not shapes[law]:
+                continue
             own = places.setdefault(law, {}).setdefault(axis, [])
             for shape in shapes[law]:
                 values.append(laws.functions(*law, shape, motion, i))

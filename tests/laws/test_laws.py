@@ -153,6 +153,19 @@ def test_states_and_their_functions():
     assert np.array(loops).max() < np.ptp(later[:, 2]) / 2
 
 
+def test_what_is_odd_in_one_rate_is_the_scale_factor():
+    """So it is no law: it would set the scale factor free, but for the rate of the earth."""
+    x_axis, degree = np.eye(3)[0], np.radians(1.0)
+    still = stretches(np.arange(4) * 60.0, np.full(4, 4.0), np.full(4, 290.0))
+    one = replace(still, about=x_axis, rate=np.array([10.0, -10.0, 10.0, 0.0]) * degree)
+    two = replace(one, rate=np.array([10.0, -10.0, 40.0, 0.0]) * degree)
+    for family in ("polynomial", "odd_power"):
+        assert laws.grid(family, "rate", one) == []
+        assert laws.grid(family, "rate", two)
+    assert laws.grid("power", "rate", one)
+    np.testing.assert_allclose(laws.functions("polynomial", "rate", (3.0,), two, 0)[2], [16, 64])
+
+
 @pytest.mark.slow
 def test_noise_reaches_the_odds_as_often_as_said():
     """By campaigns of two hundred readings of noise, and laws that are random functions."""
