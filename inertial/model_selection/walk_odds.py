@@ -98,8 +98,10 @@ def laws(equations: Equations, effects: Sequence[Scanned]) -> float:
     """The log evidence of several effects together.
 
     All ways of the first count for the next one: an axis of the first that seems silent, because
-    the next one hides it, would else be missed.
+    the next one hides it, would else be missed. Those with the fewest values come first: of many
+    values, such as the times of a jump, the best stand out once what is large is explained.
     """
+    effects = sorted(effects, key=lambda effect: len(effect[0]))
     own = sorted({i for values, _weights in effects for columns in values for i in columns})
     place = {column: i for i, column in enumerate(own)}
     ways = [

@@ -87,6 +87,21 @@ def test_an_axis_of_an_effect_that_another_effect_hides_is_not_taken_as_silent()
     assert drop / 2 - 25 < both[0] < drop / 2 - 10  # what six sizes and their ranges cost
 
 
+def test_the_time_of_a_jump_is_chosen_beside_a_much_larger_effect():
+    """Two hundred sigma of a ramp look like a jump in the middle; the jump was early."""
+    times = np.arange(5, STRETCHES - 5)
+    jumps = (np.arange(STRETCHES)[:, None] >= times).astype(float)
+    design = np.column_stack([jumps, TIME / SPAN])
+    design -= design.mean(axis=0)
+    design /= np.linalg.norm(design, axis=0)
+    truth = 20.0 * design[:, 3] + 200.0 * design[:, -1]
+    equations = Equations(design.T @ design, design.T @ truth)
+    jump = ([[i] for i in range(len(times))], np.ones(len(times)))
+    ramp = ([[len(times)]], np.ones(1))
+    for effects in ([jump, ramp], [ramp, jump]):
+        assert laws(equations, effects) > truth @ truth / 2 - 25  # what two sizes and a time cost
+
+
 @pytest.mark.parametrize(("place", "cheaper"), [([4], 12), ([3, 4, 5], 5), (range(9), -2)])
 def test_a_matrix_acts_as_a_whole_in_rows_or_in_one_element(place, cheaper):
     """One size in place of nine costs less, and a random direction hardly more than before."""
