@@ -20,7 +20,7 @@ from pathlib import Path
 from commands.no_result import SEE_REPORT, NoResult, no_results
 from inertial import tables
 from inertial.campaign.competition import ExplainedFindings, circumstances, compete
-from inertial.campaign.hypotheses import MODEL, Findings, hypotheses
+from inertial.campaign.hypotheses import MODEL, UNKNOWN_STRUCTURE, Findings, hypotheses
 from inertial.campaign.records import Performed, Row, performed_of, rows_of
 from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal
@@ -132,6 +132,8 @@ def _severities(diagnosed: Sequence[Row]) -> dict[tuple[str, str], int]:
 def _severity(row: Row) -> int | None:
     if row["cure"] in WITHOUT_IT:
         return WEAKENING
+    if row["cure"] == NONE and row["moves"] is None and row["verdict"] == UNKNOWN_STRUCTURE:
+        return SPOILING  # for its sensor gets no result
     if row["cure"] != NONE or row["moves"] is None:
         return None
     if row["moves"] > MAX_MOVE:
