@@ -2,15 +2,14 @@
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from commands.draft.raw_log import Name, RawLog, finite
 from commands.draft.timing import grows, time_of
-from commands.draft.triads import Triad, sensor_named, sensors_among, threes
-from inertial.signal.signed_counts import bits_without_sign
+from commands.draft.triads import Triad, other_imus, sensor_named, sensors_among, threes, with_bits
 
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
 COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECASE)
@@ -40,6 +39,8 @@ class Columns:
     unused: tuple[Name, ...]  # columns of the first log
     temperature: tuple[Name, str] | None = None  # a column of the first log, and its unit
     mean_of: Name | None = None  # where each row is a mean: the number of its samples
+    constant: tuple[Name, ...] = ()  # axes that read the same in all rows
+    other_imus: tuple[tuple[Triad, Triad], ...] = ()  # accelerometers and gyros of each by name
 
 
 def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -> Columns:
@@ -56,6 +57,8 @@ def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -
     times = tuple(time_of(log) for log in first)
     label: Name | None = None
     candidates: list[Triad] = []
+    others: list[Triad] = []
+    still: set[Name] = set()
     for file, log in enumerate(first):
         interleaved, own_label = _words_of(log)
         label = label if own_label is None else own_label
@@ -66,16 +69,16 @@ def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -
         }
         clocks = {name for name, values in log.columns.items() if grows(values)}
         for rows in interleaved or (None,):
-            for three in threes(list(log.columns), clocks | constant):
-                triad = Triad(file, three, rows)
-                bits = bits_without_sign([triad.of(together) for together in group])
-                candidates.append(replace(triad, bits=bits))
+            found, left = threes(list(log.columns), clocks, constant)
+            candidates += [with_bits(group, Triad(file, three, rows)) for three in found]
+            others += [Triad(file, three, rows) for three in left]
+        still |= constant
     if sensor is not None and candidates:
         accel = candidates[0] if sensor.sensor == "accel" else None
         gyro = candidates[0] if sensor.sensor == "gyro" else None
         evidence, guessed = sensor.evidence, sensor.guessed
     else:
-        accel, gyro, evidence, guessed = sensors_among(group, candidates)
+        accel, gyro, evidence, guessed = sensors_among(group, candidates, others)
     used: set[Name | None] = {
         name for triad in (accel, gyro) if triad and not triad.file for name in triad.columns
     }
@@ -83,7 +86,20 @@ def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -
     used |= {times[0]} if warmth is None else {times[0], warmth[0]}
     number = next((n for n in first[0].columns if COUNT.fullmatch(str(n))), None)
     unused = tuple(n for n in first[0].columns if n not in {*used, number})
-    return Columns(times, accel, gyro, label, evidence, guessed, unused, warmth, number)
+    taken = [triad for triad in (accel, gyro) if triad is not None]
+    return Columns(
+        times,
+        accel,
+        gyro,
+        label,
+        evidence,
+        guessed,
+        unused,
+        warmth,
+        number,
+        tuple(name for triad in taken for name in triad.columns if name in still),
+        tuple(other_imus(first, candidates, taken)),
+    )
 
 
 def _words_of(log: RawLog) -> tuple[list[tuple[Name, str]], Name | None]:

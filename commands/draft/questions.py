@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from commands.draft.manoeuvres import Manoeuvre
 from commands.draft.sensors import Kind
 from commands.draft.timing import Timing
-from inertial.text.messages import _
+from commands.draft.triads import Triad
+from inertial.text.messages import _, plural
 
 NEGATIVE = ("neg", "negative", "minus", "down", "-")
 SIGN = r"(?P<sign>positive|negative|plus|minus|pos|neg|up|down|[+-])"
@@ -93,6 +94,24 @@ def _of_kind(kind: Kind) -> Iterator[str]:
             means=means,
             needed=MIN_MEANS,
         )
+    for accel, gyro in kind.columns.other_imus:
+        yield _(
+            "columns: {log} holds a second IMU, {columns}; the draft takes {taken}. Which of them "
+            "is to be calibrated?",
+            log=names_of_logs(kind),
+            columns=_columns(accel, gyro),
+            taken=_columns(kind.columns.accel, kind.columns.gyro),
+        )
+    if kind.columns.constant:
+        yield plural(
+            "{columns} of {log} reads the same in all rows; is this axis dead, or was it not "
+            "recorded?",
+            "{columns} of {log} read the same in all rows; are these axes dead, or were they not "
+            "recorded?",
+            len(kind.columns.constant),
+            columns=", ".join(map(str, kind.columns.constant)),
+            log=names_of_logs(kind),
+        )
     if without_clock(kind.timing):
         yield _(
             "rate_hz: {log} has no clock; how many samples a second are there? Count sizes of "
@@ -114,6 +133,10 @@ def _of_kind(kind: Kind) -> Iterator[str]:
                 log=names_of_logs(kind),
                 doubt=scale.doubt,
             )
+
+
+def _columns(*triads: Triad | None) -> str:
+    return ", ".join(str(name) for triad in triads if triad for name in triad.columns)
 
 
 def without_clock(timing: Timing) -> bool:

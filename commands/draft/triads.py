@@ -11,10 +11,10 @@ the hand accelerates.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
-from itertools import product
+from dataclasses import dataclass, replace
+from itertools import product, takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +22,7 @@ import numpy as np
 from commands.draft.gravity import sphere
 from commands.draft.raw_log import Name, RawLog
 from inertial.arrays import Array
-from inertial.signal.signed_counts import signed
+from inertial.signal.signed_counts import bits_without_sign, signed
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
@@ -37,14 +37,23 @@ MAX_GYRO_RATIO = 10.0  # of the mean of gyros of an IMU that is turned over to t
 MIN_COUNTS = 64.0  # in 1 g, else powers of two
 MAX_OFF_GRAVITY = 0.1  # of |f| to these, relative
 NAMED = {
-    "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|specific force"),
-    "gyro": re.compile(r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|omega|ang.*(vel|rate)|rotation|turn ?rate"),
+    "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|_[af][xyz]\b|specific force"),
+    "gyro": re.compile(
+        r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|_[gw][xyz]\b|omega|ang.*(vel|rate)|rotation|turn ?rate"
+        r"|(roll|pitch|yaw)[ _.]?(rate|speed|vel)|rate[ _.]?(of )?(roll|pitch|yaw)"
+    ),
     "other": re.compile(
         r"mag|compass|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"
     ),
 }
-PROCESSED = re.compile(r"user|linear|gravity|motion", re.IGNORECASE)  # by a phone, of its sensors
-AXIS = re.compile(r"^(.*?)([xyz0-9])([^xyz0-9]*)$")
+PROCESSED = re.compile(  # by a phone, of its sensors
+    r"user|linear|gravity|motion|(?:^|[ _.])(?:lin|free)", re.IGNORECASE
+)
+OF_SENSOR = re.compile(  # parts of a name that tell sensor or axis, and not which IMU
+    r"acc|gyr|omega|ang|vel|rate|rot|lin|force|^(roll|pitch|yaw|raw|cal)|^[afgw]?[xyz]?$|^[pqr]$"
+)
+AXES_IN_NAMES = (("x", "y", "z"), ("roll", "pitch", "yaw"), ("p", "q", "r"))
+RATES = ("p", "q", "r")  # names of aeronautics: the rates about x, y and z
 UNIT = re.compile(r"[_ ](m?g|m[/p_]?s_?2|m?dps|m?(rad|deg)[/p_]?s)$")  # behind a name
 DIGITS = "0123456789"
 
@@ -91,16 +100,28 @@ def _plain(name: str) -> str:
     return UNIT.sub("", re.sub(r"[\[(].*", "", name).strip().lower())
 
 
-def threes(names: Sequence[Name], without: AbstractSet[Name]) -> Iterator[tuple[Name, ...]]:
-    """Three neighbours that may be the axes of a sensor: by their names, else all that could."""
-    left = [name for name in names if name not in without]
-    named = [axes for i in range(len(left) - 2) if (axes := _axes_named(left[i : i + 3]))]
-    if named:
-        yield from named
-        return
+def threes(
+    names: Sequence[Name], clocks: AbstractSet[Name], constant: AbstractSet[Name]
+) -> tuple[list[tuple[Name, ...]], list[tuple[Name, ...]]]:
+    """Three neighbours that may be the axes of a sensor: by their names, else all that could.
+
+    Where some are by their names, the second list has all that could be among the other columns. A
+    column that is constant may be one axis of a sensor by its name, or two, as of one that is dead.
+    """
+    there = [name for name in names if name not in clocks]
+    changing = [name for name in there if name not in constant]
+    named: dict[tuple[Name, ...], None] = {}
+    for left in (changing, there):
+        for i in range(len(left) - 2):
+            axes = _axes_named(left[i : i + 3])
+            if axes and not set(axes) <= constant:
+                named[axes] = None
+    without = {*clocks, *constant, *(name for axes in named for name in axes)}
+    found: list[tuple[Name, ...]] = []
     for piece in _neighbours(names, without):
         windows = [tuple(piece[i : i + 3]) for i in range(len(piece) - 2)]
-        yield from windows[::3] if len(piece) % 3 == 0 else windows
+        found += windows[::3] if len(piece) % 3 == 0 else windows
+    return (list(named), found) if named else (found, [])
 
 
 def _neighbours(names: Sequence[Name], without: AbstractSet[Name]) -> list[list[Name]]:
@@ -118,24 +139,58 @@ def _neighbours(names: Sequence[Name], without: AbstractSet[Name]) -> list[list[
 
 
 def _axes_named(three: Sequence[Name]) -> tuple[Name, ...]:
-    """Those that are named x, y, z, or by three numbers, of one sensor, in this order; or none."""
-    found = [p for name in three if isinstance(name, str) and (p := AXIS.match(_plain(name)))]
-    if len(found) < 3 or len({(p[1], p[3]) for p in found}) > 1:
+    """Those that are named x, y, z, or by three numbers, of one sensor, in this order; or none.
+
+    The names differ in the axis only: gyro_x, x_gyro, pitch rate. Roll, pitch and yaw alone are
+    angles.
+    """
+    names = [_plain(name) for name in three if isinstance(name, str)]
+    if len(names) < 3:
         return ()
-    axes = "".join(p[2] for p in found)
-    if axes in DIGITS:
+    behind = _without_shared_start([name[::-1] for name in _without_shared_start(names)])
+    own = [name[::-1] for name in behind]
+    if all(len(axis) == 1 for axis in own) and "".join(own) in DIGITS:
         return tuple(three)
-    return tuple(three[axes.index(axis)] for axis in "xyz") if sorted(axes) == list("xyz") else ()
+    axes = next((axes for axes in AXES_IN_NAMES if sorted(axes) == sorted(own)), None)
+    if axes is None or (axes[0] != "x" and _sensor_of(three) != "gyro"):
+        return ()
+    return tuple(three[own.index(axis)] for axis in axes)
+
+
+def _without_shared_start(texts: Sequence[str]) -> list[str]:
+    """Texts without the letters that all of them begin with."""
+    letters = zip(*texts, strict=False)  # the shortest ends it
+    shared = sum(1 for _same in takewhile(lambda own: len(set(own)) == 1, letters))
+    return [text[shared:] for text in texts]
+
+
+def _sensor_of(columns: Sequence[Name]) -> str | None:
+    """The sensor that the names of three columns name: accel, gyro, other, or None."""
+    names = [_plain(str(name)) for name in columns]
+    return "gyro" if sorted(names) == list(RATES) else sensor_named(str(columns[0]))
+
+
+def with_bits(group: Sequence[Sequence[RawLog]], triad: Triad) -> Triad:
+    """A triad with the bits of its counts, where they are written without their sign."""
+    return replace(triad, bits=bits_without_sign([triad.of(together) for together in group]))
 
 
 def sensors_among(
-    group: Sequence[Sequence[RawLog]], candidates: Sequence[Triad]
+    group: Sequence[Sequence[RawLog]], candidates: Sequence[Triad], others: Sequence[Triad] = ()
 ) -> tuple[Triad | None, Triad | None, str, bool]:
-    """Accelerometers and gyros among the candidates, what says so, and whether it is a guess."""
+    """Accelerometers and gyros among the candidates, what says so, and whether it is a guess.
+
+    `others`: which may be a sensor that none of the candidates is by its name.
+    """
     by_name = _by_name(group[0], candidates)
     if {"accel", "gyro"} <= set(by_name):
         return by_name["accel"], by_name["gyro"], _named_by(by_name), False
-    if len(candidates) > 1 and (moved := _by_motion(group, candidates)) is not None:
+    moved = _by_motion(group, candidates, candidates) if len(candidates) > 1 else None
+    if moved is None and by_name and others:
+        unnamed = [with_bits(group, triad) for triad in others]
+        accels, gyros = ([by_name[key]] if key in by_name else unnamed for key in ("accel", "gyro"))
+        moved = _by_motion(group, accels, gyros)
+    if moved is not None:
         accel, gyro, explained = moved
         return (
             accel,
@@ -168,21 +223,66 @@ def sensors_among(
 
 
 def _by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dict[str, Triad]:
-    found: dict[str, Triad] = {}
-    for triad in sorted(candidates, key=lambda one: bool(PROCESSED.search(str(one.columns[0])))):
+    """The first triad that is named for each sensor, of one IMU if several are named."""
+    found = _all_by_name(together, candidates)
+    pairs = list(product(*found.values()))
+    best = next(
+        (
+            pair
+            for pair in pairs
+            if len({name_of_imu(triad) for triad in pair}) == 1
+            and all(_processed(a) == _processed(b) for a, b in zip(pair, pairs[0], strict=True))
+        ),
+        pairs[0],
+    )
+    return dict(zip(found, best, strict=True))
+
+
+def _processed(triad: Triad) -> bool:
+    return bool(PROCESSED.search(str(triad.columns[0])))
+
+
+def _all_by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dict[str, list[Triad]]:
+    """The triads that are named for each sensor, what was processed behind the others."""
+    found: dict[str, list[Triad]] = {}
+    for triad in sorted(candidates, key=_processed):
         kind = sensor_named(triad.rows[1]) if triad.rows else None
         if kind is None and isinstance(triad.columns[0], str):
-            kind = sensor_named(triad.columns[0])
+            kind = _sensor_of(triad.columns)
         if kind is None and len(candidates) <= len(together):  # the log holds nothing else
             kind = sensor_named(together[triad.file].path.stem)
         if kind in ("accel", "gyro"):
-            found.setdefault(str(kind), triad)
+            found.setdefault(str(kind), []).append(triad)
     return found
+
+
+def name_of_imu(triad: Triad) -> tuple[str, ...]:
+    """What the names of a triad say beside sensor and axis: imu1_ax, left.gyro.x, acc2_z.
+
+    It tells the IMU where a log holds several.
+    """
+    pieces = re.findall(r"[^\W\d_]+|\d+", _plain(str(triad.columns[0])))
+    return tuple(piece for piece in pieces if not OF_SENSOR.search(piece))
+
+
+def other_imus(
+    together: Sequence[RawLog], candidates: Sequence[Triad], taken: Sequence[Triad]
+) -> list[tuple[Triad, Triad]]:
+    """Accelerometers and gyros by name, beside those that are taken, of one other IMU each."""
+    found = _all_by_name(together, candidates)
+    used = {name_of_imu(triad) for triad in taken}
+    return [
+        (accel, gyro)
+        for accel, gyro in product(found.get("accel", []), found.get("gyro", []))
+        if not (_processed(accel) or _processed(gyro))
+        and name_of_imu(accel) == name_of_imu(gyro)
+        and name_of_imu(accel) not in used
+    ]
 
 
 def _named_by(found: Mapping[str, Triad]) -> str:
     """What names the sensors that were found by a name: columns, or files whose columns do not."""
-    of_columns = all(t.rows or sensor_named(str(t.columns[0])) for t in found.values())
+    of_columns = all(t.rows or _sensor_of(t.columns) for t in found.values())
     return _("by their names") if of_columns else _("by the names of their files")
 
 
@@ -190,21 +290,22 @@ def _named_by(found: Mapping[str, Triad]) -> str:
 
 
 def _by_motion(
-    group: Sequence[Sequence[RawLog]], candidates: Sequence[Triad]
+    group: Sequence[Sequence[RawLog]], accels: Sequence[Triad], gyros: Sequence[Triad]
 ) -> tuple[Triad, Triad, float] | None:
     """The pair of which one explains how the other changes direction, and the share explained."""
     binned = {
-        triad: [_short_means(triad.of(together)) for together in group] for triad in candidates
+        triad: [_short_means(triad.of(together)) for together in group]
+        for triad in (*accels, *gyros)
     }
     explained = {
         (accel, gyro): share
-        for accel, gyro in product(candidates, repeat=2)
+        for accel, gyro in product(accels, gyros)
         if not accel.shares_columns(gyro)
         and (share := _explained_share(binned[accel], binned[gyro])) > MIN_EXPLAINED
     }
     if not explained:
         return None
-    gyro = max(candidates, key=lambda g: max(explained.get((a, g), 0.0) for a in candidates))
+    gyro = max(gyros, key=lambda g: max(explained.get((a, g), 0.0) for a in accels))
     pairs = {a: share for (a, g), share in explained.items() if g == gyro}
     whole = {a: share for a, share in pairs.items() if _on_sphere(binned[a], binned[gyro])}
     # Of gravity and another direction, gravity is the one that the hand disturbs.
