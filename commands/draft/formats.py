@@ -148,6 +148,8 @@ def _time(kind: Kind, file: int) -> dict[str, Any]:
     time: dict[str, Any] = {} if column is None else {"column": column, "unit": timing.unit}
     if timing.unit in (None, "sample"):
         time["rate_hz"] = timing.rate
+    if timing.ticks_per_s is not None:
+        time["ticks_per_s"] = timing.ticks_per_s
     if timing.wraps_at:
         time["wraps_at"] = timing.wraps_at
     return time

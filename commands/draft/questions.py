@@ -118,6 +118,13 @@ def _of_kind(kind: Kind) -> Iterator[str]:
             "gyros go with the rate: draft it again with RATE=, or --rate",
             log=names_of_logs(kind),
         )
+    if kind.timing.doubt:
+        yield _(
+            "time: {column} of {log}: {doubt}",
+            column=kind.timing.column,
+            log=names_of_logs(kind),
+            doubt=kind.timing.doubt,
+        )
     if kind.gyro is not None and kind.gyro.axes.moved:
         yield _(
             "gyro.axes: in {log} the gyros turn gravity's direction as if {axes}; which sensor "

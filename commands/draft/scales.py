@@ -36,7 +36,8 @@ class Scale:
 
     `axes`: what takes the readings to the axes of the other sensor; `shares`: by how much each gyro
     turns gravity along these axes, relative to their mean, with sigma, (3, 2); empty if not seen;
-    `increments`: a reading is the integral of the unit over a sample; `doubt`: a question, or none.
+    `increments`: a reading is the integral of the unit over a sample; `doubt`: a question, or none;
+    `sigma`: relative, of the size of gyros by the motion.
     """
 
     unit: str
@@ -48,6 +49,7 @@ class Scale:
     shares: tuple[tuple[float, float], ...] = ()
     increments: bool = False
     doubt: str = ""
+    sigma: float = 0.0
 
     @property
     def size(self) -> float:
@@ -244,4 +246,4 @@ def _by_motion(
     counts = min(near, key=lambda each: off[each]) if near else float(f"{per_degree:.3g}")
     what = _("{seen}: counts, {counts} in 1 °/s", seen=seen, counts=significant(counts))
     doubt = _no_unit(values, per_degree, {"°/s": 1.0, "rad/s": DEGREE})
-    return Scale("deg/s", counts, zero, what, True, axes, shares, doubt=doubt)
+    return Scale("deg/s", counts, zero, what, True, axes, shares, doubt=doubt, sigma=turns.sigma)

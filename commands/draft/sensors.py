@@ -13,7 +13,15 @@ from commands.draft.receiver import Receiver, receiver_of
 from commands.draft.scales import Scale, accel_scale, are_counts, gyro_scale
 from commands.draft.series import Divided, Series, divided
 from commands.draft.tails import without_tail
-from commands.draft.timing import Timing, common_rate, timing_of
+from commands.draft.timing import (
+    TICKS,
+    UNITS,
+    Timing,
+    common_rate,
+    nearly_as_usual,
+    tick_in_words,
+    timing_of,
+)
 from commands.draft.triads import Triad
 from commands.draft.turning import Turning, turning
 from inertial.arrays import Array
@@ -21,10 +29,12 @@ from inertial.signal.rests_and_motions import BinStretch, rest_level
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
+from inertial.text.units import CHANNEL_UNITS
 
 MIN_ROWS = 100  # of logs of one kind, to be samples
 MAX_MEAN_SCATTER = 0.1  # of the length of means about their centre
 MIN_SPREAD = 0.2  # of their directions
+MIN_UNIT_ERROR = 0.04  # of gyros whose unit tells the clock: 1 rpm is 5 % more than 0.1 rad/s
 MIN_STEPS = 0.02  # of their variance, from row to row: a motion has many rows to the radian
 
 
@@ -87,6 +97,13 @@ def _kind(group: Sequence[Sequence[RawLog]], sensor: Named | None, rate: float |
         if all(map(are_means, readings)) or _are_means_of_one_attitude(columns, readings):
             return _kind_of_means(columns, timing, group)
     _refuse_few(group, columns)
+    kind = _kind_by_clock(group, columns, timing)
+    better = _clock_by_motion(kind)
+    return kind if better is None else _kind_by_clock(group, columns, better)
+
+
+def _kind_by_clock(group: Sequence[Sequence[RawLog]], columns: Columns, timing: Timing) -> Kind:
+    """Logs of one kind with this clock, their readings as they stand in the files."""
     kind = Kind(columns, timing, None, None, [], [])
     parts = [part for together in group for part in _parts(kind, together)]
     own = _divided(parts, known_units=False)
@@ -223,6 +240,39 @@ def _divided(parts: Sequence[Part], *, known_units: bool) -> list[Divided]:
     rates = [part.series.means(part.series.gyro) for part in parts if len(part.series.gyro)]
     level = rest_level(np.concatenate(rates)) if rates else None
     return [divided(part.series, level, known_units=known_units) for part in parts]
+
+
+def _clock_by_motion(kind: Kind) -> Timing | None:
+    """Another unit of the clock, where with that the gyros read a unit, and with this one none.
+
+    A guessed clock that is off by a power of ten is likelier than gyros in no usual unit.
+    """
+    gyro, timing = kind.gyro, kind.timing
+    if gyro is None or not gyro.shares or gyro.counts is None or gyro.increments:
+        return None
+    values = np.concatenate([each.series.gyro for each in kind.divided])
+    if not timing.guessed or timing.unit in (None, "sample") or are_counts(values):
+        return None
+    for ticks in (*UNITS.values(), *TICKS):
+        power = ticks / timing.clock_ticks
+        unit = next((u for u in ("rad/s", "deg/s") if _reads(gyro, u, power)), None)
+        if unit is None or not nearly_as_usual(timing.rate * power, timing.rate):
+            continue
+        return timing.with_ticks(
+            ticks,
+            _(
+                "with a tick of {tick} the gyros read {unit}, with one of {guessed} no usual unit",
+                tick=tick_in_words(ticks),
+                unit=unit,
+                guessed=tick_in_words(timing.clock_ticks),
+            ),
+        )
+    return None
+
+
+def _reads(gyro: Scale, unit: str, power: float) -> bool:
+    """Whether gyros read this unit if there are `power` times as many samples a second."""
+    return abs(gyro.size * power / CHANNEL_UNITS[unit] - 1) < max(2 * gyro.sigma, MIN_UNIT_ERROR)
 
 
 def _rate_by_motion(

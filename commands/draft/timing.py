@@ -18,7 +18,11 @@ TIME = re.compile(
     r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]|^ms$|^us$|millis|micros", re.IGNORECASE
 )
 PACKETS = re.compile(r"packet|number|count|index|sequence|\bseq\b|frame|message", re.IGNORECASE)
-UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, "iso8601": 1.0}  # ticks in a second
+UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}  # ticks in a second
+TICKS = (1e4,)  # in a second, of clocks in no such unit: SampleTimeFine of Xsens
+MIN_RATE, MAX_RATE = 1.0, 50_000.0  # Hz, of a log of an IMU
+MAX_LESS_USUAL = 3.0  # factor by which a rate may be farther from the usual one than another
+MAX_OFF_STATED = 2.0  # factor between the rate that a header states and that of the rows
 USUAL_RATE = 100.0  # Hz: of the units that a time may have, that with the rate nearest to it
 COMMON_RATES = np.array(
     [
@@ -32,8 +36,12 @@ DAY = 86400.0  # s
 MIN_SINGLE_TICKS = 0.9  # of the new stamps, to be those of a clock that is coarser than the rows
 MIN_PERIOD = 255  # of a counter: fewer ticks are no clock
 STATED = re.compile(
-    r"(?:\bfs|\brate|\bfreq\w*|\bodr|\bhz)\b[^0-9\n]{0,20}([0-9]+(?:\.[0-9]+)?)", re.IGNORECASE
+    r"(?:\bfs|(?<!baud )(?<!bit )\b(?!baud|bit)\w*rate|\b\w*fr[eé]q\w*|\bodr|\bhz)\b"
+    r"[^0-9\n]{0,30}([0-9]+(?:\.[0-9]+)?)",
+    re.IGNORECASE,
 )
+INTERVAL = re.compile(r"(?:dt|d_t|delta_?t|Δt|(?:sample_?)?interval)(?![a-z])", re.IGNORECASE)
+SPELT = {"us": "us", "µs": "us", "sec": "s", "seconds": "s"}
 IN_NAME = re.compile(r"(?:[\[(_ ])(ns|us|µs|ms|s|sec|seconds)(?:[\])]|$)", re.IGNORECASE)
 
 
@@ -82,7 +90,10 @@ def grows(values: Array) -> bool:
 
 @dataclass(frozen=True)
 class Timing:
-    """A time column and its unit, none where rows are the clock; the rate in Hz, and why."""
+    """A time column and its unit, none where rows are the clock; the rate in Hz, and why.
+
+    `ticks_per_s`: of the unit `tick`; `doubt`: a question, or none.
+    """
 
     column: Name | None
     unit: str | None
@@ -90,6 +101,21 @@ class Timing:
     guessed: bool
     evidence: str
     wraps_at: int | None = None  # the counter begins again after as many
+    ticks_per_s: float | None = None
+    doubt: str = ""
+
+    def with_ticks(self, ticks_per_s: float, evidence: str) -> "Timing":
+        """The same with another unit of its clock, that something else says, and is asked."""
+        unit = unit_of(ticks_per_s)
+        rate = self.rate * ticks_per_s / self.clock_ticks
+        own = ticks_per_s if unit == "tick" else None
+        doubt = _("{why}; how long is a tick?", why=evidence)
+        return replace(self, unit=unit, rate=rate, evidence=evidence, ticks_per_s=own, doubt=doubt)
+
+    @property
+    def clock_ticks(self) -> float:
+        """Ticks of the clock in a second."""
+        return self.ticks_per_s or UNITS.get(self.unit or "", 1.0)
 
     def with_rate(self, rate: float, evidence: str) -> "Timing":
         """The same with a rate that something else says."""
@@ -107,46 +133,134 @@ def timing_of(
         (float(m[1]) for log in logs for line in log.header if (m := STATED.search(line))), None
     )
     if column is None:
-        return _without_time(None, None, stated, _("no column is a time"))
+        return _by_intervals(logs, stated) or _without_time(
+            None, None, stated, _("no column is a time")
+        )
     counters = [_finite(log.column(column, rows)) for log in logs]
     steps = [np.diff(counter) for counter in counters]
     ticks = float(np.median([_step(counter) for counter in counters]))
     if ticks == 1 and all(np.mean(own == 1) > 0.95 for own in steps):
         timing = _without_time(column, "sample", stated, _("it counts samples"))
         return replace(timing, wraps_at=_wraps_at(counters))
-    named = IN_NAME.search(str(column))
-    units = {"us": "us", "µs": "us", "sec": "s", "seconds": "s"}
-    if column in logs[0].dates:
-        unit, why = "iso8601", _("it holds dates")
-    elif named is not None:
-        unit = units.get(named[1].lower(), named[1].lower())
-        why = _("by its name")
-    else:
-        unit = min(list(UNITS)[:4], key=lambda u: abs(np.log(UNITS[u] / ticks / USUAL_RATE)))
-        why = _(
-            "a step of {ticks} is a plausible rate in {unit} only",
-            ticks=significant(ticks, 6),
-            unit=unit,
-        )
-    rate = UNITS[unit] / ticks
+    dated = column in logs[0].dates
+    clock = _Clock("iso8601", 1.0, _("it holds dates")) if dated else _clock(column, ticks, stated)
+    why, rate = clock.why, clock.ticks_per_s / ticks
     if logs[0].kind == "rawimus":
         why = _("GPS time")
     positive = np.concatenate([own[own > 0] for own in steps])
     if np.median(positive) < 0.5 * ticks:
         why += _("; stamps come in bursts: the rate is their number in the whole time")
-    wraps_at = None if column in logs[0].dates else _period(counters)
-    if column in logs[0].dates and max(float(own.max()) for own in counters) < DAY:
+    wraps_at = None if dated else _period(counters)
+    if dated and max(float(own.max()) for own in counters) < DAY:
         why, wraps_at = _("it holds the time of the day"), round(DAY * 1e9)
     elif wraps_at is not None:
         why += _("; it begins again after {period} ticks", period=wraps_at)
-    elif (back := _first_back(counters, UNITS[unit])) is not None:
+    elif (back := _first_back(counters, clock.ticks_per_s)) is not None:
         why += _(
             "; it goes back by {seconds} s before row {row}: what follows was recorded after a new "
             "start, and is better a log of its own",
-            seconds=significant(back[1] / UNITS[unit], 3),
+            seconds=significant(back[1] / clock.ticks_per_s, 3),
             row=whole(back[0] + 1),
         )
-    return Timing(column, unit, rate, named is None and unit != "iso8601", why, wraps_at)
+    timing = Timing(column, clock.unit, rate, clock.guessed, why, wraps_at, doubt=clock.doubt)
+    return replace(timing, ticks_per_s=clock.ticks_per_s) if clock.unit == "tick" else timing
+
+
+@dataclass(frozen=True)
+class _Clock:
+    """The unit of a time column, its ticks in a second, and what says so."""
+
+    unit: str
+    ticks_per_s: float
+    why: str
+    guessed: bool = False
+    doubt: str = ""
+
+
+def unit_of(ticks_per_s: float) -> str:
+    """The unit of a clock with so many ticks in a second."""
+    return next((unit for unit, own in UNITS.items() if own == ticks_per_s), "tick")
+
+
+def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
+    """The unit of a column with so many ticks from row to row.
+
+    By the rate that a header states, Hz, by its name, else by a plausible rate. A name is wrong
+    that contradicts the header, or by which the rate is that of no IMU.
+    """
+
+    def away(ticks_per_s: float, rate: float) -> float:
+        return abs(float(np.log(ticks_per_s / ticks / rate)))
+
+    likely = min(UNITS.values(), key=lambda each: away(each, USUAL_RATE))
+    by_header = min([*UNITS.values(), *TICKS], key=lambda each: away(each, stated or USUAL_RATE))
+    agrees = stated is not None and away(by_header, stated) < np.log(MAX_OFF_STATED)
+    if agrees:
+        likely = by_header
+    if (found := IN_NAME.search(str(column))) is None:
+        step = significant(ticks, 6)
+        if agrees:
+            why = _(
+                "with a tick of {tick} a step of {ticks} is the rate that the header states",
+                tick=tick_in_words(likely),
+                ticks=step,
+            )
+            return _Clock(unit_of(likely), likely, why)
+        why = _(
+            "a step of {ticks} is a plausible rate in {unit} only", ticks=step, unit=unit_of(likely)
+        )
+        return _Clock(unit_of(likely), likely, why, guessed=True)
+    unit = SPELT.get(found[1].lower(), found[1].lower())
+    named = UNITS[unit]
+    plausible = MIN_RATE <= named / ticks <= MAX_RATE
+    if (named == likely) or (plausible and not agrees):
+        return _Clock(unit, named, _("by its name"))
+    if not agrees and not MIN_RATE <= likely / ticks <= MAX_RATE:
+        return _Clock(unit, named, _("by its name"))
+    what = {"named": significant(named / ticks), "rate": significant(likely / ticks)}
+    why = (
+        _("its name says {unit}, {named} Hz; the header states the rate", unit=unit, **what)
+        if agrees
+        else _("its name says {unit}, {named} Hz, the rate of no IMU", unit=unit, **what)
+    )
+    doubt = _(
+        "its name says {unit}, by which there are {named} samples a second; the draft takes ticks "
+        "of {taken}, {rate} samples a second. Which is right?",
+        unit=unit,
+        taken=tick_in_words(likely),
+        **what,
+    )
+    return _Clock(unit_of(likely), likely, why, guessed=True, doubt=doubt)
+
+
+def tick_in_words(ticks_per_s: float) -> str:
+    """The tick of a clock: 1 ms, 0.1 ms."""
+    unit = unit_of(ticks_per_s)
+    return f"{1e3 / ticks_per_s:g} ms" if unit == "tick" else f"1 {unit}"
+
+
+def nearly_as_usual(rate: float, other: float) -> bool:
+    """Whether a rate may be that of an IMU, Hz, and is about as usual as another."""
+    away = [abs(np.log(each / USUAL_RATE)) for each in (rate, other)]
+    return bool(MIN_RATE <= rate <= MAX_RATE and away[0] < away[1] + np.log(MAX_LESS_USUAL))
+
+
+def _by_intervals(logs: Sequence[RawLog], stated: float | None) -> Timing | None:
+    """The rate by a column that holds the time from row to row; None where none does."""
+    for name in logs[0].columns:
+        steps = np.concatenate([finite(log.columns[name]) for log in logs])
+        if not INTERVAL.match(str(name)) or steps.min() < 0 or not steps.mean() > 0:
+            continue
+        clock = _clock(name, float(steps.mean()), stated)
+        rate = clock.ticks_per_s / float(steps.mean())
+        why = _(
+            "no column is a time; {column} is the time from row to row, in {unit}, and their mean "
+            "the rate",
+            column=name,
+            unit=clock.unit,
+        )
+        return Timing(None, None, rate, False, why)
+    return None
 
 
 def _first_back(counters: Sequence[Array], second: float) -> tuple[int, float] | None:

@@ -1,0 +1,107 @@
+"""`make draft`: clocks of which the unit is not in their name, or another than that."""
+
+import chain
+import numpy as np
+import pytest
+from drafting import comments, drafted, told, written
+from logs_by_hand import by_hand_log
+from moved_by_hand import RATE
+
+NAMES = "ax,ay,az,gx,gy,gz"
+
+
+def logged(clock: str, step: float, seed: int, header: str = "") -> str:
+    """A log in m/s² and rad/s whose clock has this name, and counts on by `step` in 10 ms."""
+    log = by_hand_log(seed)
+    time = step * np.arange(len(log.force))
+    return f"{header}{clock},{NAMES}\n" + written([time, log.force, log.rate], digits=9)
+
+
+def layout_of(text: str, tmp_path, name: str = "log.csv") -> tuple[dict, str]:
+    folder = drafted({name: text}, tmp_path)
+    return told(folder)["instrument"]["format"], comments(folder)
+
+
+# ---- clocks with ticks of 0.1 ms, as SampleTimeFine of Xsens
+
+
+@pytest.mark.parametrize(
+    "header",
+    ["// Sample rate: 100.0Hz\n", "// Update Rate: 100\n", "// Abtastrate: 100 Hz\n", "# fs=100\n"],
+)
+def test_a_rate_in_the_header_decides_the_unit_of_a_clock(header, tmp_path):
+    """It was taken for ms, and 10 Hz."""
+    layout, said = layout_of(logged("SampleTimeFine", 100, 30, header), tmp_path)
+    assert layout["time"] == {"column": "SampleTimeFine", "unit": "tick", "ticks_per_s": 10_000}
+    assert layout["gyro"] == {"columns": ["gx", "gy", "gz"], "unit": "rad/s"}
+    assert "at 100.0 Hz" in said and "how long is a tick" not in said
+
+
+def test_the_gyros_decide_it_where_no_header_does(tmp_path):
+    layout, said = layout_of(logged("SampleTimeFine", 100, 30), tmp_path)
+    assert layout["time"] == {"column": "SampleTimeFine", "unit": "tick", "ticks_per_s": 10_000}
+    assert layout["gyro"]["unit"] == "rad/s" and "counts_per_unit" not in layout["gyro"]
+    assert "how long is a tick?" in said
+    results = chain.run(tmp_path / "data/raw/drafted", tmp_path / "derived", "decode")
+    assert np.median(np.diff(results["decode/samples"]["time"])) == pytest.approx(0.01)
+
+
+def test_revolutions_per_minute_are_no_clock_of_another_unit(tmp_path):
+    """1 rpm is 0.1047 rad/s."""
+    log = by_hand_log(31)
+    time = np.arange(len(log.force)) * 100
+    text = f"n_t,{NAMES}\n" + written([time, log.force, log.rate / 0.104720], digits=9)
+    layout, said = layout_of(text, tmp_path)
+    assert layout["time"]["unit"] == "ms" and "in no usual unit" in said
+
+
+def test_a_baud_rate_is_no_rate_of_samples(tmp_path):
+    layout, _said = layout_of(logged("t", 0.01, 30, "# Baud rate: 115200\n"), tmp_path)
+    assert layout["time"] == {"column": "t", "unit": "s"}
+
+
+# ---- clocks whose name says another unit
+
+
+@pytest.mark.parametrize(("clock", "right"), [("time_ms", "us"), ("time_s", "ms"), ("t_us", "ms")])
+def test_a_name_by_which_the_rate_is_that_of_no_imu_is_asked_about(clock, right, tmp_path):
+    step = {"us": 1e4, "ms": 10}[right]
+    layout, said = layout_of(logged(clock, step, 32), tmp_path)
+    assert layout["time"] == {"column": clock, "unit": right}
+    assert f"{clock} of log.csv: its name says" in said and "100.0 samples a second" in said
+
+
+def test_a_name_that_a_header_contradicts_is_asked_about(tmp_path):
+    layout, said = layout_of(logged("t_ms", 0.01, 33, "# rate: 100 Hz\n"), tmp_path)
+    assert layout["time"] == {"column": "t_ms", "unit": "s"}
+    assert "the header states the rate" in said and "Which is right?" in said
+
+
+def test_a_slow_rate_that_a_name_says_is_right(tmp_path):
+    """Every tenth sample is kept, 10 Hz."""
+    log = by_hand_log(34)
+    rows = slice(None, None, 10)
+    time = np.arange(len(log.force))[rows] * 1000 / RATE
+    text = f"t_ms,{NAMES}\n" + written([time, log.force[rows], log.rate[rows]], digits=9)
+    layout, said = layout_of(text, tmp_path)
+    assert layout["time"] == {"column": "t_ms", "unit": "ms"} and "Which is right" not in said
+
+
+# ---- no clock, and what states the rate
+
+
+def test_a_column_of_intervals_states_the_rate(tmp_path):
+    """In ms, 10 in the mean."""
+    log = by_hand_log(35)
+    steps = np.random.default_rng(35).choice([9, 10, 11], len(log.force))
+    text = f"dt,{NAMES}\n" + written([steps, log.force, log.rate])
+    layout, said = layout_of(text, tmp_path)
+    assert layout["time"] == {"rate_hz": pytest.approx(100, rel=0.005)}
+    assert "dt is the time from row to row" in said and "how many samples a second" not in said
+
+
+@pytest.mark.parametrize("header", ["// Abtastrate: 125 Hz\n", "# Fréquence : 125\n"])
+def test_a_rate_is_stated_in_other_languages(header, tmp_path):
+    log = by_hand_log(36)
+    layout, _said = layout_of(header + f"{NAMES}\n" + written([log.force, log.rate]), tmp_path)
+    assert layout["time"] == {"rate_hz": 125}
