@@ -234,8 +234,8 @@ def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
 
 
 def tick_in_words(ticks_per_s: float) -> str:
-    """The tick of a clock: 1 ms, 0.1 ms."""
-    unit = unit_of(ticks_per_s)
+    """The tick of a clock: 1 µs, 0.1 ms."""
+    unit = unit_of(ticks_per_s).replace("us", "µs")
     return f"{1e3 / ticks_per_s:g} ms" if unit == "tick" else f"1 {unit}"
 
 

@@ -10,7 +10,7 @@ from commands.draft.series import Divided, Still
 from inertial.arrays import Array
 from inertial.estimation.attitude import integrate
 from inertial.signal.axis_permutations import AS_NAMED, Permutation
-from inertial.signal.gravity_turned import turned
+from inertial.signal.gravity_turned import Turned, turned
 from inertial.text.units import DEGREE
 
 USUAL_GYRO_COUNTS = (131.0, 65.5, 32.8, 16.4, 228.6, 114.3, 57.1, 28.6, 14.3)  # in 1 °/s
@@ -59,7 +59,7 @@ def turning(recordings: Sequence[Divided], zero: float) -> Turning | None:
             for own in both
         ]
     )
-    axes = AS_NAMED if found is None else found.axes or AS_NAMED
+    axes = AS_NAMED if found is None else _of_size_one(found).axes or AS_NAMED
     ways = [way for own in both for way in _ways(own, zero + gravity.centre, axes)]
     if found is None:
         return _usual(ways)
@@ -72,6 +72,12 @@ def turning(recordings: Sequence[Divided], zero: float) -> Turning | None:
     first = Turning(factor / one, FIRST_SIGMA, axes, tuple(map(tuple, shares.tolist())))
     # Without a centre the directions at rest are off by the bias.
     return _refined(first, ways) if ways and gravity.centre.any() else first
+
+
+def _of_size_one(found: Turned) -> Turned:
+    """The same with entries near 1 that decide, by which it says whether the axes are sure."""
+    size = float(np.median(np.abs(found.matrix).max(axis=1)))
+    return replace(found, matrix=found.matrix / size, sigma=found.sigma / size)
 
 
 Way = tuple[Array, Array, Array, float]  # direction before and after, raw rates (k, 3), their step
