@@ -5,10 +5,9 @@ import struct
 import chain
 import numpy as np
 import pytest
-from drafting import comments, drafted, told, written
+from drafting import Rates, comments, drafted, moved, told, written
 from logs_by_hand import by_hand_log
 from moved_by_hand import RATE
-from scipy.spatial.transform import Rotation
 
 from commands.draft.__main__ import draft
 from inertial.tables.errors import Refusal
@@ -347,7 +346,6 @@ def test_a_clock_that_starts_anew_is_told(tmp_path):
 # ---- a journey before or after a calibration
 
 ONE_ROUND = 8.0  # s
-Rates = list[tuple[float, tuple[float, float, float]]]  # s, and rad/s about x, y, z
 
 
 def faces_and_turns() -> Rates:
@@ -375,18 +373,6 @@ def journey(seed: int) -> Rates:
         seconds, rate = (random.uniform(2, 8), 0.0) if number % 2 else (random.uniform(8, 14), 0.5)
         told.append((float(seconds), tuple(rate * random.standard_normal(3))))
     return told
-
-
-def moved(rates: Rates) -> np.ndarray:
-    """Time, accelerometers in m/s² and gyros in °/s at 100 Hz, (n, 7)."""
-    rate = np.concatenate([np.tile(one, (round(100 * seconds), 1)) for seconds, one in rates])
-    up, down = np.empty_like(rate), np.array([0.0, 0.0, 1.0])
-    for k, turned in enumerate(rate / 100):
-        up[k] = down
-        down = Rotation.from_rotvec(-turned).apply(down)
-    noise = np.random.default_rng(0).standard_normal((2, *rate.shape))
-    time = np.arange(len(rate)) / 100
-    return np.column_stack([time, 9.8 * up + 0.01 * noise[0], np.degrees(rate) + 0.05 * noise[1]])
 
 
 @pytest.mark.slow

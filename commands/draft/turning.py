@@ -9,17 +9,21 @@ from commands.draft.gravity import gravity_in
 from commands.draft.series import Divided, Still
 from inertial.arrays import Array
 from inertial.estimation.attitude import integrate
-from inertial.signal.axis_permutations import AS_NAMED, Permutation
+from inertial.signal.axis_permutations import AS_NAMED, PERMUTATIONS, Permutation
 from inertial.signal.gravity_turned import Turned, turned
 from inertial.text.units import DEGREE
 
 USUAL_GYRO_COUNTS = (131.0, 65.5, 32.8, 16.4, 228.6, 114.3, 57.1, 28.6, 14.3)  # in 1 °/s
+USUAL_SIZES = (1.0, DEGREE, *(DEGREE / counts for counts in USUAL_GYRO_COUNTS))  # rad/s
 MIN_TILT = np.radians(20)  # between two static positions, that shows the scale of the gyros
 MAX_TILT = np.radians(160)
 LARGE = 0.95  # quantile of the rates that is about 1 rad/s
 MIN_FACTOR_SIGMA = 10.0  # of the factor by the change of gravity's direction, to be one
 FIRST_SIGMA = 0.1  # relative, of a factor by the change of gravity's direction alone
 MAX_MISS = np.radians(30)  # of a direction: a motion that misses by more says no more
+MIN_WAYS_OF_AXES, MAX_WAYS_OF_AXES = 4, 10  # motions by which axes are tried, the shortest of all
+MAX_CARRIED = np.radians(10)  # rms miss of the axes that are right: a scale factor, a hand's turn
+MIN_MISS_RATIO = 3.0  # of any other axes to that
 MAX_WAYS = 20  # motions by which the factor is refined, the shortest of all
 RANGE, STEP = 0.4, 0.02  # about the first factor, relative
 
@@ -59,8 +63,13 @@ def turning(recordings: Sequence[Divided], zero: float) -> Turning | None:
             for own in both
         ]
     )
-    axes = AS_NAMED if found is None else _of_size_one(found).axes or AS_NAMED
-    ways = [way for own in both for way in _ways(own, zero + gravity.centre, axes)]
+    sure = None if found is None else _of_size_one(found).axes
+    ways = [way for own in both for way in _ways(own, zero + gravity.centre)]
+    if sure is None and (carried := _by_other_axes(ways)) is not None:
+        ways = [_along(way, carried.axes) for way in ways]
+        return _refined(carried, ways) if gravity.centre.any() else carried
+    axes = sure or AS_NAMED
+    ways = [_along(way, axes) for way in ways]
     if found is None:
         return _usual(ways)
     place = (np.arange(3), np.array(axes.sources))
@@ -83,7 +92,13 @@ def _of_size_one(found: Turned) -> Turned:
 Way = tuple[Array, Array, Array, float]  # direction before and after, raw rates (k, 3), their step
 
 
-def _ways(own: Divided, unforced: Array, axes: Permutation) -> list[Way]:
+def _along(way: Way, axes: Permutation) -> Way:
+    """The same with rates along the axes of the accelerometers."""
+    before, after, rates, step = way
+    return before, after, rates[:, list(axes.sources)] * np.array(axes.signs), step
+
+
+def _ways(own: Divided, unforced: Array) -> list[Way]:
     """What carries gravity's direction from one static position to the next.
 
     `unforced`: (3,), what the accelerometers read of no force.
@@ -103,20 +118,40 @@ def _ways(own: Divided, unforced: Array, axes: Permutation) -> list[Way]:
             edges[max(before.after - 2, 0)], edges[min(after.first + 2, own.series.bins)]
         )
         rates = own.series.gyro[inside] - (before.gyro + after.gyro) / 2
-        rates = rates[:, list(axes.sources)] * np.array(axes.signs)
         if len(rates) > 2:
             ways.append((first, second, rates, 1 / own.series.gyro_hz))
     return ways
 
 
+def _by_other_axes(ways: Sequence[Way]) -> Turning | None:
+    """The only axes, not those named, along which gyros in a usual unit carry the directions.
+
+    From rest to rest the hand's accelerations, by which axes are not sure otherwise, do not matter.
+    """
+    ways = sorted(ways, key=lambda way: len(way[2]))[:MAX_WAYS_OF_AXES]
+    if len(ways) < MIN_WAYS_OF_AXES or _carried(ways)[0] < MAX_MISS:
+        return None
+    misses = {axes: _carried([_along(way, axes) for way in ways]) for axes in PERMUTATIONS}
+    best, second = sorted(misses, key=lambda axes: misses[axes][0])[:2]
+    miss, size = misses[best]
+    if miss > MAX_CARRIED or misses[second][0] < MIN_MISS_RATIO * miss:
+        return None
+    return Turning(size, FIRST_SIGMA, best)
+
+
+def _carried(ways: Sequence[Way]) -> tuple[float, float]:
+    """The rms miss of the directions, rad, in the usual unit or count size of the least, rad/s."""
+    totals = [sum(_miss(way, size) for way in ways) for size in USUAL_SIZES]
+    best = int(np.argmin(totals))
+    return float(np.sqrt(totals[best] / len(ways))), USUAL_SIZES[best]
+
+
 def _usual(ways: Sequence[Way]) -> Turning | None:
     """Of the usual units and count sizes that which carries the directions from rest to rest."""
-    sizes = [1.0, DEGREE, *(DEGREE / counts for counts in USUAL_GYRO_COUNTS)]
-    misses = [sum(_miss(way, size) for way in ways) for size in sizes]
-    best = int(np.argmin(misses))
-    if not ways or misses[best] > len(ways) * MAX_MISS**2:
+    if not ways:
         return None
-    return Turning(sizes[best], FIRST_SIGMA, AS_NAMED)
+    miss, size = _carried(ways)
+    return Turning(size, FIRST_SIGMA, AS_NAMED) if miss <= MAX_MISS else None
 
 
 def _refined(first: Turning, ways: Sequence[Way]) -> Turning:
