@@ -105,3 +105,37 @@ def test_a_rate_is_stated_in_other_languages(header, tmp_path):
     log = by_hand_log(36)
     layout, _said = layout_of(header + f"{NAMES}\n" + written([log.force, log.rate]), tmp_path)
     assert layout["time"] == {"rate_hz": 125}
+
+
+# ---- dates as they are written in Germany and in America
+
+QUARTER_TO_ONE = 45_900  # s, 12:45:00: the hour of 12 PM becomes 1 PM in the log
+
+
+def of_day(kind: str, seconds: np.ndarray) -> list[str]:
+    """The stamps of 7 March 2025, or the time of that day, in the notation of a country."""
+    ms = np.round(1000 * seconds).astype(int).tolist()
+    parts = [(k // 3_600_000, k // 60_000 % 60, k // 1000 % 60, k % 1000) for k in ms]
+    german = "07.03.2025 {:02}:{:02}:{:02},{:03}"
+    if kind == "german":
+        return [german.format(*part) for part in parts]
+    date = "3/7/2025 " if kind == "american" else ""
+    return [f"{date}{h % 12 or 12}:{m:02}:{s:02}.{f:03} {'AP'[h // 12]}M" for h, m, s, f in parts]
+
+
+@pytest.mark.parametrize("kind", ["german", "american", "of the day"])
+def test_dates_of_other_notations_are_a_clock(kind, tmp_path):
+    log = by_hand_log(37)
+    begin = QUARTER_TO_ONE - 12 * 3600 * (kind == "of the day")
+    time = begin + np.arange(len(log.force)) / RATE
+    rows = written([log.force, log.rate], ";").splitlines()
+    if kind == "german":
+        rows = [row.replace(".", ",") for row in rows]
+    lines = [f"{stamp};{row}" for stamp, row in zip(of_day(kind, time), rows, strict=True)]
+    text = "\n".join([f"When;{NAMES.replace(',', ';')}", *lines]) + "\n"
+    layout, said = layout_of(text, tmp_path)
+    assert layout["time"]["column"] == "When" and layout["time"]["unit"] == "iso8601"
+    assert layout["gyro"]["unit"] == "rad/s" and "at 100.0 Hz" in said
+    results = chain.run(tmp_path / "data/raw/drafted", tmp_path / "derived", "decode")
+    taken = results["decode/samples"]["time"].to_numpy()
+    assert len(taken) == len(time) and np.allclose(np.diff(taken), 0.01, atol=1e-6)

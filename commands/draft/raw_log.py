@@ -30,7 +30,8 @@ DELIMITERS, DECIMALS = (None, ",", ";", "\t"), (".", ",")
 COMMENTS = ("#", "//", "%")
 _DATE = re.compile(
     r"(\d{4}-?\d\d?-?\d\d?[T ]\d\d?:?\d\d?(:?\d\d?([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?)"
-    r"|(\d?\d:\d\d:\d\d([.,]\d+)?)",
+    r"|(\d\d?\.\d\d?\.\d{4},?[ T])?(\d?\d:\d\d:\d\d([.,]\d+)?)"
+    r"|(\d\d?/\d\d?/\d{4},? )?(\d?\d:\d\d:\d\d(\.\d+)? ?[AaPp]\.?[Mm]\.?)",
     re.ASCII,
 )
 

@@ -109,6 +109,20 @@ def test_a_date_that_is_none_costs_its_row_and_no_other(decoded):
     assert reasons[8].startswith("column 1 is '1772326800', expected a time such as 2026-")
 
 
+@pytest.mark.parametrize(
+    "stamps",
+    [
+        ["28.02.2026 23:59:59.5", "1.3.2026 00:00:00.5", "01.03.2026 12:30:00"],
+        ["2/28/2026 11:59:59.5 PM", "03/01/2026 12:00:00.5 AM", "3/1/2026 12:30:00 pm"],
+    ],
+)
+def test_dates_with_the_day_or_the_month_first(stamps, decoded):
+    """Half a second before midnight, half a second behind it, and half past noon."""
+    layout = f"{{kind: columns, delimiter: ',', {NUMBERED}, time: {{column: 1, unit: iso8601}}}}"
+    results = decoded(rows(stamps), layout)
+    np.testing.assert_allclose(results["decode/samples"]["time"], [0.0, 1.0, 45_000.5], atol=1e-9)
+
+
 def test_seconds_since_1970_are_counted_from_the_first(decoded):
     stamps = [f"{1535630275.916451 + n * 0.01:.6f}" for n in range(5)]
     layout = f"{{kind: columns, delimiter: ',', {NUMBERED}, time: {{column: 1, unit: s}}}}"

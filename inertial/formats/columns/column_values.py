@@ -19,6 +19,10 @@ _DECIMAL = pa.decimal128(38, 9)  # holds every number of nanoseconds since 1970 
 _TO_WHOLE = pc.CastOptions(target_type=pa.int64(), allow_decimal_truncate=True)
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
 _TIME_ALONE = r"^(\d?\d:\d\d?:\d\d?)"
+_DAY_FIRST = r"^(\d\d?)\.(\d\d?)\.(\d{4}),?[ T]"
+_MONTH_FIRST = r"^(\d\d?)/(\d\d?)/(\d{4}),? (.*[AaPp]\.?[Mm]\.?)$"
+_HALF_DAY = r" ?([AaPp])\.?[Mm]\.?$"
+_HOUR = 3_600_000_000_000  # ns
 _ONE_FIGURE = r"([-T :])(\d)([-T :.]|$)"
 _WITH_ZONE = r"[T ].*(Z|[+-]\d\d(:?\d\d)?)$"
 # Of a buffer, for to make a scalar of a number the library imports pandas.
@@ -176,12 +180,28 @@ def _digits(value: float) -> str:
 def _times(texts: pa.ChunkedArray) -> tuple[Integers, Booleans]:
     """Dates and times in ISO 8601, one without a zone in UTC, as ns since 1970; which are known.
 
-    Also where a figure lacks its leading zero; the time of the day alone is that since midnight.
+    Also where a figure lacks its leading zero; the time of the day alone is that since midnight;
+    07.03.2025 14:02:03 has the day first, 3/7/2025 2:02:03 PM the month.
     """
     texts = pc.replace_substring(texts, ",", ".")
+    texts = pc.replace_substring_regex(texts, _DAY_FIRST, r"\3-\2-\1 ")
+    texts = pc.replace_substring_regex(texts, _MONTH_FIRST, r"\3-\1-\2 \4")
+    halves = [_matches(texts, _HALF_DAY.replace("AaPp", half)) for half in ("Aa", "Pp")]
+    texts = pc.replace_substring_regex(texts, _HALF_DAY, "")
     texts = pc.replace_substring_regex(texts, _TIME_ALONE, r"1970-01-01 \1")
     for _again in range(2):  # neighbours share what stands between them
         texts = pc.replace_substring_regex(texts, _ONE_FIGURE, r"\10\2\3")
+    times, known = _iso_times(texts)
+    morning, afternoon = halves
+    noon = times // _HOUR % 24 == 12  # 12:30 PM is half past noon, 12:30 AM half past midnight
+    return times + 12 * _HOUR * ((afternoon & ~noon).astype(int) - (morning & noon)), known
+
+
+def _matches(texts: pa.ChunkedArray, pattern: str) -> Booleans:
+    return np.asarray(numbers_of(pc.match_substring_regex(texts, pattern).cast(pa.int8())) == 1)
+
+
+def _iso_times(texts: pa.ChunkedArray) -> tuple[Integers, Booleans]:
     zoned = pc.match_substring_regex(texts, _WITH_ZONE)
     with suppress(pa.ArrowInvalid):
         whole = pc.if_else(zoned, texts, pc.replace_substring_regex(texts, "$", "Z"))
