@@ -10,6 +10,8 @@ import numpy as np
 from commands.draft.raw_log import Name, RawLog, finite
 from commands.draft.timing import grows, time_of
 from commands.draft.triads import Triad, other_imus, sensor_named, sensors_among, threes, with_bits
+from inertial.tables.errors import Refusal
+from inertial.text.messages import _
 
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
 COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECASE)
@@ -51,7 +53,7 @@ def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -
     Raises
     ------
     Refusal
-        where nothing says which columns are sensors
+        where nothing says which columns are sensors, or nothing changes in any
     """
     first = group[0]
     times = tuple(time_of(log) for log in first)
@@ -59,6 +61,7 @@ def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -
     candidates: list[Triad] = []
     others: list[Triad] = []
     still: set[Name] = set()
+    changing: set[Name] = set()
     for file, log in enumerate(first):
         interleaved, own_label = _words_of(log)
         label = label if own_label is None else own_label
@@ -73,6 +76,9 @@ def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -
             candidates += [with_bits(group, Triad(file, three, rows)) for three in found]
             others += [Triad(file, three, rows) for three in left]
         still |= constant
+        changing |= set(log.columns) - constant - clocks
+    if not changing:
+        raise _nothing_changes(first[0])
     if sensor is not None and candidates:
         accel = candidates[0] if sensor.sensor == "accel" else None
         gyro = candidates[0] if sensor.sensor == "gyro" else None
@@ -99,6 +105,16 @@ def columns_of(group: Sequence[Sequence[RawLog]], sensor: Named | None = None) -
         number,
         tuple(name for triad in taken for name in triad.columns if name in still),
         tuple(other_imus(first, candidates, taken)),
+    )
+
+
+def _nothing_changes(log: RawLog) -> Refusal:
+    return Refusal(
+        log.path.name,
+        "",
+        _("nothing changes: each column but the clock reads the same in all rows"),
+        _("the readings of an IMU, which are never so still"),
+        _("see whether the recorder wrote what the sensors read, and record it again"),
     )
 
 

@@ -11,6 +11,7 @@ from inertial.text.numbers import significant, whole
 from inertial.text.parameters import AXES
 
 MAX_LEFT_OUT = 0.25  # of a log, that is in no manoeuvre without a word
+MAX_INCOMPLETE = 0.01  # of the rows, that are left out without a word
 MIN_ATTITUDES = 9  # of unknown attitude, for the nine parameters of accelerometers
 FACES = [sign + axis for axis in AXES for sign in "+-"]
 
@@ -70,6 +71,13 @@ def _evidence(kind: Kind) -> Iterator[str]:
             rate=significant(timing.rate),
             assumed=_(", a rate that is assumed") if without_clock(timing) else "",
             why=timing.evidence,
+        )
+    if kind.incomplete > MAX_INCOMPLETE * rows:
+        yield _(
+            "{logs}: {count} of its rows lack a reading and are left out; the rate is that of the "
+            "others",
+            logs=names_of_logs(kind),
+            count=whole(kind.incomplete),
         )
     which = []
     for word, triad in ((_("accelerometers"), columns.accel), (_("gyros"), columns.gyro)):

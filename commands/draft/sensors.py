@@ -67,6 +67,15 @@ class Kind:
         return list({id(part.logs): part.logs for part in self.parts}.values())
 
     @property
+    def incomplete(self) -> int:
+        """How many rows lack a reading of a sensor, where none select those of one sensor."""
+        triads = [t for t in (self.columns.accel, self.columns.gyro) if t and t.rows is None]
+        return sum(
+            max((triad.rows_in(logs) - len(triad.of(logs)) for triad in triads), default=0)
+            for logs in self.recordings
+        )
+
+    @property
     def interleaved(self) -> bool:
         """Whether rows of the two sensors alternate."""
         accel, gyro = self.columns.accel, self.columns.gyro
@@ -86,6 +95,8 @@ def kinds_of(logs: Sequence[RawLog], rate: float | None = None) -> list[Kind]:
 
 def _kind(group: Sequence[Sequence[RawLog]], sensor: Named | None, rate: float | None) -> Kind:
     """Logs of one kind, their readings as they stand in the files."""
+    if all(together[0].rows <= 1 for together in group):
+        _refuse_few(group, None)
     columns = columns_of(group, sensor)
     triad = columns.accel or columns.gyro
     rows = triad.rows if triad is not None and triad.file == 0 else None
@@ -121,7 +132,7 @@ def _kind_by_clock(group: Sequence[Sequence[RawLog]], columns: Columns, timing: 
     return Kind(columns, timing, accel, gyro, parts, own)
 
 
-def _refuse_few(group: Sequence[Sequence[RawLog]], columns: Columns) -> None:
+def _refuse_few(group: Sequence[Sequence[RawLog]], columns: Columns | None) -> None:
     """Refuse a table of a few rows, which are no samples of a motion."""
     rows, log = sum(together[0].rows for together in group), group[0][0]
     if rows < MIN_ROWS and log.kind != "rawimus":
@@ -135,7 +146,7 @@ def _refuse_few(group: Sequence[Sequence[RawLog]], columns: Columns) -> None:
                 rows=MIN_ROWS,
             ),
             _("name the log of the samples")
-            if columns.temperature is not None and not columns.guessed
+            if columns is None or (columns.temperature is not None and not columns.guessed)
             else _(
                 "name the log of the samples; or add a first line that names the columns of means, "
                 "such as temperature, samples, acc_x, acc_y, acc_z, gyro_x, gyro_y, gyro_z"

@@ -20,13 +20,13 @@ def without_tail(log: RawLog) -> RawLog:
     an IMU that rests is not so still.
     """
     names = list(log.columns)
-    if not names or log.kind == "rawimus":
+    if not names or log.rows <= MIN_TAIL or log.kind == "rawimus":
         return log
     values = np.full((log.rows, len(names)), np.nan)
     for place, name in enumerate(names):
         values[: len(log.columns[name]), place] = log.columns[name]
-    clocks = np.mean(np.diff(values, axis=0) > 0, axis=0) >= MIN_CLOCK_STEPS if len(values) else []
-    first = min(_unchanged_from(values), _unchanged_from(values[:, ~np.asarray(clocks, bool)]))
+    clocks = np.mean(np.diff(values, axis=0) > 0, axis=0) >= MIN_CLOCK_STEPS
+    first = min(_unchanged_from(values), _unchanged_from(values[:, ~clocks]))
     if not 0 < first <= len(values) - MIN_TAIL or not _is_empty(values, first):
         return log
     columns: dict[Name, Array] = {name: log.columns[name][:first] for name in names}

@@ -78,6 +78,10 @@ class Triad:
             values = signed(values, self.bits)
         return np.asarray(values[np.isfinite(values).all(axis=1)])
 
+    def rows_in(self, together: Sequence[RawLog]) -> int:
+        """How many rows its columns have, those with a gap too."""
+        return len(together[self.file].column(self.columns[0], self.rows))
+
     def shares_columns(self, other: "Triad") -> bool:
         """Whether both have a column of the same rows."""
         same_rows = (self.file, self.rows) == (other.file, other.rows)
