@@ -217,18 +217,19 @@ def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
         return _Clock(unit, named, _("by its name"))
     if not agrees and not MIN_RATE <= likely / ticks <= MAX_RATE:
         return _Clock(unit, named, _("by its name"))
-    what = {"named": significant(named / ticks), "rate": significant(likely / ticks)}
+    by_name, rate = significant(named / ticks), significant(likely / ticks)
     why = (
-        _("its name says {unit}, {named} Hz; the header states the rate", unit=unit, **what)
+        _("its name says {unit}, {named} Hz; the header states the rate", unit=unit, named=by_name)
         if agrees
-        else _("its name says {unit}, {named} Hz, the rate of no IMU", unit=unit, **what)
+        else _("its name says {unit}, {named} Hz, the rate of no IMU", unit=unit, named=by_name)
     )
     doubt = _(
         "its name says {unit}, by which there are {named} samples a second; the draft takes ticks "
         "of {taken}, {rate} samples a second. Which is right?",
         unit=unit,
+        named=by_name,
         taken=tick_in_words(likely),
-        **what,
+        rate=rate,
     )
     return _Clock(unit_of(likely), likely, why, guessed=True, doubt=doubt)
 
