@@ -55,9 +55,12 @@ def test_revolutions_per_minute_are_no_clock_of_another_unit(tmp_path):
     assert layout["time"]["unit"] == "ms" and "in no usual unit" in said
 
 
-def test_a_baud_rate_is_no_rate_of_samples(tmp_path):
-    layout, _said = layout_of(logged("t", 0.01, 30, "# Baud rate: 115200\n"), tmp_path)
-    assert layout["time"] == {"column": "t", "unit": "s"}
+@pytest.mark.parametrize("header", ["# Baud rate: 115200\n", "# accurate to 5 %\n"])
+def test_other_rates_are_none_of_samples(header, tmp_path):
+    log = by_hand_log(30)
+    text = header + f"{NAMES}\n" + written([log.force, log.rate])
+    layout, said = layout_of(text, tmp_path)
+    assert layout["time"] == {"rate_hz": 100} and "the header states the rate" not in said
 
 
 # ---- clocks whose name says another unit
@@ -100,7 +103,9 @@ def test_a_column_of_intervals_states_the_rate(tmp_path):
     assert "dt is the time from row to row" in said and "how many samples a second" not in said
 
 
-@pytest.mark.parametrize("header", ["// Abtastrate: 125 Hz\n", "# Fréquence : 125\n"])
+@pytest.mark.parametrize(
+    "header", ["// Abtastrate: 125 Hz\n", "# Samplerate=125\n", "# Fréquence : 125\n"]
+)
 def test_a_rate_is_stated_in_other_languages(header, tmp_path):
     log = by_hand_log(36)
     layout, _said = layout_of(header + f"{NAMES}\n" + written([log.force, log.rate]), tmp_path)

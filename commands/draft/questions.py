@@ -96,8 +96,8 @@ def _of_kind(kind: Kind) -> Iterator[str]:
         )
     for accel, gyro in kind.columns.other_imus:
         yield _(
-            "columns: {log} holds a second IMU, {columns}; the draft takes {taken}. Which of them "
-            "is to be calibrated?",
+            "columns: {log} holds other accelerometers and gyros, {columns}; the draft takes "
+            "{taken}. Which are those of the IMU to be calibrated?",
             log=names_of_logs(kind),
             columns=_columns(accel, gyro),
             taken=_columns(kind.columns.accel, kind.columns.gyro),

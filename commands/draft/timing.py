@@ -36,8 +36,8 @@ DAY = 86400.0  # s
 MIN_SINGLE_TICKS = 0.9  # of the new stamps, to be those of a clock that is coarser than the rows
 MIN_PERIOD = 255  # of a counter: fewer ticks are no clock
 STATED = re.compile(
-    r"(?:\bfs|(?<!baud )(?<!bit )\b(?!baud|bit)\w*rate|\b\w*fr[eé]q\w*|\bodr|\bhz)\b"
-    r"[^0-9\n]{0,30}([0-9]+(?:\.[0-9]+)?)",
+    r"(?:\bfs|(?<!baud[ _])(?<!bit[ _])(?:\b|_|abtast|sampl\w{1,3}|data)rate"
+    r"|\b(?:abtast|sampl\w{1,3})?fr[eé]q\w*|\bodr|\bhz)\b[^0-9\n]{0,30}([0-9]+(?:\.[0-9]+)?)",
     re.IGNORECASE,
 )
 INTERVAL = re.compile(r"(?:dt|d_t|delta_?t|Δt|(?:sample_?)?interval)(?![a-z])", re.IGNORECASE)
