@@ -21,6 +21,13 @@ def test_a_single_row_is_said_to_be_one(tmp_path):
         drafted({"log.csv": NAMES + "0.00,0.988,-0.013,-0.015,0.075,-0.232,0.048\n"}, tmp_path)
 
 
+def test_a_table_of_a_few_rows_is_no_log(tmp_path):
+    """Of five rows without names there are no short means, which ended in an exception."""
+    rows = np.random.default_rng(0).integers(0, 10_000, (5, 3)).astype(float)
+    with pytest.raises(Refusal, match="5 rows of numbers"):
+        drafted({"log.csv": written([rows])}, tmp_path)
+
+
 @pytest.mark.parametrize("clock", ["goes on", "stands"])
 def test_a_log_in_which_nothing_changes_is_said_to_be_one(clock, tmp_path):
     time = np.arange(500) / RATE * (clock == "goes on")

@@ -260,7 +260,7 @@ def _by_intervals(logs: Sequence[RawLog], stated: float | None) -> Timing | None
             column=name,
             unit=clock.unit,
         )
-        return Timing(None, None, rate, False, why)
+        return Timing(None, None, rate, bool(clock.doubt), why)
     return None
 
 

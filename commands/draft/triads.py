@@ -398,7 +398,8 @@ def _size(recordings: Sequence[Array]) -> _Size:
     lengths = np.linalg.norm(means, axis=1)
     spread = np.concatenate([own.std(axis=0) for own in recordings])
     ratio = float(np.median(lengths) / (np.std(lengths) + np.median(spread) + 1e-300))
-    points = np.concatenate([_short_means(own) for own in recordings if len(own) >= BIN_ROWS])
+    points = np.concatenate([means[:0], *map(_short_means, recordings)])
+    points = points if len(points) else means
     own = np.linalg.norm(points, axis=1)
     length = float(np.median(own))
     if not length > 0:
