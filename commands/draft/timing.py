@@ -129,9 +129,8 @@ def timing_of(
 
     `rows`: the column and the word of those that are samples, where not all are.
     """
-    stated = next(
-        (float(m[1]) for log in logs for line in log.header if (m := STATED.search(line))), None
-    )
+    found = (float(m[1]) for log in logs for line in log.header if (m := STATED.search(line)))
+    stated = next((rate for rate in found if rate > 0), None)
     if column is None:
         return _by_intervals(logs, stated) or _without_time(
             None, None, stated, _("no column is a time")
@@ -248,17 +247,17 @@ def nearly_as_usual(rate: float, other: float) -> bool:
 
 def _by_intervals(logs: Sequence[RawLog], stated: float | None) -> Timing | None:
     """The rate by a column that holds the time from row to row; None where none does."""
-    for name in logs[0].columns:
+    for name in filter(lambda own: INTERVAL.match(str(own)), logs[0].columns):
         steps = np.concatenate([finite(log.columns[name]) for log in logs])
-        if not INTERVAL.match(str(name)) or steps.min() < 0 or not steps.mean() > 0:
+        if steps.min() < 0 or not steps.mean() > 0:
             continue
         clock = _clock(name, float(steps.mean()), stated)
         rate = clock.ticks_per_s / float(steps.mean())
         why = _(
-            "no column is a time; {column} is the time from row to row, in {unit}, and their mean "
-            "the rate",
+            "no column is a time; {column} is the time from row to row, in ticks of {tick}, and "
+            "its mean states the rate",
             column=name,
-            unit=clock.unit,
+            tick=tick_in_words(clock.ticks_per_s),
         )
         return Timing(None, None, rate, bool(clock.doubt), why)
     return None
