@@ -21,6 +21,12 @@ MAX_PAUSE_S = 0.3  # s, in which a table that swings on turns back
 MAX_SETTLED = 5.0  # scatters of bins from the plateau of a turn, within which a rate has settled
 SETTLED_BINS = 3  # one after another within it: what rings goes through it as well
 MAX_SETTLING_SHARE = 0.25  # of the plateau, that is left out while the rate settles
+REACHED_SHARE = 0.97  # of the steady rate, from which a ramp has reached it
+MAX_RISE = 1.03  # of what reaches the middle rate of a turn: more is not at that rate, but rising
+MIN_MIDDLE_SHARE = 2 / 3  # of its highest rates, less of which is the middle of a turn that pauses
+PLATEAU_ROUNDS = 10  # in which the level of a short plateau is had from what reaches it
+MIN_PLATEAU_BAND = 1e-3  # of a rate, within which it is kept where the bins scatter less
+MIN_PLATEAU_CROSSINGS = 3.0  # of the time in which a ramp passes that band: a plateau is longer
 MIN_SLOW_TURN = np.radians(0.05)  # rad, of a motion below what counts as motion
 LEVEL_ROUNDS = 3  # in which what the gyros read at rest is had from the bins that do not move
 # In m/s², change of the specific force that counts as motion where no gyro is recorded
@@ -211,7 +217,7 @@ def steady_part(rate: Array) -> tuple[int, int]:
     A low pass of the gyro, or the drive, settles behind the ramp: rate = plateau (1 - c exp(-t/τ)).
     From the ramp to where that is within the scatter of the bins about the plateau it takes some
     time: in as much time again it becomes less by that factor once more. Where it is within it at
-    once, or never, nothing settles.
+    once, or never, nothing settles. Where the ramps meet there is no such part: first is after.
 
     Parameters
     ----------
@@ -220,9 +226,13 @@ def steady_part(rate: Array) -> tuple[int, int]:
     k = len(rate)
     middle = rate[k // 4 : max(k - k // 4, k // 4 + 1)]
     plateau = float(np.median(middle))
-    reached = np.flatnonzero(np.abs(rate / plateau) > 0.97) if plateau else np.array([], int)
+    share = np.abs(rate / plateau) if plateau else np.zeros(k)
+    reached = np.flatnonzero(share > REACHED_SHARE)
     if len(reached) < 3:
         return 0, k
+    rises = float(np.median(share[reached[0] : reached[-1] + 1])) > MAX_RISE
+    if rises and np.quantile(share, 0.9) < 1 / MIN_MIDDLE_SHARE:
+        return _short_plateau(np.abs(rate), abs(plateau))
     # One bin at each end may hold a part of the ramp.
     first, after = int(reached[0]) + 1, int(reached[-1])
     scatter = MAD_TO_SIGMA * float(np.median(np.abs(middle - plateau)))
@@ -231,6 +241,31 @@ def steady_part(rate: Array) -> tuple[int, int]:
     settled = np.convolve(near, np.ones(SETTLED_BINS), "valid") == SETTLED_BINS
     bins = int(np.argmax(settled)) if settled.any() else 0
     return first + min(2 * bins + (bins > 0), longest), after
+
+
+def _short_plateau(speed: Array, level: float) -> tuple[int, int]:
+    """The bins [first, after) of the rate between two long ramps; first is after where they meet.
+
+    It is kept for clearly longer than a ramp takes through the same band of rates.
+
+    Parameters
+    ----------
+    speed : (k,), rad/s, without its sign
+    level : rad/s, that it exceeds in a quarter of the turn
+    """
+    for _ in range(PLATEAU_ROUNDS):
+        level = float(np.median(speed[speed > REACHED_SHARE * level]))
+    reached = np.flatnonzero(speed > REACHED_SHARE * level)
+    # A ramp is straight: its second differences are those of the noise.
+    scatter = MAD_TO_SIGMA * float(np.median(np.abs(np.diff(speed, n=2)))) / np.sqrt(6)
+    band = max(MAX_SETTLED * scatter, MIN_PLATEAU_BAND * level)
+    kept = [run for run in stretches_of(np.abs(speed - level) <= band) if run.moves]
+    longest = max(kept, key=lambda run: run.after - run.first, default=BinStretch(True, 0, 0))
+    crossing = 2 * band / level * max(int(reached[0]), 1)  # bins of a ramp within it
+    if longest.after - longest.first >= max(SETTLED_BINS, MIN_PLATEAU_CROSSINGS * crossing):
+        return longest.first, longest.after
+    top = int(reached[0] + reached[-1] + 1) // 2
+    return top, top
 
 
 def stopped(rate: Array) -> int:

@@ -227,7 +227,8 @@ def _turns(windows: Sequence[Located], level: Array) -> Iterator[Multiple]:
             if m.angle and m.recorded == "whole":
                 turned = np.nan_to_num(located.observed[place].turned)
                 angle = abs(float(turned @ m.axis) / m.angle)
-            rate = _rate(located, place, m, level) if m.rate else angle
+            rate = _rate(located, place, m, level) if m.rate else np.nan
+            rate = rate if np.isfinite(rate) else angle
             if np.isfinite(rate):
                 yield Multiple(m.name, located.binned.window.log, rate, angle)
 
@@ -239,7 +240,7 @@ def _cut_off(located: Located, place: int, m: Manoeuvre) -> bool:
 
 
 def _rate(located: Located, place: int, m: Manoeuvre, level: Array) -> float:
-    """The rate of the steady part of a turn over the planned one."""
+    """The rate of the steady part of a turn over the planned one; NaN where there is none."""
     assert m.rate
     first, after = motion(located.binned, located.stretches, place)
     about = located.binned.about(m.axis, level)[first:after]
