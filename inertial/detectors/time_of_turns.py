@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from inertial.arrays import Booleans
+from inertial.arrays import Array, Booleans
 from inertial.detectors.stamps_misstated import TIME_UNITS
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
@@ -197,6 +197,8 @@ def _slightly_off(ratio: float, rate_sigma: float, stated: float) -> Description
 
 MIN_SHORT_TURNS = 2  # of one alone the table may have stopped elsewhere: the model has it
 ASSUMED_RATE_SIGMA = 1e-3  # of a table, relative, where none is stated
+MIN_LOST_SHARE = 0.5  # of what an angle lacks for its rate, by which it is short: else the rate is
+MIN_SAME_COSINE = 0.999  # of the axes of two turns of one gyro
 
 
 def short_turns(recorded: Recorded) -> Booleans:
@@ -206,20 +208,32 @@ def short_turns(recorded: Recorded) -> Booleans:
     short = np.zeros(len(known), bool)
     if not known.any() or recorded.restated:
         return short
-    longer = angle[known] / rate[known]
-    lacking = 1 - longer / np.median(longer)
+    longer = np.where(known, angle, 1.0) / np.where(known, rate, np.nan)
+    lacking = 1 - longer / np.nanmedian(longer)
     of_table = np.nan_to_num(recorded.rate_sigma, nan=ASSUMED_RATE_SIGMA)
-    scatter = np.hypot(of_table, MAD_TO_SIGMA * np.median(np.abs(lacking)))
-    short[known] = lacking > MIN_RATE_SIGMAS * np.hypot(scatter, recorded.unsteady[known])
+    scatter = np.hypot(of_table, MAD_TO_SIGMA * np.nanmedian(np.abs(lacking)))
+    short[known] = (lacking > MIN_RATE_SIGMAS * np.hypot(scatter, recorded.unsteady))[known]
+    whole = _angles_of_whole(recorded, np.where(known & ~short, angle, np.nan))
+    short &= 1 - angle / whole > MIN_LOST_SHARE * lacking
     few = MIN_SHORT_TURNS <= np.count_nonzero(short) < np.count_nonzero(known) / 2
     return short if few else np.zeros(len(known), bool)
+
+
+def _angles_of_whole(recorded: Recorded, ratios: Array) -> Array:
+    """What each turn would read over its plan, were it whole, (m,): as the others about its axis.
+
+    Where there is none of these, as planned. `ratios`: (m,), those of whole turns, NaN of others.
+    """
+    same = np.abs(np.nan_to_num(recorded.about) @ np.nan_to_num(recorded.about).T) > MIN_SAME_COSINE
+    own = [ratios[others & np.isfinite(ratios)] for others in same]
+    return np.array([float(np.median(one)) if len(one) else 1.0 for one in own])
 
 
 class LostSamplesOfTurns(PlanDetector):
     """Turns whose angle is short though their rate is not, as none of most others is.
 
     Cause: samples are lost, and the stamps are counted as if none were. An asymmetry of the gyros
-    changes the rate they read as well; a table that stops before does not.
+    changes the rate they read as well, and so does a dead band; a table that stops before does not.
     """
 
     name = "samples_lost"
