@@ -1,6 +1,6 @@
 """The turns of a plan as they were recorded, and why one cannot be used."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import degrees
 from typing import TYPE_CHECKING
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
 
 TURNING = ("spin-up", "steady", "spin-down", "settling", "turning")
+BESIDE = ("rest-before", "rest-after")
+MIN_REST_SHARE = 0.1  # of the time of a turn, that the rests beside it last to show the bias in it
+MAX_RATE_SHARE = 0.5  # of what an angle lacks, by which the rate is less where samples are lost
 
 
 @dataclass(frozen=True)
@@ -31,7 +34,7 @@ class Rotation:
     `begun`: whether the rest before it is in its record; one that is recorded in part and has
     none begins at another azimuth than that of the set position. `clock_sigma`: of the rate of the
     clock of its log, relative; `off_ratio`: to its stated rate or angle, where by the other turns
-    it was another.
+    it was another; `may_lack`: whether samples may be lacking of it instead.
     """
 
     plan: Manoeuvre
@@ -41,6 +44,7 @@ class Rotation:
     begun: bool = True
     clock_sigma: float = 0.0
     off_ratio: float | None = None
+    may_lack: bool = False
 
     @property
     def steady(self) -> Blocks:
@@ -68,7 +72,8 @@ class Rotation:
 def recorded_turns(data: "CampaignData") -> list[Rotation]:
     """Every turn of the plan; refused, too, where by the others it was at another rate or angle."""
     rotations = list(_rotations(data))
-    for place, refused in [*_off_rate(rotations, data.noise), *_off_angle(rotations)]:
+    rests = by_manoeuvre(data.blocks[data.blocks["phase"].isin(BESIDE)])
+    for place, refused in [*_off_rate(rotations, data.noise), *_off_angle(rotations, rests)]:
         rotations[place] = refused
     return rotations
 
@@ -119,8 +124,10 @@ def _off_rate(rotations: Sequence[Rotation], noise: NoiseLevels) -> Iterator[tup
             yield places[number], _refused(run, why, run.plan.rate, ratio)
 
 
-def _off_angle(rotations: Sequence[Rotation]) -> Iterator[tuple[int, Rotation]]:
-    """Which whole turn was by another angle by the others, refused."""
+def _off_angle(
+    rotations: Sequence[Rotation], rests: Mapping[str, Blocks]
+) -> Iterator[tuple[int, Rotation]]:
+    """Which whole turn was by another angle by the others, refused; `rests`: beside each."""
     whole = {
         place: turn
         for place, turn in enumerate(rotations)
@@ -131,9 +138,45 @@ def _off_angle(rotations: Sequence[Rotation]) -> Iterator[tuple[int, Rotation]]:
     lines = list(map(_line_of, whole.values()))
     if len(ratios) == len(whole) and (one := off_ratio(ratios, lines)) is not None:
         place, turn = list(whole.items())[one]
-        why = _("by the other turns it turned by {read}°, not by {stated}°")
-        ratio = float(ratios[one] / np.median(ratios))
-        yield place, _refused(turn, why, turn.plan.angle, ratio)
+        others = [
+            other for k, other in enumerate(whole.values()) if k != one and lines[k] == lines[one]
+        ]
+        same = float(np.median([_above_rest(other, rests) for other in others]))
+        ratio = _above_rest(turn, rests) / same
+        may_lack = _may_lack(turn, others, ratio)
+        why = (
+            _(
+                "by the other turns it turned by {read}°, not by {stated}°, or samples are lost in "
+                "it that the stamps do not show"
+            )
+            if may_lack
+            else _("by the other turns it turned by {read}°, not by {stated}°")
+        )
+        yield place, replace(_refused(turn, why, turn.plan.angle, ratio), may_lack=may_lack)
+
+
+def _above_rest(turn: Rotation, rests: Mapping[str, Blocks]) -> float:
+    """The angle of a whole turn over the stated one, without what its gyros read at rest beside it.
+
+    Over whole rounds that is their bias and the earth's rate about the axis. Where the rests are
+    too short to show it, without what they read at rest in all attitudes.
+    """
+    m, part, beside = turn.plan, turn.blocks, rests.get(turn.plan.name, NO_BLOCKS)
+    assert m.angle and turn.done.angle  # else it has no ratio
+    if beside.seconds.sum() < MIN_REST_SHARE * part.seconds.sum():
+        return turn.done.angle / m.angle
+    read = np.nansum(part.gyro * part.seconds[:, None], axis=0)
+    at_rest = np.nan_to_num(mean_rate(beside)) * part.seconds.sum()
+    return float((read - at_rest) @ m.axis) / m.angle
+
+
+def _may_lack(turn: Rotation, others: Sequence[Rotation], ratio: float) -> bool:
+    """Whether a turn, short by a ratio, has the rate of the others about its axis, where known."""
+    both = [(one.done.rate, one.plan.rate) for one in (turn, *others)]
+    rates = [read / planned for read, planned in both if read and planned]
+    known = len(rates) == 1 + len(others)
+    slower = 1 - rates[0] / float(np.median(rates[1:])) if known else 0.0
+    return ratio < 1 and slower < MAX_RATE_SHARE * (1 - ratio)
 
 
 def _line_of(turn: Rotation) -> tuple[float, ...]:

@@ -86,10 +86,19 @@ def _another_turn(turn: Rotation, mount: str) -> Finding:
         severity=1,
         sentence=_("{name}: {why}.", name=turn.plan.name, why=turn.refusal),
         consequence=_("Taken as stated its scale factor would be wrong, so it is left out."),
-        action=_("Correct the rate of the plan, or see what the table did.")
-        if steady
-        else _("Correct the angle of the plan, or see what the table did."),
+        action=_what_to_do(turn),
     )
+
+
+def _what_to_do(turn: Rotation) -> str:
+    if turn.plan.recorded == "steady":
+        return _("Correct the rate of the plan, or see what the table did.")
+    if turn.may_lack:
+        return _(
+            "If it was the table, correct the angle of the plan; if not, record it again with a "
+            "counter or a clock in which lost samples show."
+        )
+    return _("Correct the angle of the plan, or see what the table did.")
 
 
 def _channels(inputs: GyroInputs) -> Booleans:
