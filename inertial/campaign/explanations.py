@@ -58,7 +58,7 @@ def same_log(cause: Hypothesis, other: Hypothesis) -> bool:
 
 def by_single_readings(cause: Hypothesis, other: Hypothesis) -> bool:
     """In a manoeuvre, of whose turn readings here and there lack little."""
-    whole = other.cause == "incomplete_turn" and _size(other) > MAX_OF_READINGS
+    whole = other.cause in ("incomplete_turn", "wrong_angle") and _size(other) > MAX_OF_READINGS
     return same_manoeuvre(cause, other) and not whole
 
 
@@ -94,6 +94,7 @@ PER_RUN = ("accel_bias_per_log", "gyro_bias_per_log")
 MISFITS = ("unexplained", "unknown_structure")
 PERFORMANCE = (
     "incomplete_turn",
+    "wrong_angle",
     "wrong_rate",
     "wrong_direction",
     "wrong_scale_of_turns",
@@ -232,7 +233,7 @@ EXPLANATIONS = (
         ("motion_after_turns",), (*MISFITS, "gyro_random_walk", "gyro_hysteresis"), same_sensor
     ),
     # What was recorded is no turn as planned, at whatever rate it is.
-    Explanation(("incomplete_turn",), ("wrong_rate",), same_manoeuvre),
+    Explanation(("incomplete_turn", "wrong_angle"), ("wrong_rate",), same_manoeuvre),
     # A table that moves: the readings are right, the position is not the planned one.
     Explanation(
         ("table_moving", "impact"),

@@ -14,7 +14,7 @@ from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.static_positions import NO_BLOCKS, Blocks, by_manoeuvre
 from inertial.estimation.turn_outliers import off_rate, off_ratio
-from inertial.tables import GYRO
+from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 
@@ -22,8 +22,7 @@ if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
 
 TURNING = ("spin-up", "steady", "spin-down", "settling", "turning")
-BESIDE = ("rest-before", "rest-after")
-MIN_REST_SHARE = 0.1  # of the time of a turn, that the rests beside it last to show the bias in it
+MIN_REST_SHARE = 0.1  # of the time of a turn, that its rests last to show the bias in it
 MAX_RATE_SHARE = 0.5  # of what an angle lacks, by which the rate is less where samples are lost
 
 
@@ -72,7 +71,9 @@ class Rotation:
 def recorded_turns(data: "CampaignData") -> list[Rotation]:
     """Every turn of the plan; refused, too, where by the others it was at another rate or angle."""
     rotations = list(_rotations(data))
-    rests = by_manoeuvre(data.blocks[data.blocks["phase"].isin(BESIDE)])
+    at_rest = data.blocks[data.blocks["phase"].isin(STATIC_PHASES)]
+    places = at_rest["manoeuvre"].map({m.name: _place_of(m) for m in data.plan})
+    rests = by_manoeuvre(at_rest.assign(manoeuvre=places))
     for place, refused in [*_off_rate(rotations, data.noise), *_off_angle(rotations, rests)]:
         rotations[place] = refused
     return rotations
@@ -127,7 +128,7 @@ def _off_rate(rotations: Sequence[Rotation], noise: NoiseLevels) -> Iterator[tup
 def _off_angle(
     rotations: Sequence[Rotation], rests: Mapping[str, Blocks]
 ) -> Iterator[tuple[int, Rotation]]:
-    """Which whole turn was by another angle by the others, refused; `rests`: beside each."""
+    """Which whole turn was by another angle by the others, refused; `rests`: by their places."""
     whole = {
         place: turn
         for place, turn in enumerate(rotations)
@@ -156,17 +157,18 @@ def _off_angle(
 
 
 def _above_rest(turn: Rotation, rests: Mapping[str, Blocks]) -> float:
-    """The angle of a whole turn over the stated one, without what its gyros read at rest beside it.
+    """The angle of a whole turn over the stated one, without what its gyros read at rest there.
 
-    Over whole rounds that is their bias and the earth's rate about the axis. Where the rests are
+    Over whole rounds that is their bias and the earth's rate about the axis. Where these rests are
     too short to show it, without what they read at rest in all attitudes.
     """
-    m, part, beside = turn.plan, turn.blocks, rests.get(turn.plan.name, NO_BLOCKS)
+    m, part, still = turn.plan, turn.blocks, rests.get(_place_of(turn.plan), NO_BLOCKS)
     assert m.angle and turn.done.angle  # else it has no ratio
-    if beside.seconds.sum() < MIN_REST_SHARE * part.seconds.sum():
+    still = still.those(np.isfinite(still.gyro[:, m.axis != 0]).all(axis=1))
+    if still.seconds.sum() < MIN_REST_SHARE * part.seconds.sum():
         return turn.done.angle / m.angle
     read = np.nansum(part.gyro * part.seconds[:, None], axis=0)
-    at_rest = np.nan_to_num(mean_rate(beside)) * part.seconds.sum()
+    at_rest = np.nan_to_num(mean_rate(still)) * part.seconds.sum()
     return float((read - at_rest) @ m.axis) / m.angle
 
 
@@ -177,6 +179,11 @@ def _may_lack(turn: Rotation, others: Sequence[Rotation], ratio: float) -> bool:
     known = len(rates) == 1 + len(others)
     slower = 1 - rates[0] / float(np.median(rates[1:])) if known else 0.0
     return ratio < 1 and slower < MAX_RATE_SHARE * (1 - ratio)
+
+
+def _place_of(m: Manoeuvre) -> str:
+    """Its log and the position of the table."""
+    return f"{m.log}, {m.position}"
 
 
 def _line_of(turn: Rotation) -> tuple[float, ...]:

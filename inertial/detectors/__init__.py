@@ -53,6 +53,7 @@ from inertial.detectors.time_of_turns import (
     WrongTimeUnitOfTurns,
 )
 from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate
+from inertial.detectors.turns_too_far import TurnTooFar
 from inertial.detectors.wrong_imu_type import WrongImuType
 from inertial.detectors.wrong_scale_factor import (
     GravityRemoved,
@@ -119,6 +120,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     ManoeuvreMissing(),
     WrongDirection(),
     IncompleteTurn(),
+    TurnTooFar(),
     LostSamplesOfTurns(),
     MotionAfterTurns(),
     WrongRate(),

@@ -28,41 +28,52 @@ class IncompleteTurn(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        if thousands_longer(recorded) or time_ratio(recorded) is not None:
-            return
-        common = common_turn_ratio(recorded)
-        _, angle = turn_ratios(recorded)
-        # By other axes no turn is used, though it may be whole.
-        misread = any(
-            each.sensor == "gyro" and not each.log and not each.undone for each in recorded.misread
-        )
-        for i, name in enumerate(recorded.name):
-            whole_planned = recorded.do[i] == "turn" and not recorded.steady[i]
-            if not whole_planned or not recorded.found[i]:
-                continue
-            if recorded.complete[i] or recorded.lost[i]:
-                continue
-            # Where all turns have another angle, that of one with a gap is not known at all.
-            scaled = common is not None and (
-                abs(angle[i] / common[0] - 1) <= MAX_RATIO_SPREAD or recorded.lacking_s[i] > 0
-            )
-            reversed_ = angle[i] < 0
-            refused = misread and recorded.lacking_s[i] == 0
-            if scaled or reversed_ or refused or name in recorded.explained:
-                continue
-            yield self.of(recorded, i, finite_or_none(np.degrees(recorded.lacking[i])))
+        for i in by_another_angle(recorded):
+            if not too_far(recorded, i):
+                yield self.of(recorded, i, finite_or_none(np.degrees(recorded.lacking[i])))
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None  # it is a turn that is not complete
         return Description(
             f"{recorded.name[i]}: {recorded.said[i]}",
-            _if_taken(recorded, i),
+            if_taken(recorded, i),
             _("It is left out of the joint estimate and of the angle method. Record it again."),
         )
 
 
-def _if_taken(recorded: Recorded, i: int) -> str:
+def by_another_angle(recorded: Recorded) -> Iterator[int]:
+    """Which turns are not whole, or by another angle than planned, and nothing else explains it."""
+    if thousands_longer(recorded) or time_ratio(recorded) is not None:
+        return
+    common = common_turn_ratio(recorded)
+    _, angle = turn_ratios(recorded)
+    # By other axes no turn is used, though it may be whole.
+    misread = any(
+        each.sensor == "gyro" and not each.log and not each.undone for each in recorded.misread
+    )
+    for i, name in enumerate(recorded.name):
+        whole_planned = recorded.do[i] == "turn" and not recorded.steady[i]
+        if not whole_planned or not recorded.found[i]:
+            continue
+        if recorded.complete[i] or recorded.lost[i]:
+            continue
+        # Where all turns have another angle, that of one with a gap is not known at all.
+        scaled = common is not None and (
+            abs(angle[i] / common[0] - 1) <= MAX_RATIO_SPREAD or recorded.lacking_s[i] > 0
+        )
+        reversed_ = angle[i] < 0
+        refused = misread and recorded.lacking_s[i] == 0
+        if not (scaled or reversed_ or refused or name in recorded.explained):
+            yield i
+
+
+def too_far(recorded: Recorded, i: int) -> bool:
+    """Whether a turn, of which no sample is missing, goes beyond its planned angle."""
+    return bool(recorded.lacking_s[i] == 0 and abs(recorded.moved[i]) > abs(recorded.angle[i]))
+
+
+def if_taken(recorded: Recorded, i: int) -> str:
     """What the scale factor would be wrong by if one took another angle than the recorded one."""
     common = common_turn_ratio(recorded)
     scale = common[0] if common else 1.0

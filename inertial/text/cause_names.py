@@ -43,6 +43,7 @@ NAMES = {
     "wrong_temperature_unit": _("temperature in another unit than is stated"),
     "temperature_misstated": _("temperature misstated"),
     "time_stands_still": _("time stands still"),
+    "wrong_angle": _("turn that goes too far"),
     "wrong_direction": _("wrong direction"),
     "wrong_spans": _("spans by another clock"),
     "wrong_rate": _("wrong rate"),

@@ -306,22 +306,6 @@ def test_an_incomplete_turn_says_what_a_wrong_angle_would_cost():
     assert f"wrong by {share:.0f} ppm ({share / 2:.0f} ppm in a pair" in thin
 
 
-@pytest.mark.parametrize("name", ["x-forward", "z-backward"])
-def test_a_turn_that_goes_too_far_lacks_nothing(name):
-    document = chain.short()
-    (turn,) = (one for one in document["campaign"]["plan"] if one["id"] == name)
-    planned = turn["degrees"]
-    turn["degrees"] = 1.25 * planned
-    document["misstated"] = {"plan": {name: {"degrees": planned}}}
-    results = run(document)
-    (finding,) = found_in(results).to_dict("records")
-    assert (finding["cause"], finding["manoeuvre"]) == ("incomplete_turn", name)
-    beyond = abs(degrees(performed(results).loc[name, "angle"]) - planned)
-    assert beyond == pytest.approx(90, abs=0.3)
-    assert finding["sentence"].endswith(f"it is {beyond:.2f}° too far.")
-    assert "missing" not in finding["sentence"] and "rounded" not in finding["consequence"]
-
-
 def counted_by_100_hz(rate: float, folder: Path, **table: float) -> chain.Results:
     """The short campaign in columns without stamps, with turns of two angles, sampled at `rate`."""
     document = chain.short()

@@ -158,7 +158,7 @@ def _compared(tables: Tables, row: Record) -> Compared | None:
     """The two numbers that a finding is about; none where it is not about such."""
     cause, size = row["cause"], row["size"]
     plan, done = (_of_manoeuvre(tables, table, row) for table in ("manoeuvres", "performed"))
-    if cause == "incomplete_turn" and plan.get("angle") and done.get("angle"):
+    if cause in ("incomplete_turn", "wrong_angle") and plan.get("angle") and done.get("angle"):
         short = (done.get("missing_angle") or 0.0) / DEGREES.size
         planned, measured = plan["angle"] / DEGREES.size, done["angle"] / DEGREES.size
         return Compared(_("angle"), "°", planned, measured, short)
