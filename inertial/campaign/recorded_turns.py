@@ -164,7 +164,7 @@ def _above_rest(turn: Rotation, rests: Mapping[str, Blocks]) -> float:
     """
     m, part, still = turn.plan, turn.blocks, rests.get(_place_of(turn.plan), NO_BLOCKS)
     assert m.angle and turn.done.angle  # else it has no ratio
-    still = still.those(np.isfinite(still.gyro[:, m.axis != 0]).all(axis=1))
+    still = still.those(np.flatnonzero(np.isfinite(still.gyro[:, m.axis != 0]).all(axis=1)))
     if still.seconds.sum() < MIN_REST_SHARE * part.seconds.sum():
         return turn.done.angle / m.angle
     read = np.nansum(part.gyro * part.seconds[:, None], axis=0)

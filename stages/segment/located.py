@@ -18,12 +18,13 @@ from inertial.signal.rests_and_motions import (
     stretches,
     with_slow_ends,
 )
-from stages.segment.matching import Observation, match, observe, points
+from stages.segment.matching import MIN_SCALE_RATIO, Observation, match, observe, points
 from stages.segment.windows import Binned
 
 MIN_ALIKE_COSINE = float(np.cos(np.radians(1)))  # of directions of rests that look the same
 MIN_QUIETER = 25.0  # of chi-squared: by less, parts of a still stretch change alike
 MOVES_OF_PARTS = 3  # rounds in which each part is moved between its neighbours
+MIN_REST_SHARE = 0.5  # of the planned time of a rest, of which less is but a part
 MIN_ROOM = 0.9  # share of the time of several rests that a still stretch must last to hold them
 
 
@@ -114,6 +115,16 @@ class Located:
         if place is None or not size:
             return np.inf
         return _about(self.observed[place], planned) / size
+
+    def in_part(self, m: Manoeuvre) -> bool:
+        """Whether what is found of a manoeuvre is but a small part, or a multiple, of its plan."""
+        place = self.place(m)
+        if place is None:
+            return False
+        if m.do == "rest":
+            return self.observed[place].seconds < MIN_REST_SHARE * (m.seconds or 0.0)
+        ratio = abs(self.ratio(m, m)) if m.do == "turn" and _planned(m) else 1.0
+        return not 1 / MIN_SCALE_RATIO < ratio < MIN_SCALE_RATIO
 
     def _agree(self, m: Manoeuvre) -> list[bool]:
         place = self.place(m)

@@ -14,10 +14,16 @@ from stages.segment.located import AS_PLANNED, Axes, Division, Located, divide, 
 from stages.segment.misread_logs import MIN_GAIN, misread_logs
 from stages.segment.rest_readings import earth_seen, level_of
 from stages.segment.steps import Exchanged, OtherSense, Step, axes_step, exchange_step
-from stages.segment.suppositions import Case, exchanged_by_size, suppositions
+from stages.segment.suppositions import (
+    Case,
+    exchanged_by_size,
+    of_names_and_turns,
+    suppositions,
+)
 from stages.segment.windows import Binned
 
 MIN_RATE_SHARE = 0.05  # of the slowest planned rate: what counts as motion
+MIN_GAIN_OF_ALL = 2  # of the balance, by each of those that explain all of the plan together
 MAX_RIVAL_AXES = 2  # axes of a permutation that is a rival of exchanged names
 
 
@@ -73,7 +79,11 @@ def explain(
         gain = best.balance - case.balance
         # Two turns the other way, or in each other's place, of one log cost one of them at most:
         # the other one fits.
-        whole = gain >= 2 and not best.lacking and _of_turns(best) != _of_turns(case)
+        whole = (
+            gain >= MIN_GAIN_OF_ALL
+            and _of_turns(best) != _of_turns(case)
+            and _leads_to_whole(best, with_sense, gyros_confirmed)
+        )
         if gain < 2 * MIN_GAIN and not whole:
             break
         alike = [best, *(one for one in supposed if _rivals(case, best, one))]
@@ -120,6 +130,17 @@ def explained_of(
         ways, earth_rate, accepted, with_sense=with_sense, gyros_confirmed=gyros_confirmed
     )
     return level, explained
+
+
+def _leads_to_whole(case: Case, with_sense: bool, gyros_confirmed: bool) -> bool:
+    """Whether nothing is lacking, after more of the same kind where that explains more each."""
+    while case.lacking:
+        supposed = of_names_and_turns(case, with_sense, gyros_confirmed)
+        best = max(supposed, key=lambda one: one.balance, default=case)
+        if best.balance - case.balance < MIN_GAIN_OF_ALL:
+            return False
+        case = best
+    return True
 
 
 def _of_turns(case: Case) -> tuple[object, object]:

@@ -81,14 +81,7 @@ class Case:
 
 def suppositions(case: Case, with_sense: bool, gyros_confirmed: bool) -> Iterator[Case]:
     """All that may have happened to the campaign, the likelier first."""
-    taken = {name for exchanged in case.exchanged for name in exchanged.names}
-    lacking = [k for k in case.lacking if not taken & {m.name for m in case.plans[k]}]
-    if with_sense:
-        for turns in _senses(case, by_axis=gyros_confirmed):
-            yield _with_other_sense(case, turns)
-        for turns in _upended(case):
-            yield _with_other_sense(case, turns)
-    yield from _exchanges(case, lacking)
+    yield from of_names_and_turns(case, with_sense, gyros_confirmed)
     for permutation in PERMUTATIONS:
         for change in ({"accel": permutation}, {"gyro": permutation}):
             # Accelerometers that all read their negative turn as they are named.
@@ -102,19 +95,40 @@ def suppositions(case: Case, with_sense: bool, gyros_confirmed: bool) -> Iterato
             yield _by_axes(case, Axes(permutation, permutation))
 
 
-def _exchanges(case: Case, lacking: Sequence[int]) -> Iterator[Case]:
-    """Two windows of as many manoeuvres exchanged, or two manoeuvres or positions of one window."""
-    for a, b in combinations(lacking, 2):
+def of_names_and_turns(case: Case, with_sense: bool, gyros_confirmed: bool) -> Iterator[Case]:
+    """The same as far as the plan is concerned: the sense of turns, and what is exchanged."""
+    if with_sense:
+        for turns in _senses(case, by_axis=gyros_confirmed):
+            yield _with_other_sense(case, turns)
+        for turns in _upended(case):
+            yield _with_other_sense(case, turns)
+    yield from _exchanges(case)
+
+
+def _exchanges(case: Case) -> Iterator[Case]:
+    """Two windows of as many manoeuvres exchanged, or two manoeuvres or positions of one window.
+
+    None that is exchanged already.
+    """
+    taken = {name for exchanged in case.exchanged for name in exchanged.names}
+    whole = [k for k in case.lacking if taken.isdisjoint(m.name for m in case.plans[k])]
+    for a, b in combinations(whole, 2):
         if len(case.plans[a]) == len(case.plans[b]):
             yield _with_names_exchanged(case, a, b)
-    for k in lacking:
-        lost = [m for m in case.located[k].plan if case.located[k].place(m) is None]
+    for k in case.lacking:
+        free = [m for m in case.located[k].plan if m.name not in taken]
+        lost = [m for m in free if case.located[k].place(m) is None]
         for m in lost[:MAX_EXCHANGED]:
-            for other in case.located[k].plan:
+            for other in free:
                 if other.name != m.name and "positions" not in (m.do, other.do):
-                    yield _with_places_exchanged(case, k, [m.name], [other.name])
+                    exchanged = _with_places_exchanged(case, k, [m.name], [other.name])
+                    # A pause between two turns is no rest, and a change of position no turn.
+                    if not any(map(exchanged.located[k].in_part, (m, other))):
+                        yield exchanged
+        not_found = {m.name for m in lost}
         for one, two in combinations(_visits(case.plans[k]), 2):
-            if len(one) == len(two) > 1 and not {m.name for m in lost}.isdisjoint([*one, *two]):
+            both = {*one, *two}
+            if len(one) == len(two) > 1 and both & not_found and not both & taken:
                 yield _with_places_exchanged(case, k, one, two)
 
 
