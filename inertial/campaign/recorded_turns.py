@@ -71,10 +71,7 @@ class Rotation:
 def recorded_turns(data: "CampaignData") -> list[Rotation]:
     """Every turn of the plan; refused, too, where by the others it was at another rate or angle."""
     rotations = list(_rotations(data))
-    at_rest = data.blocks[data.blocks["phase"].isin(STATIC_PHASES)]
-    places = at_rest["manoeuvre"].map({m.name: _place_of(m) for m in data.plan})
-    rests = by_manoeuvre(at_rest.assign(manoeuvre=places))
-    for place, refused in [*_off_rate(rotations, data.noise), *_off_angle(rotations, rests)]:
+    for place, refused in [*_off_rate(rotations, data.noise), *_off_angle(rotations, data)]:
         rotations[place] = refused
     return rotations
 
@@ -126,9 +123,9 @@ def _off_rate(rotations: Sequence[Rotation], noise: NoiseLevels) -> Iterator[tup
 
 
 def _off_angle(
-    rotations: Sequence[Rotation], rests: Mapping[str, Blocks]
+    rotations: Sequence[Rotation], data: "CampaignData"
 ) -> Iterator[tuple[int, Rotation]]:
-    """Which whole turn was by another angle by the others, refused; `rests`: by their places."""
+    """Which whole turn was by another angle by the others, refused."""
     whole = {
         place: turn
         for place, turn in enumerate(rotations)
@@ -142,6 +139,7 @@ def _off_angle(
         others = [
             other for k, other in enumerate(whole.values()) if k != one and lines[k] == lines[one]
         ]
+        rests = _rests_by_place(data)
         same = float(np.median([_above_rest(other, rests) for other in others]))
         ratio = _above_rest(turn, rests) / same
         may_lack = _may_lack(turn, others, ratio)
@@ -179,6 +177,13 @@ def _may_lack(turn: Rotation, others: Sequence[Rotation], ratio: float) -> bool:
     known = len(rates) == 1 + len(others)
     slower = 1 - rates[0] / float(np.median(rates[1:])) if known else 0.0
     return ratio < 1 and slower < MAX_RATE_SHARE * (1 - ratio)
+
+
+def _rests_by_place(data: "CampaignData") -> dict[str, Blocks]:
+    """The blocks at rest, by log and position of the table."""
+    rests = data.blocks[data.blocks["phase"].isin(STATIC_PHASES)]
+    places = rests["manoeuvre"].map({m.name: _place_of(m) for m in data.plan})
+    return by_manoeuvre(rests.assign(manoeuvre=places))
 
 
 def _place_of(m: Manoeuvre) -> str:

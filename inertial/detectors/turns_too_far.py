@@ -13,7 +13,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
 
 USUAL_ANGLE = 45.0  # °, of whose multiples the angle of a turn usually is
-MAX_OF_USUAL = 0.03  # relative: a gyro of a phone is off by as much
+MAX_OF_USUAL = 0.01  # relative, up to which it is one of these: at 360° they are 0.12 apart
 MAX_RATIO_DIFFERENCE = 0.01  # relative, of turns that are off by one factor
 
 
@@ -33,10 +33,12 @@ class TurnTooFar(PlanDetector):
         left = [i for i in by_another_angle(recorded) if too_far(recorded, i)]
         _rate, angle = turn_ratios(recorded)
         while left:
-            same = [i for i in left if abs(angle[i] / angle[left[0]] - 1) <= MAX_RATIO_DIFFERENCE]
-            size = float(np.degrees(recorded.lacking[same[0]]))
-            yield self.of(recorded, same[0], size, count=len(same), facts=same)
-            left = [i for i in left if i not in same]
+            first, *others = left
+            alike = np.abs(angle[others] / angle[first] - 1) <= MAX_RATIO_DIFFERENCE
+            same = [first, *(i for i, near in zip(others, alike, strict=True) if near)]
+            size = float(np.degrees(recorded.lacking[first]))
+            yield self.of(recorded, first, size, count=len(same), facts=same)
+            left = [i for i in others if i not in same]
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         same = deviation.facts
