@@ -79,12 +79,9 @@ def explain(
         gain = best.balance - case.balance
         # Two turns the other way, or in each other's place, of one log cost one of them at most:
         # the other one fits.
-        whole = (
-            gain >= MIN_GAIN_OF_ALL
-            and _of_turns(best) != _of_turns(case)
-            and _leads_to_whole(best, with_sense, gyros_confirmed)
-        )
-        if gain < 2 * MIN_GAIN and not whole:
+        of_turns = gain >= MIN_GAIN_OF_ALL and _of_turns(best) != _of_turns(case)
+        enough = gain >= 2 * MIN_GAIN
+        if not (enough or (of_turns and _leads_to_whole(best, with_sense, gyros_confirmed))):
             break
         alike = [best, *(one for one in supposed if _rivals(case, best, one))]
         # The sense of the table says nothing of where a turn is: its rivals show what is found.
