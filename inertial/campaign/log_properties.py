@@ -167,7 +167,9 @@ class _Channels:
         self.noise: list[Array] = []
         self.noise_of_new: list[Array] = []  # without the records that hold a sensor's readings
         self.held = np.zeros(2)  # records, by sensor
-        self.windows: tuple[list[Array], list[Array]] = [], []  # their shares
+        self.stood = np.zeros(2)  # those that hold a reading for too long to be a slower sensor's
+        self.windows: tuple[list[Array], list[Array]] = [], []  # shares that repeat a reading
+        self.windows_in_use: tuple[list[Array], list[Array]] = [], []  # without those that stood
 
     @property
     def still(self) -> bool:
@@ -215,11 +217,12 @@ class _Channels:
             return None
         new = np.logical_or.reduce([step > 0 for step in steps])
         own = new[~_standing_still(new)]
-        held = len(own) - np.count_nonzero(own)
-        self.held[sensor] += held
-        whole = len(own) // HELD_WINDOW * HELD_WINDOW
-        self.windows[sensor].append(1 - own[:whole].reshape(-1, HELD_WINDOW).mean(axis=1))
-        return new if held > MIN_HELD_SHARE * len(new) and new.any() else None
+        self.stood[sensor] += len(new) - len(own)
+        self.held[sensor] += len(own) - np.count_nonzero(own)
+        self.windows[sensor].append(_held_in_windows(new))
+        self.windows_in_use[sensor].append(_held_in_windows(own))
+        repeated = len(new) - np.count_nonzero(new)
+        return new if repeated > MIN_HELD_SHARE * len(new) and new.any() else None
 
     def held_share(self) -> Array:
         """The share of records that hold the readings of each sensor throughout, (2,); else 0.
@@ -227,14 +230,15 @@ class _Channels:
         Where only one of several axes changes at all, the counts are coarse.
         """
         share = np.zeros(2)
-        for sensor, windows in enumerate(self.windows):
+        for sensor, windows in enumerate(self.windows_in_use):
             own = slice(3 * sensor, 3 * sensor + 3)
             moving = self.smallest[own] < self.largest[own]
             recorded = np.isfinite(self.smallest[own])
             if moving.sum() < min(2, recorded.sum()) or not sum(map(len, windows)):
                 continue
-            held, pairs = self.held[sensor], self.pairs[own][moving]
-            alone = (self.unchanged[own][moving] - held) / np.maximum(pairs - held, 1)
+            held, pairs = self.held[sensor], self.pairs[own][moving] - self.stood[sensor]
+            unchanged = self.unchanged[own][moving] - self.stood[sensor]
+            alone = (unchanged - held) / np.maximum(pairs - held, 1)
             usual = float(np.quantile(np.concatenate(windows), 0.1))
             if usual >= MIN_HELD_SHARE and (alone <= MAX_EQUAL_ALONE).all():
                 share[sensor] = held / float(pairs.max() + 1)
@@ -246,6 +250,12 @@ class _Channels:
         noise = np.where(held, self.noise_of_new, self.noise)
         recorded = np.isfinite(noise).any(axis=0)
         return np.where(recorded, np.nanmedian(np.where(recorded, noise, 0.0), axis=0), np.nan)
+
+
+def _held_in_windows(new: Booleans) -> Array:
+    """The share of records in each window that repeat a reading; `new`: those that do not."""
+    whole = len(new) // HELD_WINDOW * HELD_WINDOW
+    return np.asarray(1 - new[:whole].reshape(-1, HELD_WINDOW).mean(axis=1))
 
 
 def _standing_still(new: Booleans) -> Booleans:
