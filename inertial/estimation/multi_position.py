@@ -107,8 +107,8 @@ def free_positions(
     estimate = solve_stepped(held.linearised, held.squares, start)
     if held is not data:
         order = held.linearised(start)[1]
-        vague_too = data.linearised(in_order(estimate, order))[0].solve()
-        estimate = replace(vague_too, values=estimate.values)
+        free = data.linearised(in_order(estimate, order))[0].solve()
+        estimate = replace(free, values=estimate.values)  # with what is known if nothing is held
     directions = dict.fromkeys(estimate.names[FREE + 1 :], DIRECTION_SIGMA)
     vague = dict(zip(estimate.names, PRIOR_SIGMA.tolist(), strict=False))
     return counted(estimate, {**vague, **directions})

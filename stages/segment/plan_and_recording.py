@@ -174,9 +174,13 @@ def _unsteady(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
     rates = {name: own[list(GYRO)].to_numpy(np.float64) for name, own in steady}
     scatter = np.zeros(len(plan))
     for i, m in enumerate(plan):
-        if m.about is not None and len(rates.get(m.name, ())) >= QUARTERS:
-            quarters = np.array_split(rates[m.name] @ m.about, QUARTERS)
-            means = [quarter.mean() for quarter in quarters]
+        if m.about is None or m.name not in rates:
+            continue
+        own = np.flatnonzero(m.about)  # another gyro may have no readings
+        along = rates[m.name][:, own] @ m.about[own]
+        along = along[np.isfinite(along)]
+        if len(along) >= QUARTERS:
+            means = [quarter.mean() for quarter in np.array_split(along, QUARTERS)]
             scatter[i] = np.std(means) / abs(np.mean(means))
     return scatter
 
@@ -264,7 +268,8 @@ def _candidate(m: Manoeuvre, located: Located) -> int | None:
         here = [other.name for other in located.plan].index(m.name)
         places = [located.place(other) for other in located.plan]
         before, behind = ([k for k in p if k is not None] for p in (places[:here], places[here:]))
-        first, after = [-1, *before][-2:][0] + 1, [*behind, after][:2][-1]
+        first = before[-2] + 1 if len(before) > 1 else 0
+        after = behind[1] if len(behind) > 1 else after
         least = (m.seconds or 0.0) / 2
     own = [k for k in range(first, after) if seen[k].moves is (m.do != "rest")]
     own = [k for k in own if seen[k].seconds >= least and k not in located.matched.values()]
