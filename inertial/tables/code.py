@@ -12,6 +12,8 @@ IMPORT = re.compile(
     r"^[ \t]*(?:from|import) ((?:overviews|stages|inertial)[\w.]*)(?: import (\([^)]*\)|.*))?",
     re.MULTILINE,
 )
+# What only a type checker imports changes no result.
+OF_TYPES = re.compile(r"^if TYPE_CHECKING:\n(?:[ \t]+.*\n|\n)+", re.MULTILINE)
 # Schemas and templates lie beside the module that reads them.
 DATA = {".yaml", ".json", ".html", ".css", ".js"}
 TRANSLATIONS = "inertial/text/*.po"
@@ -73,7 +75,8 @@ def _data(folder: Path) -> list[Path]:
 @cache
 def _imports(file: Path) -> list[str]:
     names = []
-    for module, imported in IMPORT.findall(file.read_text(encoding="utf-8")):
+    text = OF_TYPES.sub("", file.read_text(encoding="utf-8"))
+    for module, imported in IMPORT.findall(text):
         names += [module, *(f"{module}.{name}" for name in re.findall(r"\w+", imported))]
     parts = [name.split(".") for name in names]
     # With a module come the packages that it lies in.
