@@ -217,7 +217,7 @@ def steady_part(rate: Array) -> tuple[int, int]:
     A low pass of the gyro, or the drive, settles behind the ramp: rate = plateau (1 - c exp(-t/τ)).
     From the ramp to where that is within the scatter of the bins about the plateau it takes some
     time: in as much time again it becomes less by that factor once more. Where it is within it at
-    once, or never, nothing settles. Where the ramps meet there is no such part: first is after.
+    once, or never, nothing settles. Where the ramps meet there is no such part: it is empty.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def steady_part(rate: Array) -> tuple[int, int]:
 
 
 def _short_plateau(speed: Array, level: float) -> tuple[int, int]:
-    """The bins [first, after) of the rate between two long ramps; first is after where they meet.
+    """The bins [first, after) of the rate between two long ramps; none where they meet.
 
     It is kept for clearly longer than a ramp takes through the same band of rates.
 
