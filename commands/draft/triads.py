@@ -10,15 +10,21 @@ each, and of no other three columns. A magnetometer obeys it too, and better: it
 the hand accelerates.
 """
 
-import re
 from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass, replace
-from itertools import product, takewhile
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
+from commands.draft.column_names import (
+    axes_named,
+    imu_named,
+    is_processed,
+    sensor_named,
+    sensor_of,
+)
 from commands.draft.gravity import sphere
 from commands.draft.raw_log import Name, RawLog
 from inertial.arrays import Array
@@ -36,26 +42,6 @@ OF_GRAVITY = (STANDARD_GRAVITY, 1.0, 1000.0, 100 * STANDARD_GRAVITY)  # 1 g in u
 MAX_GYRO_RATIO = 10.0  # of the mean of gyros of an IMU that is turned over to their scatter
 MIN_COUNTS = 64.0  # in 1 g, else powers of two
 MAX_OFF_GRAVITY = 0.1  # of |f| to these, relative
-NAMED = {
-    "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|_[af][xyz]\b|specific force"),
-    "gyro": re.compile(
-        r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|_[gw][xyz]\b|omega|ang.*(vel|rate)|rotation|turn ?rate"
-        r"|(roll|pitch|yaw)[ _.]?(rate|speed|vel)|rate[ _.]?(of )?(roll|pitch|yaw)"
-    ),
-    "other": re.compile(
-        r"mag|compass|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"
-    ),
-}
-PROCESSED = re.compile(  # by a phone, of its sensors
-    r"user|linear|gravity|motion|(?:^|[ _.])(?:lin|free)", re.IGNORECASE
-)
-OF_SENSOR = re.compile(  # parts of a name that tell sensor or axis, and not which IMU
-    r"acc|gyr|omega|ang|vel|rate|rot|lin|force|^(roll|pitch|yaw|raw|cal)|^[afgw]?[xyz]?$|^[pqr]$"
-)
-AXES_IN_NAMES = (("x", "y", "z"), ("roll", "pitch", "yaw"), ("p", "q", "r"))
-RATES = ("p", "q", "r")  # names of aeronautics: the rates about x, y and z
-UNIT = re.compile(r"[_ ](m?g|m[/p_]?s_?2|m?dps|m?(rad|deg)[/p_]?s)$")  # behind a name
-DIGITS = "0123456789"
 
 
 @dataclass(frozen=True)
@@ -91,19 +77,6 @@ class Triad:
 # ---- By names.
 
 
-def sensor_named(name: str) -> str | None:
-    """The sensor that a name names: accel, gyro, other, or None."""
-    plain = _plain(str(name))
-    return next((kind for kind, pattern in NAMED.items() if pattern.search(plain)), None)
-
-
-def _plain(name: str) -> str:
-    """A name without its unit, in small letters; gyro[0] is gyro0, %float(GyroX) is gyrox."""
-    name = re.sub(r"^\W*%\w+\((\w+)\)\W*$", r"\1", name)
-    name = re.sub(r"\[(\d)\]", r"\1", name)
-    return UNIT.sub("", re.sub(r"[\[(].*", "", name).strip().lower())
-
-
 def threes(
     names: Sequence[Name], clocks: AbstractSet[Name], constant: AbstractSet[Name]
 ) -> tuple[list[tuple[Name, ...]], list[tuple[Name, ...]]]:
@@ -117,7 +90,7 @@ def threes(
     named: dict[tuple[Name, ...], None] = {}
     for left in (changing, there):
         for i in range(len(left) - 2):
-            axes = _axes_named(left[i : i + 3])
+            axes = axes_named(left[i : i + 3])
             if axes and not set(axes) <= constant:
                 named[axes] = None
     without = {*clocks, *constant, *(name for axes in named for name in axes)}
@@ -140,38 +113,6 @@ def _neighbours(names: Sequence[Name], without: AbstractSet[Name]) -> list[list[
             pieces[-1].append(name)
         last = name
     return [piece for piece in pieces if piece]
-
-
-def _axes_named(three: Sequence[Name]) -> tuple[Name, ...]:
-    """Those that are named x, y, z, or by three numbers, of one sensor, in this order; or none.
-
-    The names differ in the axis only: gyro_x, x_gyro, pitch rate. Roll, pitch and yaw alone are
-    angles.
-    """
-    names = [_plain(name) for name in three if isinstance(name, str)]
-    if len(names) < 3:
-        return ()
-    behind = _without_shared_start([name[::-1] for name in _without_shared_start(names)])
-    own = [name[::-1] for name in behind]
-    if all(len(axis) == 1 for axis in own) and "".join(own) in DIGITS:
-        return tuple(three)
-    axes = next((axes for axes in AXES_IN_NAMES if sorted(axes) == sorted(own)), None)
-    if axes is None or (axes[0] != "x" and _sensor_of(three) != "gyro"):
-        return ()
-    return tuple(three[own.index(axis)] for axis in axes)
-
-
-def _without_shared_start(texts: Sequence[str]) -> list[str]:
-    """Texts without the letters that all of them begin with."""
-    letters = zip(*texts, strict=False)  # the shortest ends it
-    shared = sum(1 for _same in takewhile(lambda own: len(set(own)) == 1, letters))
-    return [text[shared:] for text in texts]
-
-
-def _sensor_of(columns: Sequence[Name]) -> str | None:
-    """The sensor that the names of three columns name: accel, gyro, other, or None."""
-    names = [_plain(str(name)) for name in columns]
-    return "gyro" if sorted(names) == list(RATES) else sensor_named(str(columns[0]))
 
 
 def with_bits(group: Sequence[Sequence[RawLog]], triad: Triad) -> Triad:
@@ -234,25 +175,24 @@ def _by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dict[st
         (
             pair
             for pair in pairs
-            if len({name_of_imu(triad) for triad in pair}) == 1
-            and all(_processed(a) == _processed(b) for a, b in zip(pair, pairs[0], strict=True))
+            if len({imu_named(triad.columns[0]) for triad in pair}) == 1
+            and all(
+                is_processed(a.columns[0]) == is_processed(b.columns[0])
+                for a, b in zip(pair, pairs[0], strict=True)
+            )
         ),
         pairs[0],
     )
     return dict(zip(found, best, strict=True))
 
 
-def _processed(triad: Triad) -> bool:
-    return bool(PROCESSED.search(str(triad.columns[0])))
-
-
 def _all_by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dict[str, list[Triad]]:
     """The triads that are named for each sensor, what was processed behind the others."""
     found: dict[str, list[Triad]] = {}
-    for triad in sorted(candidates, key=_processed):
+    for triad in sorted(candidates, key=lambda triad: is_processed(triad.columns[0])):
         kind = sensor_named(triad.rows[1]) if triad.rows else None
         if kind is None and isinstance(triad.columns[0], str):
-            kind = _sensor_of(triad.columns)
+            kind = sensor_of(triad.columns)
         if kind is None and len(candidates) <= len(together):  # the log holds nothing else
             kind = sensor_named(together[triad.file].path.stem)
         if kind in ("accel", "gyro"):
@@ -260,33 +200,24 @@ def _all_by_name(together: Sequence[RawLog], candidates: Sequence[Triad]) -> dic
     return found
 
 
-def name_of_imu(triad: Triad) -> tuple[str, ...]:
-    """What the names of a triad say beside sensor and axis: imu1_ax, left.gyro.x, acc2_z.
-
-    It tells the IMU where a log holds several.
-    """
-    pieces = re.findall(r"[^\W\d_]+|\d+", _plain(str(triad.columns[0])))
-    return tuple(piece for piece in pieces if not OF_SENSOR.search(piece))
-
-
 def other_imus(
     together: Sequence[RawLog], candidates: Sequence[Triad], taken: Sequence[Triad]
 ) -> list[tuple[Triad, Triad]]:
     """Accelerometers and gyros by name, beside those that are taken, of one other IMU each."""
     found = _all_by_name(together, candidates)
-    used = {name_of_imu(triad) for triad in taken}
+    used = {imu_named(triad.columns[0]) for triad in taken}
     return [
         (accel, gyro)
         for accel, gyro in product(found.get("accel", []), found.get("gyro", []))
-        if not (_processed(accel) or _processed(gyro))
-        and name_of_imu(accel) == name_of_imu(gyro)
-        and name_of_imu(accel) not in used
+        if not (is_processed(accel.columns[0]) or is_processed(gyro.columns[0]))
+        and imu_named(accel.columns[0]) == imu_named(gyro.columns[0])
+        and imu_named(accel.columns[0]) not in used
     ]
 
 
 def _named_by(found: Mapping[str, Triad]) -> str:
     """What names the sensors that were found by a name: columns, or files whose columns do not."""
-    of_columns = all(t.rows or _sensor_of(t.columns) for t in found.values())
+    of_columns = all(t.rows or sensor_of(t.columns) for t in found.values())
     return _("by their names") if of_columns else _("by the names of their files")
 
 
