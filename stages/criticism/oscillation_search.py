@@ -58,6 +58,7 @@ class Oscillation:
     p_value : of its detection; mean : over the turns that show it, as a line in time
     lines : its line in each turn; coupled : the other axes of the case
     multiples : further lines of the same cause, at multiples of its frequency or order
+    at_rest : whether it goes on while the table rests
     """
 
     hypotheses: Sequence[Hypothesis]
@@ -66,6 +67,7 @@ class Oscillation:
     lines: Sequence[TurnLine]
     coupled: Sequence[Coupled]
     multiples: Sequence["Oscillation"] = ()
+    at_rest: bool = False
 
     @property
     def likeliest(self) -> Hypothesis:
@@ -371,131 +373,3 @@ def _without(turn: SteadyTurn, frequency: float) -> tuple[SteadyTurn, Taken]:
     ]
     taken = Taken(frequency, max(part.amplitude for part in parts))
     return replace(turn, truth=np.column_stack(residuals)), taken
-
-
-# ---- Removal of the oscillations from the blocks of turns.
-#
-# Where a block holds no whole number of periods the mean of an oscillation over it is not zero,
-# and beats over many blocks: it would be taken for effects that depend on time or angle.
-
-
-def without_lines(
-    blocks: pd.DataFrame,
-    plan: Sequence[Manoeuvre],
-    turns: Sequence[SteadyTurn],
-    lines: Sequence[Oscillation],
-) -> pd.DataFrame:
-    """The same blocks, each line removed from the steady ones with its own phase in each turn.
-
-    From rest to rest an oscillation adds no angle. A ripple of the table does where its order is no
-    integer, or the turn no whole one, which is removed too where one ripple against the angle
-    explains all turns. What else it adds in the steady part is removed while the table accelerates
-    and decelerates. In the rests of a tumble such a ripple is an error of the position.
-    """
-    if not lines:
-        return blocks
-    quiet = blocks.copy()
-    for turn in turns:
-        own = (blocks["manoeuvre"] == turn.name) & (blocks["phase"] == "steady")
-        if own.any() and np.isfinite(turn.start):
-            rates = _means(turn, turn.truth, lines, *_stretches(blocks[own], turn))
-            further = (
-                _further(lines, turn.stated) / float(blocks.loc[own, "seconds"].sum()) * turn.about
-            )
-            quiet.loc[own, GYRO] -= (rates[:-1] - rates[-1] + further) @ turn.matrix.T
-            middle, count = _stretches(blocks[own], turn)
-            in_time = [line for line in lines if line.effects[0] == IN_TIME]
-            quiet.loc[own, ACCEL] -= _means(turn, turn.force, in_time, middle[:-1], count[:-1])
-    for rest in plan:
-        own = blocks["manoeuvre"] == rest.name
-        if rest.tumbled is not None and rest.tumbled.any() and own.any():
-            turned = float(np.linalg.norm(rest.tumbled))
-            further = _further(lines, turned) * rest.tumbled / turned
-            quiet.loc[own, ACCEL] += np.cross(further, blocks.loc[own, ACCEL])
-    return quiet
-
-
-def _further(lines: Sequence[Oscillation], stated: float) -> float:
-    """By how much the table turns further than a stated angle, for its ripples, rad."""
-    further = 0.0
-    for line in (part for cause in lines for part in cause.parts):
-        ripple = line.likeliest.ripple
-        if ripple and line.likeliest.effect != IN_TIME and ripple.common:
-            turned = ripple.order * stated
-            further += float(ripple.values @ [np.sin(turned), np.cos(turned) - 1.0])
-    return further if np.isfinite(further) else 0.0
-
-
-def _stretches(blocks: pd.DataFrame, turn: SteadyTurn) -> tuple[Array, Array]:
-    """The blocks of a steady part, and last the whole of it, what is missing included.
-
-    Returns the middle of each in s since the first sample, and the number of its samples.
-    """
-    middle, seconds = (blocks[name].to_numpy(np.float64) for name in ("time", "seconds"))
-    start, end = middle[0] - seconds[0] / 2, middle[-1] + seconds[-1] / 2
-    count = np.append(blocks["count"].to_numpy(np.float64), round((end - start) / turn.step))
-    return np.append(middle, (start + end) / 2) - turn.start, count
-
-
-def _means(
-    turn: SteadyTurn, samples: Array, lines: Sequence[Oscillation], since: Array, count: Array
-) -> Array:
-    """The means of all lines in the samples of a turn, (n, 3), over k stretches of it, (k, 3).
-
-    `since`, `count`: their middle, s since its first sample, and number of samples. A channel that
-    is not recorded has no line.
-    """
-    left = np.where(np.isfinite(samples).all(axis=0), samples, 0.0)
-    time = turn.step * np.arange(len(left))
-    means = np.zeros((len(since), 3))
-    for line in (part for cause in lines for part in cause.parts):
-        frequency = line.likeliest.frequencies.get(turn.name)
-        if frequency is None:
-            continue
-        half = np.pi * frequency * turn.step
-        share = np.sin(count * half) / (count * np.sin(half))  # of a sum of `count` samples
-        for axis in range(3):
-            amplitude = phasor(left[:, axis], 1 / turn.step, frequency)
-            left[:, axis] -= np.real(amplitude * np.exp(2j * np.pi * frequency * time))
-            means[:, axis] += share * np.real(amplitude * np.exp(2j * np.pi * frequency * since))
-    return means
-
-
-def shifts(
-    data: CampaignData,
-    turns: Sequence[SteadyTurn],
-    oscillations: Sequence[Oscillation],
-    quiet: Campaign,
-) -> list[float | None]:
-    """The largest shift of a parameter by each, in its sigma; None where none is determined.
-
-    `quiet`: the campaign without any of them, in which its random walks and drifts are.
-    """
-    without = _estimate(quiet) if oscillations else None
-    if without is None:
-        return [None] * len(oscillations)
-    largest = []
-    for one in oscillations:
-        others = [other for other in oscillations if other is not one]
-        blocks = without_lines(data.blocks, data.plan, turns, others)
-        made = campaign_of(replace(data, blocks=blocks))
-        present = _estimate(replace(made, solution=quiet.solution, drifts=quiet.drifts))
-        largest.append(None if present is None else _largest(without, present))
-    return largest
-
-
-def _estimate(campaign: Campaign) -> Estimate | None:
-    system = campaign.system("gyro", [], 1.0)
-    return None if system is None else system.solve_shared()
-
-
-def _largest(without: Estimate, present: Estimate) -> float | None:
-    own = [
-        i
-        for i, (kind, _) in enumerate(present.names)
-        if kind == "parameter" and present.determined[i]
-    ]
-    if not own or without.names != present.names:
-        return None
-    shift = np.abs(present.values - without.values) / present.sigma
-    return float(shift[own].max())

@@ -38,6 +38,9 @@ VIBRATION = _(
     "logs, or an alias of it at {rate} Hz sampling; {amplitude} °/s ({arc:.1f}″ at this "
     "frequency), in {manoeuvres}."
 )
+AT_REST = _(
+    " It goes on while the table rests: a vibration of the site, or a disturbance within the sensor."
+)
 IN_ANGLE = _(" It is periodic in the table's angle: {order} per revolution.")
 RIPPLE = _("The table's rate has a ripple {order} per revolution, of {size} of its angle, {turns}.")
 ECCENTRIC = _("The angle of the table has an error once per revolution, of {size}, {turns}.")
@@ -95,6 +98,10 @@ ACTION_ANGLE = _("Turn by whole turns; look at the table's gear, motor, bearing 
 ACTION_TIME = _(
     "Turn by whole turns; look for what vibrates: the drive, a loose screw, the mounting."
 )
+ACTION_AT_REST = _(
+    "Turn by whole turns; look for what vibrates near the table at rest too, and for mains or a "
+    "pump that couples into the sensor."
+)
 
 NOT_SEARCHED = _("{effect}: not searched for after {count} named oscillations.")
 NOT_OBSERVABLE = _("{effect}: not observable in this campaign: {reason}.")
@@ -129,6 +136,8 @@ def of_oscillation(oscillation: Oscillation, turns: Sequence[SteadyTurn]) -> str
     )
     if oscillation.likeliest.bound_to == ANGLE and oscillation.ripple is not None:
         sentence += IN_ANGLE.format(order=_order(oscillation.ripple))
+    if oscillation.at_rest:
+        sentence += AT_REST
     return (
         sentence
         + _multiples(oscillation)
@@ -189,7 +198,9 @@ def action(oscillation: Oscillation) -> str:
     """What to do about it."""
     if len(oscillation.effects) > 1:
         return ACTION_UNDECIDED.format(split=SPLIT)
-    return ACTION_ANGLE if oscillation.likeliest.bound_to == ANGLE else ACTION_TIME
+    if oscillation.likeliest.bound_to == ANGLE:
+        return ACTION_ANGLE
+    return ACTION_AT_REST if oscillation.at_rest else ACTION_TIME
 
 
 def not_searched(effect: str, count: int) -> str:

@@ -22,8 +22,9 @@ from stages.criticism.declared import DECLARED
 from stages.criticism.drift_at_rest import select_beside_drift
 from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.law_selection import with_laws
+from stages.criticism.oscillation_removal import shifts, with_rests, without_lines
 from stages.criticism.oscillation_results import OscillationResults
-from stages.criticism.oscillation_search import find_oscillations, shifts, without_lines
+from stages.criticism.oscillation_search import find_oscillations
 from stages.criticism.pooled_evidence import pooled_evidence_rows
 from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
@@ -70,6 +71,7 @@ def _of_mount(
     mount, degrees = data.mount, data.noise.degrees
     turns = steady_turns(data, simulated)
     spectrum = find_oscillations(turns, level * SPECTRUM_SHARE, lowest_hz)
+    spectrum = replace(spectrum, oscillations=with_rests(data, turns, spectrum.oscillations))
     quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
     measured = campaign_of(replace(data, blocks=quiet))
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]

@@ -1,0 +1,226 @@
+"""Removal of oscillations from the blocks of a mount, and what each moves in the joint result."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from inertial.arrays import Array
+from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.equations import Campaign
+from inertial.campaign.observations import campaign_of
+from inertial.campaign.records import Manoeuvre
+from inertial.campaign.steady_residuals import SteadyTurn
+from inertial.estimation.least_squares import Estimate
+from inertial.estimation.periodic_in_time import phasor
+from inertial.tables import ACCEL, GYRO
+from stages.criticism.oscillation_hypotheses import IN_TIME, MIN_LOG_ODDS
+from stages.criticism.oscillation_search import Oscillation
+
+MIN_BLOCKS = 8  # of a rest, in which a line is fitted
+MIN_APART = 0.3  # of a line in the blocks of a rest, that is no constant there
+
+# ---- Removal of the oscillations from the blocks of turns.
+#
+# Where a block holds no whole number of periods the mean of an oscillation over it is not zero,
+# and beats over many blocks: it would be taken for effects that depend on time or angle.
+
+
+def without_lines(
+    blocks: pd.DataFrame,
+    plan: Sequence[Manoeuvre],
+    turns: Sequence[SteadyTurn],
+    lines: Sequence[Oscillation],
+) -> pd.DataFrame:
+    """The same blocks, each line removed from the steady ones with its own phase in each turn.
+
+    An oscillation of the case adds no angle from rest to rest; what goes on at rest is removed from
+    ramps and rests too. A ripple of the table adds angle where its order is no
+    integer, or the turn no whole one, which is removed too where one ripple against the angle
+    explains all turns. What else it adds in the steady part is removed while the table accelerates
+    and decelerates. In the rests of a tumble such a ripple is an error of the position.
+    """
+    if not lines:
+        return blocks
+    quiet = blocks.copy()
+    for turn in turns:
+        own = blocks["manoeuvre"] == turn.name
+        steady = own & (blocks["phase"] == "steady")
+        if not steady.any() or not np.isfinite(turn.start):
+            continue
+        further = _further(lines, turn.stated) / float(blocks.loc[steady, "seconds"].sum())
+        quiet.loc[steady, GYRO] -= further * turn.about @ turn.matrix.T
+        stretches, everywhere = _with_the_whole(blocks[steady], turn), _stretches(blocks[own], turn)
+        for line, rates in _lines(turn, turn.truth, lines):
+            if line.at_rest:
+                quiet.loc[own, GYRO] -= rates.means(*everywhere) @ turn.matrix.T
+            else:
+                means = rates.means(*stretches)
+                quiet.loc[steady, GYRO] -= (means[:-1] - means[-1]) @ turn.matrix.T
+        in_time = [line for line in lines if line.effects[0] == IN_TIME]
+        for line, forces in _lines(turn, turn.force, in_time):
+            part = own if line.at_rest else steady
+            quiet.loc[part, ACCEL] -= forces.means(*_stretches(blocks[part], turn))
+    at_rest = [part for one in lines if one.at_rest for part in one.parts]
+    for rest in plan:
+        own = blocks["manoeuvre"] == rest.name
+        if rest.do == "rest":
+            for part in at_rest:
+                quiet.loc[own, [*GYRO, *ACCEL]] -= _seen_at_rest(part, quiet[own], turns[0].step)
+        if rest.tumbled is not None and rest.tumbled.any() and own.any():
+            turned = float(np.linalg.norm(rest.tumbled))
+            further = _further(lines, turned) * rest.tumbled / turned
+            quiet.loc[own, ACCEL] += np.cross(further, blocks.loc[own, ACCEL])
+    return quiet
+
+
+def _further(lines: Sequence[Oscillation], stated: float) -> float:
+    """By how much the table turns further than a stated angle, for its ripples, rad."""
+    further = 0.0
+    for line in (part for cause in lines for part in cause.parts):
+        ripple = line.likeliest.ripple
+        if ripple and line.likeliest.effect != IN_TIME and ripple.common:
+            turned = ripple.order * stated
+            further += float(ripple.values @ [np.sin(turned), np.cos(turned) - 1.0])
+    return further if np.isfinite(further) else 0.0
+
+
+def _stretches(blocks: pd.DataFrame, turn: SteadyTurn) -> tuple[Array, Array]:
+    """The middle of each block, (k,), s since the first sample of a turn, and its samples."""
+    return (
+        blocks["time"].to_numpy(np.float64) - turn.start,
+        blocks["count"].to_numpy(np.float64),
+    )
+
+
+def _with_the_whole(steady: pd.DataFrame, turn: SteadyTurn) -> tuple[Array, Array]:
+    """The blocks of a steady part, and last the whole of it, what is missing included."""
+    middle, count = _stretches(steady, turn)
+    half = steady["seconds"].to_numpy(np.float64) / 2
+    start, end = middle[0] - half[0], middle[-1] + half[-1]
+    return np.append(middle, (start + end) / 2), np.append(count, round((end - start) / turn.step))
+
+
+@dataclass(frozen=True)
+class _Line:
+    """A line in the three channels of a turn: Hz, and complex amplitudes, (3,)."""
+
+    frequency: float
+    amplitudes: NDArray[np.complex128]
+    step: float
+
+    def at(self, since: Array) -> Array:
+        """Its values, (n, 3), at times since the first sample of the turn, s."""
+        turned = np.exp(2j * np.pi * self.frequency * since)
+        return np.asarray(np.real(turned[:, None] * self.amplitudes))
+
+    def means(self, since: Array, count: Array) -> Array:
+        """Its means, (k, 3), over stretches of `count` samples about `since`."""
+        half = np.pi * self.frequency * self.step
+        share = np.sin(count * half) / (count * np.sin(half))  # of a sum of `count` samples
+        return share[:, None] * self.at(since)
+
+
+def _lines(
+    turn: SteadyTurn, samples: Array, oscillations: Sequence[Oscillation]
+) -> Iterator[tuple[Oscillation, _Line]]:
+    """The lines of oscillations and their multiples in the samples of a turn, (n, 3).
+
+    A channel that is not recorded has no line.
+    """
+    left = np.where(np.isfinite(samples).all(axis=0), samples, 0.0)
+    time = turn.step * np.arange(len(left))
+    for one in oscillations:
+        for part in one.parts:
+            frequency = part.likeliest.frequencies.get(turn.name)
+            if frequency is None:
+                continue
+            amplitudes = [phasor(left[:, axis], 1 / turn.step, frequency) for axis in range(3)]
+            line = _Line(frequency, np.array(amplitudes), turn.step)
+            left = left - line.at(time)
+            yield one, line
+
+
+def _seen_at_rest(line: Oscillation, blocks: pd.DataFrame, step: float) -> Array:
+    """The means of a line in all channels of the blocks of a rest, (k, 6), by its frequency.
+
+    None where the blocks show it as slow as a constant.
+    """
+    frequency = line.mean.frequency
+    time, count = blocks["time"].to_numpy(np.float64), blocks["count"].to_numpy(np.float64)
+    both = _Line(frequency, np.array([1.0, 1j, 0.0]), step).means(time - time.mean(), count)[:, :2]
+    read = blocks[[*GYRO, *ACCEL]].to_numpy(np.float64)
+    apart = both - both.mean(axis=0)
+    if len(both) < MIN_BLOCKS or np.linalg.norm(apart, -2) < MIN_APART * np.linalg.norm(both, 2):
+        return np.zeros_like(read)
+    known = np.where(np.isfinite(read).all(axis=0), read, 0.0)
+    return np.asarray(both @ np.linalg.lstsq(apart, known - known.mean(axis=0))[0])
+
+
+# ---- Whether an oscillation goes on at rest, and what each moves in the joint result.
+
+
+def with_rests(
+    data: CampaignData, turns: Sequence[SteadyTurn], oscillations: Sequence[Oscillation]
+) -> Sequence[Oscillation]:
+    """The same oscillations, those in time known to go on at rest, by what explains the blocks."""
+    known = list(oscillations)
+    explained = _deviance(data, turns, known)
+    for i, one in enumerate(oscillations):
+        if one.effects[0] == IN_TIME:
+            tried = [*known[:i], replace(one, at_rest=True), *known[i + 1 :]]
+            deviance = _deviance(data, turns, tried)
+            if explained - deviance > 2 * MIN_LOG_ODDS:
+                known, explained = tried, deviance
+    return known
+
+
+def _deviance(
+    data: CampaignData, turns: Sequence[SteadyTurn], lines: Sequence[Oscillation]
+) -> float:
+    """The chi-squared of both sensors without these lines."""
+    blocks = without_lines(data.blocks, data.plan, turns, lines)
+    systems = campaign_of(replace(data, blocks=blocks)).systems([], 1.0)
+    return sum(system.solve_shared().chi_squared for system in systems if system)
+
+
+def shifts(
+    data: CampaignData,
+    turns: Sequence[SteadyTurn],
+    oscillations: Sequence[Oscillation],
+    quiet: Campaign,
+) -> list[float | None]:
+    """The largest shift of a parameter by each, in its sigma; None where none is determined.
+
+    `quiet`: the campaign without any of them, in which its random walks and drifts are.
+    """
+    without = _estimate(quiet) if oscillations else None
+    if without is None:
+        return [None] * len(oscillations)
+    largest = []
+    for one in oscillations:
+        others = [other for other in oscillations if other is not one]
+        blocks = without_lines(data.blocks, data.plan, turns, others)
+        made = campaign_of(replace(data, blocks=blocks))
+        present = _estimate(replace(made, solution=quiet.solution, drifts=quiet.drifts))
+        largest.append(None if present is None else _largest(without, present))
+    return largest
+
+
+def _estimate(campaign: Campaign) -> Estimate | None:
+    system = campaign.system("gyro", [], 1.0)
+    return None if system is None else system.solve_shared()
+
+
+def _largest(without: Estimate, present: Estimate) -> float | None:
+    own = [
+        i
+        for i, (kind, _) in enumerate(present.names)
+        if kind == "parameter" and present.determined[i]
+    ]
+    if not own or without.names != present.names:
+        return None
+    shift = np.abs(present.values - without.values) / present.sigma
+    return float(shift[own].max())
