@@ -87,7 +87,10 @@ def of_the_turns(
     handling: Document, manoeuvres: Sequence[Manoeuvre], effects: Sequence[Effect]
 ) -> Iterator[Complaint]:
     """Turns that effects make longer than the rest after them allows."""
-    delay = sum(effect.gyro_delay() for effect in effects)
+    delay = max(
+        sum(effect.gyro_delay() for effect in effects),
+        sum(effect.accelerometer_delay() for effect in effects),
+    )
     for manoeuvre in manoeuvres:
         planned = manoeuvre.profile
         actual = reduce(lambda profile, effect: effect.actual_profile(profile), effects, planned)

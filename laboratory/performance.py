@@ -88,7 +88,10 @@ def record_log(
     generators = {name: specification.chance.stream("noise", name, log) for name in effects}
     for name, effect in effects.items():
         effect.begin_log(generators[name])
-    delay = sum(effect.gyro_delay() for effect in effects.values())
+    late = {
+        "gyro": sum(effect.gyro_delay() for effect in effects.values()),
+        "accelerometer": sum(effect.accelerometer_delay() for effect in effects.values()),
+    }
     truths: list[Truth] = []
     readings: list[Reading] = []
     noises: list[Reading] = []
@@ -103,11 +106,12 @@ def record_log(
         instants = Instants(start, segment.samples, interval)
         truth = truth_of(segment, instants, site, sensors, temperature, effects)
         reading = noiseless_increments(truth, sensors, effects)
-        if delay:  # the gyros read the past
-            before = truth_of(
-                segment, replace(instants, late=delay), site, sensors, temperature, effects
-            )
-            reading = replace(reading, gyro=noiseless_increments(before, sensors, effects).gyro)
+        for sensor, delay in late.items():
+            if delay:  # it reads the past
+                past = replace(instants, late=delay)
+                before = truth_of(segment, past, site, sensors, temperature, effects)
+                of_past = getattr(noiseless_increments(before, sensors, effects), sensor)
+                reading = replace(reading, **{sensor: of_past})
         if encoder is not None:
             scale.append(turned + encoder.course(segment, instants, effects.values()))
             turned = float(scale[-1][-1])

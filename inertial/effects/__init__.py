@@ -10,6 +10,7 @@ from inertial.effects.accel_bias_temperature import AccelBiasTemperature
 from inertial.effects.accel_cross_products import AccelCrossProducts
 from inertial.effects.accel_cubic import AccelCubic
 from inertial.effects.accel_hysteresis import AccelHysteresis
+from inertial.effects.accel_latency import AccelLatency
 from inertial.effects.accel_quadratic import AccelQuadratic
 from inertial.effects.accel_saturation import AccelSaturation
 from inertial.effects.accel_scale_asymmetry import AccelScaleAsymmetry
@@ -101,6 +102,7 @@ CATALOGUE: dict[str, Effect] = {
         AccelVibrationRectification(),
         AccelHysteresis(),
         AccelSaturation(),
+        AccelLatency(),
         # the case
         LeverArm(),
         SizeEffect(),

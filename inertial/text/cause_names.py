@@ -13,6 +13,7 @@ NAMES = {
     "gyro_flicker": _("gyro flicker"),
     "gyro_saturation": _("gyro saturation"),
     "gyro_latency": _("gyro latency"),
+    "accel_latency": _("delay between accelerometers and gyros"),
     "lever_arm": _("lever arm"),
     "table_tilt": _("table tilt"),
     "table_wobble": _("table wobble"),

@@ -13,6 +13,7 @@ from laboratory.effects.accel_bias_temperature import AccelBiasTemperature
 from laboratory.effects.accel_cross_products import AccelCrossProducts
 from laboratory.effects.accel_cubic import AccelCubic
 from laboratory.effects.accel_hysteresis import AccelHysteresis
+from laboratory.effects.accel_latency import AccelLatency
 from laboratory.effects.accel_quadratic import AccelQuadratic
 from laboratory.effects.accel_saturation import AccelSaturation
 from laboratory.effects.accel_scale_asymmetry import AccelScaleAsymmetry
@@ -137,6 +138,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_low_pass": GyroLowPass.specified,
     "gyro_saturation": GyroSaturation.specified,
     "gyro_latency": GyroLatency.specified,
+    "accel_latency": AccelLatency.specified,
     # both
     "turn_on_bias": TurnOnBias.specified,
     "mounting_shift": MountingShift.specified,

@@ -91,6 +91,10 @@ class Effect:
         """Delay of the gyros, s."""
         return 0.0
 
+    def accelerometer_delay(self) -> float:
+        """Delay of the accelerometers, s."""
+        return 0.0
+
     def extra_force(self, motion: Motion, sensors: Sensors) -> ExtraForce | None:
         """Additional specific force that the motion causes."""
         return None

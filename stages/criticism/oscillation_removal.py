@@ -46,33 +46,45 @@ def without_lines(
         return blocks
     quiet = blocks.copy()
     for turn in turns:
-        own = blocks["manoeuvre"] == turn.name
-        steady = own & (blocks["phase"] == "steady")
-        if not steady.any() or not np.isfinite(turn.start):
-            continue
-        further = _further(lines, turn.stated) / float(blocks.loc[steady, "seconds"].sum())
-        quiet.loc[steady, GYRO] -= further * turn.about @ turn.matrix.T
-        stretches, everywhere = _with_the_whole(blocks[steady], turn), _stretches(blocks[own], turn)
-        for line, rates in _lines(turn, turn.truth, lines):
-            if line.at_rest:
-                quiet.loc[own, GYRO] -= rates.means(*everywhere) @ turn.matrix.T
-            else:
-                means = rates.means(*stretches)
-                quiet.loc[steady, GYRO] -= (means[:-1] - means[-1]) @ turn.matrix.T
-        in_time = [line for line in lines if line.effects[0] == IN_TIME]
-        for line, forces in _lines(turn, turn.force, in_time):
-            part = own if line.at_rest else steady
-            quiet.loc[part, ACCEL] -= forces.means(*_stretches(blocks[part], turn))
-    at_rest = [part for one in lines if one.at_rest for part in one.parts]
+        own = (blocks["manoeuvre"] == turn.name).to_numpy()
+        if (own & (blocks["phase"] == "steady")).any() and np.isfinite(turn.start):
+            quiet.loc[own] = _of_turn(blocks[own], turn, lines)
     for rest in plan:
-        own = blocks["manoeuvre"] == rest.name
-        if rest.do == "rest":
-            for part in at_rest:
-                quiet.loc[own, [*GYRO, *ACCEL]] -= _seen_at_rest(part, quiet[own], turns[0].step)
-        if rest.tumbled is not None and rest.tumbled.any() and own.any():
-            turned = float(np.linalg.norm(rest.tumbled))
-            further = _further(lines, turned) * rest.tumbled / turned
-            quiet.loc[own, ACCEL] += np.cross(further, blocks.loc[own, ACCEL])
+        own = (blocks["manoeuvre"] == rest.name).to_numpy()
+        if rest.do == "rest" and own.any():
+            quiet.loc[own] = _of_rest(blocks[own], rest, lines, turns[0].step)
+    return quiet
+
+
+def _of_turn(blocks: pd.DataFrame, turn: SteadyTurn, lines: Sequence[Oscillation]) -> pd.DataFrame:
+    """The blocks of a turn without lines."""
+    quiet, steady = blocks.copy(), (blocks["phase"] == "steady").to_numpy()
+    further = _further(lines, turn.stated) / float(blocks.loc[steady, "seconds"].sum())
+    quiet.loc[steady, GYRO] -= further * turn.about @ turn.matrix.T
+    for line, rates in _lines(turn, turn.truth, lines):
+        if line.at_rest:
+            quiet[GYRO] -= rates.means(*_stretches(blocks, turn)) @ turn.matrix.T
+        else:
+            means = rates.means(*_with_the_whole(blocks[steady], turn))
+            quiet.loc[steady, GYRO] -= (means[:-1] - means[-1]) @ turn.matrix.T
+    in_time = [line for line in lines if line.effects[0] == IN_TIME]
+    for line, forces in _lines(turn, turn.force, in_time):
+        part = np.full(len(blocks), True) if line.at_rest else steady
+        quiet.loc[part, ACCEL] -= forces.means(*_stretches(blocks[part], turn))
+    return quiet
+
+
+def _of_rest(
+    blocks: pd.DataFrame, rest: Manoeuvre, lines: Sequence[Oscillation], step: float
+) -> pd.DataFrame:
+    """The blocks of a rest without lines; `step`: s, of a sample."""
+    quiet = blocks.copy()
+    for part in (part for one in lines if one.at_rest for part in one.parts):
+        quiet[[*GYRO, *ACCEL]] -= _seen_at_rest(part, quiet, step)
+    if rest.tumbled is not None and rest.tumbled.any():
+        turned = float(np.linalg.norm(rest.tumbled))
+        further = _further(lines, turned) * rest.tumbled / turned
+        quiet[ACCEL] += np.cross(further, blocks[ACCEL])
     return quiet
 
 
@@ -89,10 +101,8 @@ def _further(lines: Sequence[Oscillation], stated: float) -> float:
 
 def _stretches(blocks: pd.DataFrame, turn: SteadyTurn) -> tuple[Array, Array]:
     """The middle of each block, (k,), s since the first sample of a turn, and its samples."""
-    return (
-        blocks["time"].to_numpy(np.float64) - turn.start,
-        blocks["count"].to_numpy(np.float64),
-    )
+    middle, count = (blocks[name].to_numpy(np.float64) for name in ("time", "count"))
+    return middle - turn.start, count
 
 
 def _with_the_whole(steady: pd.DataFrame, turn: SteadyTurn) -> tuple[Array, Array]:
@@ -120,7 +130,7 @@ class _Line:
         """Its means, (k, 3), over stretches of `count` samples about `since`."""
         half = np.pi * self.frequency * self.step
         share = np.sin(count * half) / (count * np.sin(half))  # of a sum of `count` samples
-        return share[:, None] * self.at(since)
+        return np.asarray(share[:, None] * self.at(since))
 
 
 def _lines(
@@ -131,7 +141,7 @@ def _lines(
     A channel that is not recorded has no line.
     """
     left = np.where(np.isfinite(samples).all(axis=0), samples, 0.0)
-    time = turn.step * np.arange(len(left))
+    time = np.asarray(turn.step * np.arange(len(left)), dtype=np.float64)
     for one in oscillations:
         for part in one.parts:
             frequency = part.likeliest.frequencies.get(turn.name)
@@ -148,9 +158,9 @@ def _seen_at_rest(line: Oscillation, blocks: pd.DataFrame, step: float) -> Array
 
     None where the blocks show it as slow as a constant.
     """
-    frequency = line.mean.frequency
-    time, count = blocks["time"].to_numpy(np.float64), blocks["count"].to_numpy(np.float64)
-    both = _Line(frequency, np.array([1.0, 1j, 0.0]), step).means(time - time.mean(), count)[:, :2]
+    time, count = (blocks[name].to_numpy(np.float64) for name in ("time", "count"))
+    parts = _Line(line.mean.frequency, np.array([1.0, 1j, 0.0]), step)
+    both = parts.means(np.asarray(time - time.mean()), count)[:, :2]
     read = blocks[[*GYRO, *ACCEL]].to_numpy(np.float64)
     apart = both - both.mean(axis=0)
     if len(both) < MIN_BLOCKS or np.linalg.norm(apart, -2) < MIN_APART * np.linalg.norm(both, 2):

@@ -5,18 +5,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import pandas as pd
 
 from inertial.arrays import Array
-from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.equations import Campaign
-from inertial.campaign.observations import campaign_of
-from inertial.campaign.records import Manoeuvre
 from inertial.campaign.steady_residuals import SteadyTurn
-from inertial.estimation.least_squares import Estimate
 from inertial.estimation.periodic_in_angle import Orders, Ripple, detection_limit, search
-from inertial.estimation.periodic_in_time import Taken, line_at, phasor, without_line
-from inertial.tables import ACCEL, AXES, GYRO
+from inertial.estimation.periodic_in_time import Taken, line_at, without_line
+from inertial.tables import AXES
 from stages.criticism.oscillation_fits import (
     Coupled,
     Detection,

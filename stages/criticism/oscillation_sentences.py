@@ -39,7 +39,7 @@ VIBRATION = _(
     "frequency), in {manoeuvres}."
 )
 AT_REST = _(
-    " It goes on while the table rests: a vibration of the site, or a disturbance within the sensor."
+    " It goes on while the table rests: the site vibrates, or a disturbance acts within the sensor."
 )
 IN_ANGLE = _(" It is periodic in the table's angle: {order} per revolution.")
 RIPPLE = _("The table's rate has a ripple {order} per revolution, of {size} of its angle, {turns}.")

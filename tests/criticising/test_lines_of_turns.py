@@ -13,8 +13,8 @@ from residuals_of_turns import ARC_SECOND, MATRIX, NOISE, line, locked, turns
 
 from inertial import tables
 from inertial.campaign.steady_residuals import SteadyTurn
-from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_removal import without_lines
+from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations
 
 LEVEL = 1e-3  # of the spectrum: a tenth of the accepted one in a hundred

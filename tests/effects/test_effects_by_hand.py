@@ -148,6 +148,14 @@ def test_late_gyros_say_what_was_so_much_earlier():
     assert not accel.any()
 
 
+def test_late_accelerometers_say_what_was_so_much_earlier():
+    gyro, accel = acted("accel_latency", [2 * STEP], on_a_turn(ANGLES, EAST))
+    _, felt = sensed(AT_START * Rotation.from_rotvec(ANGLES[:, None] * EAST))
+    earlier = felt[:-2] - felt[2:]  # centred, as by τ df/dt
+    np.testing.assert_allclose(accel[2:-2], earlier, atol=3e-3 * np.abs(earlier).max())
+    assert np.abs(earlier).max() > 1e-3 and not gyro.any()
+
+
 @pytest.mark.parametrize("order", [1.0, 7.25])
 def test_a_ripple_is_the_change_of_what_the_table_is_ahead(order):
     moved = on_a_turn(ANGLES)

@@ -1,4 +1,4 @@
-"""A turn about a level axis in the laboratory: clean, and 200″ too far."""
+"""Turns about a level axis in the laboratory: clean, one 200″ too far, a sensor late."""
 
 from typing import Any
 
@@ -39,4 +39,20 @@ def test_one_that_goes_too_far_is_named_alone_and_takes_no_result():
     (delta,) = effects[effects["parameter"] == "delta"].to_dict("records")
     further = FURTHER * 4.84814e-6
     assert abs(delta["value"] - further) < 4 * delta["sigma"] < further / 10
+    assert not results["diagnosis/verdict"]["verdict"].eq("not_usable").any()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("effect", "lag", "behind"),
+    [("accel_latency", 1.0, 1e-3), ("accel_latency", 12.0, 12e-3), ("gyro_latency", 3.0, -3e-3)],
+)
+def test_a_sensor_that_is_late_against_the_other_is_named_alone(effect, lag, behind):
+    """Gravity comes into an axis so much later, or earlier, than the gyros tell: 10 °/s · τ."""
+    results = chain.in_memory_of(document(**{effect: {"lag_ms": lag}}), "diagnosis", chain.BESIDE)
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] == "accel_latency"
+    effects = results["criticism/effects"].query("effect == 'accel_latency'")
+    (tau,) = effects[effects["parameter"] == "tau"].to_dict("records")
+    assert abs(tau["value"] - behind) < 4 * tau["sigma"] < 2e-4
     assert not results["diagnosis/verdict"]["verdict"].eq("not_usable").any()

@@ -128,6 +128,7 @@ ABSORBED: Mapping[str, Callable[[float], dict[str, Any]]] = {
     "table_angle_scale": lambda u: {"scale_ppm": 10 * u},
     "gyro_accel_misalignment": lambda u: {"rotation_mrad": [u, -u, 0.5 * u]},
     "gyro_latency": lambda u: {"lag_ms": 3 * abs(u)},
+    "accel_latency": lambda u: {"lag_ms": 3 * abs(u)},
     "table_position_error": lambda u: {"sigma_arcsec": 2 * abs(u)},
     "accel_vibration_rectification": lambda u: {
         "k_micro_g_g2": [100 * u, 0, -100 * u],

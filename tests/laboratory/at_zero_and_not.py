@@ -107,6 +107,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     "gyro_saturation": ({"limit_deg_s": [300] * 3}, {"limit_deg_s": [30] * 3}),
     "gyro_low_pass": ({"time_constant_ms": ZERO}, {"time_constant_ms": [20, 0, 0]}),
     "gyro_latency": ({"lag_ms": 0}, {"lag_ms": 2}),
+    "accel_latency": ({"lag_ms": 0}, {"lag_ms": 2}),
     "turn_on_bias": ({"gyro_deg_h": 0}, {"gyro_deg_h": 1, "accelerometer_micro_g": 1}),
     "temperature_curves": (
         {"gyro": {"bias_deg_h": {"x": {"powers": [0, 0]}}}},
