@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 import test_history as archive
 from scipy import stats
+from scipy.spatial.transform import Rotation
 
 from inertial.campaign.references import References
 from inertial.tables.errors import Refusal
 from overviews.compare.page import as_text, comparison_page
 from overviews.compare.pair import READ, pair_of_campaigns
+from overviews.compare.remounted import remounted
 from overviews.compare.shared import Shared
 from overviews.history.page import due_in_words, history_page
 from overviews.index.page import Without, index_page
@@ -221,18 +223,23 @@ def test_other_parameters_share_it_only_where_the_plans_are_the_same():
 
 
 DRIFT = (4e-6, 0.0, 0.0)  # rad/s, of the biases of the gyros
+TURNED = np.radians([0.12, -0.3, 0.05])  # of the IMU in its mounting
 
 
 @pytest.fixture(scope="module")
 def calibrated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Tables, ...]:
-    """Two short campaigns of one IMU, the second with another gyro bias."""
+    """Short campaigns of one IMU, the second with another gyro bias, the third remounted."""
     made, place = [], tmp_path_factory.mktemp("pair")
-    for seed in (5, 6):
+    for seed in (5, 6, 7):
         document = chain.short(seed=seed)
         document["campaign"]["site"] = {"latitude_deg": 48.15, "height_m": 520}
         gyro = document["truth"]["gyro"]
         if seed == 6:
             gyro["bias_rad_s"] = [b + d for b, d in zip(gyro["bias_rad_s"], DRIFT, strict=True)]
+        for sensor in ("gyro", "accelerometer") if seed == 7 else ():
+            matrix = np.array(document["truth"][sensor]["matrix"])
+            turned = matrix @ Rotation.from_rotvec(TURNED).inv().as_matrix()
+            document["truth"][sensor]["matrix"] = turned.tolist()
         raw, derived = chain.simulate(document, place / f"raw/{seed}"), place / f"derived/{seed}"
         chain.run(raw, derived, "compensation", chain.BESIDE)
         made.append(of_campaign(derived, READ))
@@ -241,7 +248,8 @@ def calibrated(tmp_path_factory: pytest.TempPathFactory) -> tuple[Tables, ...]:
 
 @pytest.mark.slow
 def test_two_simulated_campaigns_differ_by_what_was_changed_and_nothing_else(calibrated):
-    pair = pair_of_campaigns(("one", "two"), calibrated, LEVEL)
+    pair = pair_of_campaigns(("one", "two"), calibrated[:2], LEVEL)
+    assert not list(remounted(pair))
     by_name = {one.key[1:]: one for one in pair.compared if one.effect is None}
     assert len(by_name) == 24
     moved = by_name["gyro", "bias_x"]
@@ -259,3 +267,14 @@ def test_two_simulated_campaigns_differ_by_what_was_changed_and_nothing_else(cal
     assert "<script" not in html and "1 of 24 values differ" in html
     text = as_text(pair)
     assert "bias_x *" in text and max(map(len, text.splitlines())) < 160
+
+
+@pytest.mark.slow
+def test_an_imu_that_was_mounted_anew_is_said_to_be_turned_and_nothing_else(calibrated):
+    pair = pair_of_campaigns(("one", "three"), (calibrated[0], calibrated[2]), LEVEL)
+    (found,) = remounted(pair)
+    assert np.abs(found.rotation - TURNED).max() < 4 * found.sigma.max() < 1e-4
+    assert found.count == 18 and found.before > 1e4 and not found.still
+    assert stats.chi2.sf(found.after, 15) > 1e-3
+    text = " ".join(as_text(pair).split())
+    assert "turned alike" in text and "Beside it no element differs" in text

@@ -13,6 +13,7 @@ from inertial.text.typography import capital
 from inertial.text.units import Unit
 from overviews.compare.circumstances import Line, conditions, settings
 from overviews.compare.pair import READ, Compared, Pair
+from overviews.compare.remounted import in_words, remounted
 from overviews.compare.shared import in_sentences
 from overviews.tables_of import files_of, made_from
 from stages.report import outline
@@ -107,6 +108,8 @@ def remarks(pair: Pair) -> Iterator[outline.Paragraph]:
                     p=numbers.p_is(p_value),
                 )
             )
+    for found in remounted(pair):
+        yield outline.Paragraph(with_mount(in_words(found), found.mount), "fair")
     for sentence in in_sentences(pair.shared, pair.names) if not pair.common_logs else ():
         yield outline.Paragraph(sentence)
 

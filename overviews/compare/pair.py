@@ -74,13 +74,17 @@ class Compared:
 
 @dataclass(frozen=True)
 class Pair:
-    """Two campaigns with their tables, and what they are compared by."""
+    """Two campaigns with their tables, and what they are compared by.
+
+    `level`: chance of calling any difference more than chance.
+    """
 
     names: tuple[str, str]
     tables: tuple[Tables, Tables]
     shared: Shared
     compared: tuple[Compared, ...]
     common_logs: tuple[str, ...]
+    level: float
 
     def of(self, sensor: str) -> list[Compared]:
         """The parameters of a sensor, effects left out."""
@@ -96,9 +100,7 @@ class Pair:
         rows = [one for one in self.of(sensor) if one.in_sigmas is not None]
         if not rows:
             return None
-        each = [self._covariance(which, rows) for which in (0, 1)]
-        moved = [self._by_gravity(which, rows, own) for which, own in enumerate(each)]
-        covariance = each[0] + each[1] - np.outer(*moved) - np.outer(*moved[::-1])
+        covariance = self.covariance_of_differences(rows)
         scale = np.sqrt(np.diag(covariance).clip(1e-300))
         correlation = covariance / np.outer(scale, scale)
         if np.linalg.eigvalsh(correlation)[0] < MIN_EIGENVALUE:
@@ -106,6 +108,12 @@ class Pair:
         size = np.array([one.difference for one in rows], np.float64) / scale
         chi2 = float(size @ np.linalg.solve(correlation, size))
         return chi2, len(rows), float(chi2_sf(chi2, len(rows)))
+
+    def covariance_of_differences(self, rows: list[Compared]) -> Array:
+        """Of second less first of parameters of a sensor, (n, n), the shared gravity taken out."""
+        each = [self._covariance(which, rows) for which in (0, 1)]
+        moved = [self._by_gravity(which, rows, own) for which, own in enumerate(each)]
+        return np.asarray(each[0] + each[1] - np.outer(*moved) - np.outer(*moved[::-1]))
 
     def _by_gravity(self, which: int, rows: list[Compared], covariance: Array) -> Array:
         """By how much an error of the shared gravity moves each value, (n,); or by nothing.
@@ -146,7 +154,7 @@ def pair_of_campaigns(names: tuple[str, str], tables: tuple[Tables, Tables], lev
     if tested:
         for i, beyond in zip(tested, holm_rejections(chances, level), strict=True):
             rows[i] = replace(rows[i], beyond=bool(beyond))
-    return Pair(names, tables, shared, tuple(rows), common)
+    return Pair(names, tables, shared, tuple(rows), common, level)
 
 
 def _compared(
