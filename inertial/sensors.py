@@ -11,3 +11,8 @@ COLUMNS = {"accel": slice(0, 3), "gyro": slice(3, 6)}  # of a sensor among the c
 
 SINGULAR = {"accel": _("accelerometer"), "gyro": _("gyro")}
 PLURAL = {"accel": _("accelerometers"), "gyro": _("gyros")}
+
+
+def unit_of(sensor: str, parameter: str) -> str:
+    """The SI unit of a bias, scale factor or cross term of a sensor."""
+    return UNITS[sensor] if parameter.startswith("bias") else "1"

@@ -120,11 +120,13 @@ def run(
     published: Sequence[Row] = (),
     settings: Row | None = None,
     may_change: Sequence[Row] = (),
+    further: Sequence[Row] = (),
     **facts: Any,
 ) -> Row:
     """Run the stage on a campaign in `place`, into the archive there; its row of `archived`.
 
-    `bias`: by the result that counts, by the joint method half as much.
+    `bias`: by the result that counts, by the joint method half as much; `further`: rows of that
+    result.
     """
     campaign = CAMPAIGN | facts
     derived = place / "derived" / str(campaign["campaign"])
@@ -152,7 +154,7 @@ def run(
         "compensation": {"uncertainty_budget": (tables.UNCERTAINTY_BUDGET, [])},
         "studies": {"growing": (tables.WINDOWS, []), "motions": (tables.MOTIONS, [])},
         "diagnosis": {
-            "result": (tables.PARAMETERS, [*result, effect]),
+            "result": (tables.PARAMETERS, [*result, effect, *further]),
             "covariance": (
                 tables.COVARIANCE,
                 [{"first": own, "second": own, "covariance": 1e-14}],

@@ -107,6 +107,25 @@ def test_the_history_page_has_the_jump_the_due_date_and_every_value(place, imu):
     assert "<script" not in html and not re.search(r"(src|href)=\"https?:", html)
 
 
+def test_every_value_of_the_history_has_the_unit_of_its_parameter(tmp_path):
+    """615.1 ppm, and a cross term of 2.5273e-3 rad, 521.30″."""
+    further = [
+        archive.counted("scale_x", 615.1e-6, 2e-6),
+        archive.counted("cross_xy", 2.5273e-3, 1e-6),
+    ]
+    archive.run(tmp_path, further=further)
+    (imu,) = imus_of(tmp_path / "history", "A-017", tmp_path, level=LEVEL, tolerance={})
+    html = history_page([imu], tmp_path / "history", tmp_path / "reports", "c0de")
+    table = html[html.rindex("The numbers behind the figures") :]
+    for heading, value, unit in (
+        ("scale x", "615.1", "ppm"),
+        ("cross xy", "521.29", "arcsec"),
+        ("bias x", "2.063", "°/h"),
+    ):
+        row = re.sub(r"<[^>]*>", " ", table[table.index(heading) :])[:200].split()
+        assert value in row and unit in row, row
+
+
 def test_a_calibration_that_is_dated_earlier_but_came_later_counts_at_its_place(tmp_path):
     """The tables of the stage keep what was known when it ran; the page is of the archive."""
     for bias, date in ((1.0, "2026-01-02"), (3.0, "2024-01-02"), (2.0, "2025-01-02")):

@@ -13,7 +13,7 @@ from inertial.estimation.fleet_components import LEVELS, shares
 from inertial.estimation.type_population import of_new_imu, type_population
 from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
 from inertial.model_selection.fleet_search import FleetEffect, FleetSearch, fleet_law
-from inertial.sensors import UNITS
+from inertial.sensors import unit_of
 from inertial.tables.fleet import FLEET
 from overviews.fleet.members import (
     PARAMETERS,
@@ -157,7 +157,7 @@ def _population(members: Sequence[Member], level: float) -> Iterator[tuple[str, 
         if one is None:
             continue
         of = one.with_known(common)
-        unit = UNITS[place[0]] if place[1].startswith("bias") else "1"
+        unit = unit_of(*place)
         imus = {m.imu for m, value in zip(kept, values, strict=True) if np.isfinite(value)}
         row = _place(kind, place) | {"imus": len(imus), "unit": unit}
         row |= {"mean": of.mean, "mean_sigma": of.mean_sigma}

@@ -8,7 +8,7 @@ from datetime import date, timedelta
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from inertial.sensors import SENSORS, SINGULAR, UNITS
+from inertial.sensors import SENSORS, SINGULAR, unit_of
 from inertial.text.messages import _
 from inertial.text.parameters import AXES, BIAS, CROSS, PARTS, SCALE
 from inertial.text.typography import capital
@@ -47,7 +47,7 @@ def figures(imu: Imu) -> Iterator[outline.Figure]:
             there = [name for name, values in series.items() if values]
             if not there:
                 continue
-            unit = quantity(there[0], "1" if kind != "bias" else _bias_unit(sensor)).laboratory
+            unit = quantity(there[0], unit_of(sensor, there[0])).laboratory
 
             def draw(
                 panel: Axes,
@@ -76,10 +76,6 @@ def figures(imu: Imu) -> Iterator[outline.Figure]:
                 drawn,
                 capital(_("{what} over the dates of the calibrations.", what=what)),
             )
-
-
-def _bias_unit(sensor: str) -> str:
-    return UNITS[sensor]
 
 
 def _dated(values: Sequence[Observed]) -> list[Observed]:

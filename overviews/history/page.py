@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from inertial.sensors import SENSORS, SINGULAR, UNITS
+from inertial.sensors import SENSORS, SINGULAR, unit_of
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.units import quantity
@@ -194,7 +194,7 @@ def _rows(imu: Imu, sensor: str) -> Iterator[outline.Row]:
     for (of, parameter), values in imu.series.items():
         if of != sensor:
             continue
-        unit = quantity(parameter, UNITS[sensor]).laboratory
+        unit = quantity(parameter, unit_of(sensor, parameter)).laboratory
         decimals = numbers.common_decimals(value.sigma / unit.size for value in values)
         yield outline.head(parameter.replace("_", " "))
         before: Observed | None = None

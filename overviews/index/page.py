@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
-from inertial.sensors import SENSORS, SINGULAR, UNITS
+from inertial.sensors import SENSORS, SINGULAR, unit_of
 from inertial.text import numbers
 from inertial.text.messages import _, plural
 from inertial.text.parameters import PARTS
@@ -211,7 +211,7 @@ def _causes(tables: Tables) -> str:
 
 def _unit(sensor: str, kind: str) -> Unit:
     parameter = next(name for name, parts in PARTS.items() if parts.kind == kind)
-    return quantity(parameter, UNITS[sensor] if kind == "bias" else "1").laboratory
+    return quantity(parameter, unit_of(sensor, parameter)).laboratory
 
 
 def _worst_sigma(tables: Tables, sensor: str, kind: str) -> float | None:

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from inertial.campaign.records import grouped
-from inertial.sensors import UNITS
+from inertial.sensors import unit_of
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
 from inertial.text.parameters import PARTS, SENSOR_OF, STAGES
@@ -77,7 +77,7 @@ def _estimate(group: Group) -> Estimate:
 
 
 def _unit(stage: str, parameter: str) -> str:
-    return UNITS[SENSOR_OF[stage]] if kind_of(parameter) == "bias" else "1"
+    return unit_of(SENSOR_OF[stage], parameter)
 
 
 def _figure(
@@ -159,7 +159,7 @@ def _wanted(rows: Sequence[Record]) -> outline.Table:
 
 
 def _wanted_row(row: Record) -> outline.Row:
-    unit = quantity(row["quantity"], UNITS[row["sensor"]]).shown
+    unit = quantity(row["quantity"], unit_of(row["sensor"], row["quantity"])).shown
     walk = RANDOM_WALK[row["sensor"]]
     sigma, floor, wanted = (
         significant(unit.of(row[which]), 2) for which in ("sigma", "floor", "wanted")
