@@ -41,6 +41,7 @@ class SteadyTurn:
     tilted : whether gravity rotates in the case
     stated : rad, signed, that the table is stated to turn from rest to rest; NaN where it is not
     shapes : of the noise about each axis of the case
+    rests : the same before and after the turn: times, (m,), s, and residuals of the rates, (m, 3)
     """
 
     name: str
@@ -55,6 +56,7 @@ class SteadyTurn:
     start: float = np.nan
     stated: float = np.nan
     shapes: Sequence[NoiseShape] = (WHITE,) * len(AXES)
+    rests: Sequence[tuple[Array, Array]] = ()
 
     @property
     def rate(self) -> float:
@@ -129,7 +131,7 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
         return []
     others = {r.plan.name for r in data.gyro_inputs.recorded if r.off_ratio is not None}
     planned = {m.name: m for m in data.plan if m.do == "turn" and m.name not in others}
-    inverse = np.linalg.inv(gyro.matrix)
+    inverse = np.asarray(np.linalg.inv(gyro.matrix))
     steady_parts = []
     for name, rows in by_turn(simulated, ["time", *GYRO, *RESIDUALS, *OF_FORCE]):
         steady = (rows["phase"] == "steady").to_numpy()
@@ -160,9 +162,18 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
                 tilted,
                 float(further[0, 1]),
                 np.nan if m.angle is None else m.angle,
+                rests=[*_rests(rows, inverse)],
             )
         )
     return [*_with_shapes(steady_parts)]
+
+
+def _rests(rows: pd.DataFrame, inverse: Array) -> Iterator[tuple[Array, Array]]:
+    """The times and residuals before and after a turn; `inverse`: of M."""
+    for phase in RESTS:
+        read = rows.loc[rows["phase"] == phase, ["time", *RESIDUALS]].to_numpy(np.float64)
+        read = read[np.isfinite(read).all(axis=1)]
+        yield read[:, 0], read[:, 1:] @ inverse.T
 
 
 def _with_shapes(turns: Sequence[SteadyTurn]) -> Iterator[SteadyTurn]:

@@ -14,13 +14,17 @@ from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.least_squares import Estimate
-from inertial.estimation.periodic_in_time import phasor
+from inertial.estimation.periodic_in_time import MIN_SAMPLES, phasor
+from inertial.estimation.probability import chi2_sf
 from inertial.tables import ACCEL, GYRO
-from stages.criticism.oscillation_hypotheses import IN_TIME, MIN_LOG_ODDS
+from stages.criticism.oscillation_fits import direction
+from stages.criticism.oscillation_hypotheses import IN_TIME
 from stages.criticism.oscillation_search import Oscillation
 
 MIN_BLOCKS = 8  # of a rest, in which a line is fitted
 MIN_APART = 0.3  # of a line in the blocks of a rest, that is no constant there
+MAX_CHANCE = 1e-3  # of noise that looks like a line at rest
+MIN_SHARE = 0.5  # of the amplitude in turns, of what goes on at rest
 
 # ---- Removal of the oscillations from the blocks of turns.
 #
@@ -173,27 +177,36 @@ def _seen_at_rest(line: Oscillation, blocks: pd.DataFrame, step: float) -> Array
 
 
 def with_rests(
-    data: CampaignData, turns: Sequence[SteadyTurn], oscillations: Sequence[Oscillation]
-) -> Sequence[Oscillation]:
-    """The same oscillations, those in time known to go on at rest, by what explains the blocks."""
-    known = list(oscillations)
-    explained = _deviance(data, turns, known)
-    for i, one in enumerate(oscillations):
-        if one.effects[0] == IN_TIME:
-            tried = [*known[:i], replace(one, at_rest=True), *known[i + 1 :]]
-            deviance = _deviance(data, turns, tried)
-            if explained - deviance > 2 * MIN_LOG_ODDS:
-                known, explained = tried, deviance
-    return known
+    turns: Sequence[SteadyTurn], oscillations: Sequence[Oscillation]
+) -> list[Oscillation]:
+    """The same oscillations, those in time known to go on in the rests beside the turns."""
+    return [
+        replace(one, at_rest=one.effects[0] == IN_TIME and _goes_on(one, turns))
+        for one in oscillations
+    ]
 
 
-def _deviance(
-    data: CampaignData, turns: Sequence[SteadyTurn], lines: Sequence[Oscillation]
-) -> float:
-    """The chi-squared of both sensors without these lines."""
-    blocks = without_lines(data.blocks, data.plan, turns, lines)
-    systems = campaign_of(replace(data, blocks=blocks)).systems([], 1.0)
-    return sum(system.solve_shared().chi_squared for system in systems if system)
+def _goes_on(one: Oscillation, turns: Sequence[SteadyTurn]) -> bool:
+    """Whether the rests have its frequency, with half of its amplitude or more."""
+    drop, powers = 0.0, list[float]()
+    for turn in turns:
+        frequency = one.likeliest.frequencies.get(turn.name)
+        if frequency is None:
+            continue
+        along = direction(turn, one.likeliest.axis)
+        for time, truth in turn.rests:
+            if len(time) < MIN_SAMPLES or (time[-1] - time[0]) * frequency < 1:
+                continue
+            phase = 2 * np.pi * frequency * (time - time[0])
+            waves = np.column_stack([np.cos(phase), np.sin(phase)])
+            record = truth @ along
+            values = np.linalg.lstsq(waves - waves.mean(axis=0), record - record.mean())[0]
+            sigma = float(turn.sigma(along, frequency)) * np.sqrt(2 / len(time))
+            drop += float(values @ values) / sigma**2
+            powers.append(float(values @ values) - 2 * sigma**2)
+    if not powers or chi2_sf(drop, 2 * len(powers)) > MAX_CHANCE:
+        return False
+    return bool(np.mean(powers) > (MIN_SHARE * one.mean.amplitude) ** 2)
 
 
 def shifts(

@@ -71,7 +71,7 @@ def _of_mount(
     mount, degrees = data.mount, data.noise.degrees
     turns = steady_turns(data, simulated)
     spectrum = find_oscillations(turns, level * SPECTRUM_SHARE, lowest_hz)
-    spectrum = replace(spectrum, oscillations=with_rests(data, turns, spectrum.oscillations))
+    spectrum = replace(spectrum, oscillations=with_rests(turns, spectrum.oscillations))
     quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
     measured = campaign_of(replace(data, blocks=quiet))
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
