@@ -233,7 +233,7 @@ def test_a_sensor_that_is_not_wholly_determined_stays_empty_and_says_why(clean):
     assert made["compensated"][ACCEL].notna().all(axis=None)
     checks = made["checks"].set_index("quantity")
     assert checks.loc["gyro", "sentence"].startswith("The gyros are not compensated")
-    assert "scale_y: no whole turn about y was recorded" in checks.loc["gyro", "sentence"]
+    assert "s_y: no whole turn about y was recorded" in checks.loc["gyro", "sentence"]
     assert not {"rate_up", "angle"} & set(checks.index)
 
 

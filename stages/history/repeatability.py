@@ -19,10 +19,12 @@ from inertial.estimation.history_of_values import (
     jump,
     predicted,
 )
+from inertial.sensors import PLURAL, unit_of
 from inertial.tables import AXES, STATIC_PHASES, UNITS
+from inertial.text import units
 from inertial.text.messages import _
-from inertial.text.numbers import significant
-from inertial.text.parameters import JOINT, PARTS
+from inertial.text.numbers import plus_minus
+from inertial.text.parameters import JOINT, PARTS, sign_of
 
 YEAR = 365.25  # days
 LEAST_OWN = 1e-3  # of a sigma: no less than rounding leaves where nearly all is a reference's
@@ -120,11 +122,10 @@ def repeatability_rows(series: Series, blocks: pd.DataFrame) -> Iterator[Row]:
 
 
 def _key(sensor: str, quantity: str, count: int) -> Row:
-    kind = PARTS[quantity].kind
     return {
         "sensor": sensor,
         "quantity": quantity,
-        "unit": UNITS[sensor] if kind == "bias" else "1",
+        "unit": unit_of(sensor, quantity),
         "calibrations": count,
         "groups": count,
         **dict.fromkeys(("value", "sigma", "upper")),
@@ -214,6 +215,7 @@ def jump_rows(
     for (sensor, quantity), (jumped, values) in jumps.items():
         before, after = values[jumped.before], values[jumped.before + 1]
         unit = _key(sensor, quantity, 0)["unit"]
+        shown = units.quantity(quantity, unit).laboratory
         yield {
             "sensor": sensor,
             "quantity": quantity,
@@ -226,15 +228,13 @@ def jump_rows(
             "sigma": jumped.sigma,
             "p_value": min(jumped.p_value * tested, 1.0),
             "sentence": _(
-                "{quantity} of the {sensor} jumped between {after} and {until}, by {size} ± "
-                "{sigma} {unit}.",
-                quantity=quantity,
-                sensor=sensor,
+                "{quantity} of the {sensor} jumped between {after} and {until}, by {size} {unit}.",
+                quantity=sign_of(quantity),
+                sensor=PLURAL[sensor],
                 after=before.date,
                 until=after.date,
-                size=significant(jumped.size, 3),
-                sigma=significant(jumped.sigma, 2),
-                unit=unit,
+                size=plus_minus(shown.of(jumped.size), shown.of(jumped.sigma)),
+                unit=shown.name,
             ),
         }
 
