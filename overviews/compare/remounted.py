@@ -113,7 +113,7 @@ def _matrix(rows: list[Compared]) -> Array:
 def in_words(found: Remounted) -> str:
     """What the rotation is and explains, in sentences."""
     angles = [
-        _("{axis} {angle}″", axis=axis, angle=plus_minus(angle / ARC_SECOND, sigma / ARC_SECOND))
+        f"{axis} {plus_minus(angle / ARC_SECOND, sigma / ARC_SECOND)}″"
         for axis, angle, sigma in zip(AXES, found.rotation, found.sigma, strict=True)
     ]
     said = _(
