@@ -152,7 +152,9 @@ def test_clean_campaigns_differ_by_no_more_than_chance(clean):
             "forward_against_backward": 3,
             "method_against_method": 18,
         }
-        assert (table["in_sigmas"].isna() == table["sentence"].str.contains("not independent")).all()
+        assert (
+            table["in_sigmas"].isna() == table["sentence"].str.contains("not independent")
+        ).all()
     for kind in ("static_against_turns", "forward_against_backward", "method_against_method"):
         pulls = pd.concat([of_kind(r["comparison/differences"], kind) for r in clean])["in_sigmas"]
         pulls = pulls.dropna().to_numpy(float)

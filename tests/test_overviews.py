@@ -17,12 +17,14 @@ from overviews.compare.page import as_text, comparison_page
 from overviews.compare.pair import READ, pair_of_campaigns
 from overviews.compare.remounted import remounted
 from overviews.compare.shared import Shared
+from overviews.history.changes import change
 from overviews.history.page import due_in_words, history_page
 from overviews.index.page import Without, index_page
 from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 from overviews.tables_of import RESULT
 from overviews.tables_of import tables_of as of_campaign
 from overviews.units import Imu, imus_of
+from stages.history.repeatability import Observed
 from stages.report.tables import Tables
 from tests.report.synthetic import campaign as synthetic
 from tests.report.synthetic import tables_of
@@ -101,7 +103,9 @@ def test_the_history_page_has_the_jump_the_due_date_and_every_value(place, imu):
     values = 1e-5 * np.array(BIASES) * 180 / np.pi * 3600  # °/h
     for value in values:
         assert f'<td class="number" data-label="value">{value:.3f}</td>' in html
-    assert f"{(values[4] - values[3]) / (0.0206265 * np.sqrt(2)):.1f}" in html  # 41.7 sigma
+    sigmas = (values[4] - values[3]) / (0.0206265 * np.sqrt(2))
+    assert f"{sigmas:.1f}" in html  # 41.7 sigma
+    assert f"1 of 1, most b_x of the gyros, by {sigmas:.1f} σ" in re.sub("<[^>]*>", "", html)
     for entry in imu.calibrations:
         assert entry.file in html
     assert "<script" not in html and not re.search(r"(src|href)=\"https?:", html)
@@ -124,6 +128,15 @@ def test_every_value_of_the_history_has_the_unit_of_its_parameter(tmp_path):
     ):
         row = re.sub(r"<[^>]*>", " ", table[table.index(heading) :])[:200].split()
         assert value in row and unit in row, row
+
+
+def test_a_reference_that_two_calibrations_share_is_in_no_change_of_theirs():
+    """5 ppm of noise each, and 50 ppm of a gravity that both take: σ is √2 · 5 ppm, 7.07 ppm."""
+    first = Observed("a", "2025-01-02", "m", "s", 100e-6, np.hypot(5e-6, 50e-6), {"here": 50e-6})
+    second = replace(first, campaign="b", value=130e-6)
+    assert change(first, second) == (pytest.approx(30e-6), pytest.approx(7.071e-6, rel=1e-3))
+    other = replace(second, shared={"there": 50e-6})
+    assert change(first, other)[1] == pytest.approx(71.06e-6, rel=1e-3)
 
 
 def test_a_calibration_that_is_dated_earlier_but_came_later_counts_at_its_place(tmp_path):

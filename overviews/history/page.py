@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ from inertial.sensors import SENSORS, SINGULAR, unit_of
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.units import quantity
+from overviews.history.changes import change, changes, in_words
 from overviews.history.courses import figures
 from overviews.tables_of import made_from
 from overviews.units import Imu
@@ -105,10 +107,18 @@ def _summary(imu: Imu, reports: Path, name: str, key: str) -> outline.Section:
                 outline.Column(_("Mounting")),
                 outline.Column(_("Switch-on")),
                 outline.Column(_("Table")),
+                outline.Column(_("Changed since the last")),
                 outline.Column(_("Verdict")),
             ),
-            [_calibration(entry.row, reports) for entry in imu.calibrations],
-            note=_("Two of them beside each other: make compare A=… B=…"),
+            [
+                _calibration(entry.row, changed, reports)
+                for entry, changed in zip(imu.calibrations, _changed(imu), strict=True)
+            ],
+            note=_(
+                "Changed by more than chance (Holm 1979), the errors of shared references taken "
+                "out. Two of them beside each other, and whether the IMU was only mounted anew: "
+                "make compare A=… B=…"
+            ),
         )
 
     return _section(
@@ -125,7 +135,14 @@ def _summary(imu: Imu, reports: Path, name: str, key: str) -> outline.Section:
     )
 
 
-def _calibration(row: dict[str, Any], reports: Path) -> outline.Row:
+def _changed(imu: Imu) -> Iterator[str]:
+    """What changed since the last, of each calibration."""
+    yield "—"
+    for before, after in pairwise(entry.row["campaign"] for entry in imu.calibrations):
+        yield in_words(*changes(imu, before, after))
+
+
+def _calibration(row: dict[str, Any], changed: str, reports: Path) -> outline.Row:
     campaign = row["campaign"]
     verdicts = [one["verdict"] for one in row["verdicts"]]
     worst = next((level for level in LEVELS if level in verdicts), "")
@@ -135,6 +152,7 @@ def _calibration(row: dict[str, Any], reports: Path) -> outline.Row:
             numbers.shortened(campaign, 80),
             numbers.shortened(row["date"], 20),
             *(_label(row[which]) for which in ("mounting", "switch_on", "table")),
+            changed,
             word,
         ),
         tone="" if tone == "good" else tone,
@@ -185,7 +203,10 @@ def _values(imu: Imu, name: str, key: str) -> outline.Section:
         f"values{key}",
         _("Values") + name,
         _("The numbers behind the figures."),
-        _("The change since the last is in units of the σ of both, as if these were independent."),
+        _(
+            "The change since the last is in units of its σ, without the errors of references that "
+            "both share."
+        ),
         parts,
     )
 
@@ -199,15 +220,15 @@ def _rows(imu: Imu, sensor: str) -> Iterator[outline.Row]:
         yield outline.head(parameter.replace("_", " "))
         before: Observed | None = None
         for value in values:
-            change = None
+            sigmas = None
             if before is not None:
-                both = float((value.sigma**2 + before.sigma**2) ** 0.5)
-                change = (value.value - before.value) / both
+                difference, sigma = change(before, value)
+                sigmas = difference / sigma
             yield outline.table_row(
                 value.date,
                 numbers.shortened(value.campaign, 80),
                 *numbers.with_sigma(value.value / unit.size, value.sigma / unit.size, decimals),
                 unit.name,
-                numbers.fixed(change, 1),
+                numbers.fixed(sigmas, 1),
             )
             before = value
