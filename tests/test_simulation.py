@@ -4,8 +4,9 @@ import chain
 import numpy as np
 import pandas as pd
 import pytest
+from in_memory import MemoryStream
 
-from inertial.tables import CHANNELS
+from inertial.tables import CHANNELS, SAMPLES
 from tests.test_closure import truth_of
 
 COUNTS = {"accel": 0.05 / 2**15 / 0.01, "gyro": 0.1 / (3600 * 256) / 0.01}  # m/s², rad/s
@@ -38,6 +39,20 @@ def test_noise_free_logs_are_met_to_a_count(quiet):
         assert counts.abs().max() < 1.01, channel
         sums = counts.groupby(turns["manoeuvre"]).cumsum()
         assert sums.abs().max() < 3, channel  # nor is a sum off by more, but for the tilts
+
+
+def test_a_counter_that_begins_again_in_a_turn_moves_no_table(quiet):
+    """The rates before and after are what they were: only the stamps go back, by 2³² µs."""
+    samples = quiet["decode/samples"].copy()
+    own = np.flatnonzero(samples["log"] == "z-forward.asc")
+    samples.loc[own[len(own) // 2 :], "time"] -= 4294.967296
+    stream = MemoryStream(SAMPLES.arrow(samples))
+    wrapped = chain.again(quiet, "simulation", samples=stream)
+    before, after = (
+        table.query("manoeuvre == 'z-forward'")[[f"residual_{name}" for name in CHANNELS]]
+        for table in (quiet["simulation/simulated"], wrapped["simulated"])
+    )
+    np.testing.assert_allclose(after, before, atol=1e-9)
 
 
 def test_on_clean_data_the_residuals_are_the_noise(clean):
