@@ -8,7 +8,7 @@ MOUNTING = (8e-3, -6e-3, 4e-3)  # rad, of the second mount against the first
 
 
 @pytest.fixture(scope="module")
-def mounts(tmp_path_factory):
+def results(tmp_path_factory):
     document = chain.short()
     plan = document["campaign"]["plan"]
     again = [m | {"id": f"b-{m['id']}", "log": f"b-{m['log']}", "mount": "second"} for m in plan]
@@ -17,7 +17,12 @@ def mounts(tmp_path_factory):
     rotations = {"first": [0, 0, 0], "second": turned}
     document["truth"]["mounts"] = {n: {"rotation_mrad": r} for n, r in rotations.items()}
     folder = tmp_path_factory.mktemp("mounts")
-    return chain.mounts(chain.run(chain.simulate(document, folder / "raw"), folder / "derived"))
+    return chain.run(chain.simulate(document, folder / "raw"), folder / "derived")
+
+
+@pytest.fixture(scope="module")
+def mounts(results):
+    return chain.mounts(results)
 
 
 def test_each_mount_has_its_own_manoeuvres(mounts):
@@ -44,3 +49,12 @@ def test_each_mount_has_its_own_result(mounts):
             if quantity == "tilt"
         }
         assert positions and positions <= {m.position for m in data.plan}
+
+
+def test_times_are_not_compared_where_one_goes_back(results, mounts):
+    """As a counter of the seconds of the week does; a warm-up would be exp(604800/τ) times as large."""
+    assert all(data.shared_clock for data in mounts)
+    blocks = results["segment/blocks"].copy()
+    own = np.flatnonzero(blocks["log"] == "z-up.asc")
+    blocks.loc[own[len(own) // 2 :], "time"] -= 604800.0
+    assert not any(data.shared_clock for data in chain.mounts(results, blocks=blocks))

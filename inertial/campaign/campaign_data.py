@@ -189,6 +189,7 @@ def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
     done, noise = performed_of(tables.performed), NoiseLevels(tables.levels)
     clocks = {} if tables.clocks is None else clocks_of(tables.clocks)
     shared = tables.clocks is not None and share_a_clock(tables.clocks)
+    shared = shared and _time_goes_on(tables.blocks)
     result, whole = [], manoeuvres_of(tables.manoeuvres)
     blocks = _since_first_sample(tables.blocks, clocks)
     switched_on = switch_on_times(whole, clocks, blocks)
@@ -211,6 +212,12 @@ def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
             data = with_attitudes(data, solution.accelerometer)
         result.append(data)
     return result
+
+
+def _time_goes_on(blocks: pd.DataFrame) -> bool:
+    """Whether no block is before that which was recorded before it, in any log."""
+    by_log = blocks.sort_values("from_record", kind="stable").groupby("log", sort=False)["time"]
+    return not bool((by_log.diff() < 0).any())
 
 
 def _since_first_sample(blocks: pd.DataFrame, clocks: Mapping[str, Clock]) -> pd.DataFrame:

@@ -206,6 +206,8 @@ EXPLANATIONS = (
         ("gap", "clock_jitter", "rate_off", "time_backwards", "duplicate"),
         same_log,
     ),
+    # Whenever a counter begins again, what it counts is cut.
+    Explanation(("time_backwards",), ("short_rest",), same_log),
     Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), anywhere),
     Explanation(("encoder_scale",), ("rate_off",), anywhere),
     Explanation(("clock_scale", "rate_off"), ("table_rate_off",), anywhere),

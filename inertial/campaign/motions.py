@@ -16,6 +16,7 @@ from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import Motion, Profile, turned_all, turning
 from inertial.signal.rests_and_motions import bridged
+from inertial.signal.stamps import samples_passed
 from inertial.tables import ACCEL
 from inertial.text.messages import _
 
@@ -147,13 +148,12 @@ def in_samples(
     ----------
     increments : (n, 3), rad, of the gyros, NaN where they are masked; `step`, s, of each
     steady : (n,), which samples are at the steady rate
-    time : (n,), s; where it jumps, samples were lost, and where it goes back, none
+    time : (n,), s; where it jumps, samples were lost
     """
     solution = data.result.since(m.switch_on)
     up, north = solution.upright(m), solution.north(position_of(m, data.heading))
     assert solution.gyro is not None and m.angle is not None  # else it is not simulated
-    passed = np.round(np.diff(time, prepend=time[0] - step) / step)  # samples, 0 where one repeats
-    passed[passed < 0] = 1.0  # a counter begins again, or the clock is set back
+    passed = np.append(1.0, samples_passed(time, step))
     counts, lost = np.minimum(passed, 1.0), np.maximum(passed - 1.0, 0.0)
     increments = bridged(increments) * counts[:, None]
     ends = step * np.cumsum(passed)

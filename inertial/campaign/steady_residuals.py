@@ -14,6 +14,7 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.estimation.periodic_in_angle import Course
 from inertial.estimation.periodic_in_time import Line
 from inertial.estimation.spectrum import WHITE, NoiseShape, band_levels, noise_shape, white_level
+from inertial.signal.stamps import samples_passed
 from inertial.tables import ACCEL, AXES, GYRO
 from inertial.tables.parquet import Stream
 
@@ -218,7 +219,7 @@ def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:
     time = rows["time"].to_numpy(np.float64)
     passed = np.ones(len(time))
     if np.isfinite(time).all():
-        passed[1:] = np.round(np.diff(time) / step)
+        passed[1:] = samples_passed(time, step)
     return np.asarray(np.cumsum(turning * passed) * step - turning * step / 2)
 
 
@@ -246,8 +247,8 @@ def unbroken(rows: Array) -> tuple[Array, Array]:
     if len(rows) < 2 or np.isnan(rows[:, 0]).any():
         return rows[:, 1:4], rows[:, 4:]
     pause = np.diff(rows[:, 0])
-    step = np.mean(pause[pause < 1.5 * np.median(pause)])
-    passed = np.maximum(np.round(pause / step), 1).astype(np.int64)
+    step = float(np.mean(pause[(pause > 0) & (pause < 1.5 * np.median(pause))]))
+    passed = np.maximum(samples_passed(rows[:, 0], step), 1).astype(np.int64)
     edges = [0, *(np.flatnonzero(passed > MAX_LOST_SAMPLES + 1) + 1).tolist(), len(rows)]
     first, after = max(pairwise(edges), key=lambda edge: edge[1] - edge[0])
     place = np.append(0, np.cumsum(passed[first : after - 1]))

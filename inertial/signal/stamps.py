@@ -17,6 +17,15 @@ STAMP_DIGIT_S = 1e-9  # s, the last digit of a stamp at best
 MAX_RATE_ERROR = 0.01  # of the stated rate: more than any crystal is off
 
 
+def samples_passed(time: Array, step: float) -> Array:
+    """Samples from each stamp to the next, (n − 1,): 0 where one repeats, 1 where time goes back.
+
+    There a counter begins again, or the clock is set: that samples were lost is not known.
+    """
+    passed = np.round(np.diff(time) / step)
+    return np.asarray(np.where(passed < 0, 1.0, passed))
+
+
 @dataclass(frozen=True)
 class Stamps:
     """The stamps of k samples.
