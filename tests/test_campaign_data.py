@@ -52,7 +52,7 @@ def test_each_mount_has_its_own_result(mounts):
 
 
 def test_times_are_not_compared_where_one_goes_back(results, mounts):
-    """As a counter of the seconds of the week does; a warm-up would be exp(604800/τ) times as large."""
+    """As seconds of the week do; a warm-up would be exp(604800/τ) times as large."""
     assert all(data.shared_clock for data in mounts)
     blocks = results["segment/blocks"].copy()
     own = np.flatnonzero(blocks["log"] == "z-up.asc")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from math import atanh, sqrt
 
 import numpy as np
@@ -79,10 +80,9 @@ def _effects(
     units: Mapping[Place, str],
 ) -> Iterator[tuple[str, Row]]:
     names = evidence.names
-    model = [one.hypothesis for one in found]
+    model = as_likeliest(found)
     ids = [_id(evidence, one) for one in model]
-    for identifier, one in zip(ids, found, strict=True):
-        own = one.hypothesis
+    for identifier, one, own in zip(ids, found, model, strict=True):
         yield (
             "findings",
             {
@@ -107,6 +107,19 @@ def _effects(
             yield "shares", row | {"share": share, "sigma": sigma}
     if model:
         yield from _sizes(evidence, ids, model, places, units)
+
+
+def as_likeliest(found: Sequence[FleetEffect]) -> list[Shared]:
+    """Each finding as its likeliest member, which need not be the one that it was found by.
+
+    Where another finding is that already it stays as it was found.
+    """
+    model = [one.hypothesis for one in found]
+    for i, one in enumerate(found):
+        likeliest = replace(model[i], effect=max(one.members, key=lambda name: one.members[name]))
+        if likeliest not in model:
+            model[i] = likeliest
+    return model
 
 
 def _sizes(

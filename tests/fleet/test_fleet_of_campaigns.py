@@ -12,11 +12,13 @@ from scipy import stats
 
 import laboratory
 from inertial import tables
+from inertial.model_selection.fleet_evidence import Shared
+from inertial.model_selection.fleet_search import FleetEffect
 from inertial.tables.errors import Refusal
 from inertial.text.messages import speak
 from overviews.fleet.members import members_of
 from overviews.fleet.page import WOULD_TELL, fleet_page
-from overviews.fleet.results import results_of
+from overviews.fleet.results import as_likeliest, results_of
 from overviews.fleet.selection import name_of, parts, selected
 
 pytestmark = pytest.mark.slow
@@ -178,3 +180,13 @@ def test_the_campaigns_of_a_selection(derived, monkeypatch, tmp_path):
 
 def test_every_pair_of_levels_has_a_campaign_that_would_tell():
     assert len(WOULD_TELL) == 6
+
+
+def test_sizes_and_shares_are_of_the_likeliest_member():
+    """Found as 4, it is 2 with 71 %; of two that would be one effect the other stays as found."""
+
+    def found(effect: int, members: dict[int, float]) -> FleetEffect:
+        return FleetEffect(Shared(effect, "sensor", 0), 60.0, 3, 1e-9, {"sensor": 1.0}, members)
+
+    both = [found(4, {2: 0.71, 4: 0.10}), found(7, {7: 0.9, 2: 0.1}), found(5, {2: 0.6, 5: 0.4})]
+    assert [one.effect for one in as_likeliest(both)] == [2, 7, 5]
