@@ -169,6 +169,23 @@ def run(
     return dict(pd.read_parquet(derived / "history/archived.parquet").iloc[0])
 
 
+def changes_of(place: Path, campaign: str) -> pd.DataFrame:
+    return pd.read_parquet(place / f"derived/{campaign}/history/changes.parquet")
+
+
+def test_what_changed_since_the_last_calibration_is_a_row_each(tmp_path: Path) -> None:
+    """By 30 σ of the difference, √2 · 1e-7; against the latest before, not the latest that came."""
+    for bias, date in ((1.0e-5, "2024-01-02"), (9.0e-5, "2026-01-02")):
+        run(tmp_path, bias, campaign=f"on-{date}", date=date)
+    run(tmp_path, 1.0e-5 + 30 * 2**0.5 * 1e-7, campaign="between", date="2025-01-02")
+    (row,) = pd.read_parquet(tmp_path / "derived/between/history/changes.parquet").to_dict(
+        "records"
+    )
+    assert (row["quantity"], row["since_campaign"]) == ("bias_x", "on-2024-01-02")
+    assert row["size"] / row["sigma"] == pytest.approx(30) and row["beyond"]
+    assert changes_of(tmp_path, "on-2024-01-02").empty
+
+
 def earlier(place: Path, campaign: str) -> pd.DataFrame:
     return pd.read_parquet(place / "derived" / campaign / "history/earlier.parquet")
 

@@ -17,13 +17,13 @@ from overviews.compare.page import as_text, comparison_page
 from overviews.compare.pair import READ, pair_of_campaigns
 from overviews.compare.remounted import remounted
 from overviews.compare.shared import Shared
-from overviews.history.changes import change
 from overviews.history.page import due_in_words, history_page
 from overviews.index.page import Without, index_page
 from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 from overviews.tables_of import RESULT
 from overviews.tables_of import tables_of as of_campaign
 from overviews.units import Imu, imus_of
+from stages.history.changes import change
 from stages.history.repeatability import Observed
 from stages.report.tables import Tables
 from tests.report.synthetic import campaign as synthetic

@@ -48,7 +48,7 @@ from inertial.tables.estimated import (
     WANTED,
 )
 from inertial.tables.extended import GAIN, GAIN_EFFECTS, HELD_OUT, MOVED, WORTH
-from inertial.tables.historical import FORECAST, JUMPS, REPEATABILITY
+from inertial.tables.historical import CHANGES, FORECAST, JUMPS, REPEATABILITY
 from inertial.tables.navigated import (
     ALIGNMENTS,
     ATTITUDE_ERRORS,

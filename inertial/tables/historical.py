@@ -1,7 +1,7 @@
 """How well calibrations of one IMU repeat, jumps between them, and what the next may be."""
 
 from inertial.tables.shared import QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
 
 UNIT = Column("unit", TEXT, "", "unit of the parameter, SI")
 
@@ -57,6 +57,28 @@ JUMPS = Table(
             "chance of such a jump of any parameter at any date in histories that have none",
         ),
         Column("sentence", SENTENCE, "", "the jump in words"),
+    ),
+)
+CHANGES = Table(
+    "changes",
+    1,
+    (
+        SENSOR,
+        QUANTITY,
+        UNIT,
+        Column("since", TEXT, "", "date of the calibration before"),
+        Column("since_campaign", TEXT, "", "its campaign"),
+        Column("size", DOUBLE, "as unit", "this calibration less the one before"),
+        Column(
+            "sigma",
+            DOUBLE,
+            "as unit",
+            "its standard deviation, without the errors of references that both share",
+        ),
+        Column("p_value", DOUBLE, "1", "chance of a change so large, either way, if there is none"),
+        Column(
+            "beyond", TRUTH, "", "whether it is more than chance, of all parameters (Holm 1979)"
+        ),
     ),
 )
 FORECAST = Table(

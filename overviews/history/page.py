@@ -7,14 +7,15 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from inertial.sensors import SENSORS, SINGULAR, unit_of
+from inertial.sensors import PLURAL, SENSORS, SINGULAR, unit_of
 from inertial.text import numbers
 from inertial.text.messages import _
+from inertial.text.parameters import sign_of
 from inertial.text.units import quantity
-from overviews.history.changes import change, changes, in_words
 from overviews.history.courses import figures
 from overviews.tables_of import made_from
 from overviews.units import Imu
+from stages.history.changes import Change, change, changes
 from stages.history.repeatability import Observed
 from stages.report import outline
 from stages.report.page import page
@@ -139,7 +140,23 @@ def _changed(imu: Imu) -> Iterator[str]:
     """What changed since the last, of each calibration."""
     yield "—"
     for before, after in pairwise(entry.row["campaign"] for entry in imu.calibrations):
-        yield in_words(*changes(imu, before, after))
+        yield _in_words(changes(imu.series, before, after, imu.level))
+
+
+def _in_words(compared: Sequence[Change]) -> str:
+    """How many parameters changed, and the one that did most."""
+    changed = [one for one in compared if one.beyond]
+    if not changed:
+        return _("none") if compared else "—"
+    most = max(changed, key=lambda one: abs(one.size) / one.sigma)
+    return _(
+        "{changed} of {count}, most {parameter} of the {sensor}, by {sigmas} σ",
+        changed=len(changed),
+        count=len(compared),
+        parameter=sign_of(most.quantity),
+        sensor=PLURAL[most.sensor],
+        sigmas=numbers.fixed(abs(most.size) / most.sigma, 1),
+    )
 
 
 def _calibration(row: dict[str, Any], changed: str, reports: Path) -> outline.Row:

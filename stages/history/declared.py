@@ -28,6 +28,7 @@ DECLARED = Declared(
         "earlier": tables.EARLIER,
         "published_differences": tables.DIFFERENCES,
         "repeatability": tables.REPEATABILITY,
+        "changes": tables.CHANGES,
         "jumps": tables.JUMPS,
         "forecast": tables.FORECAST,
     },

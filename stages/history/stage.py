@@ -16,10 +16,13 @@ from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from inertial.text.parameters import STAGES
-from stages.history.archive import Archive, results
+from stages.history.archive import Archive, Entry, results
+from stages.history.changes import change_rows, changes
 from stages.history.declared import DECLARED
 from stages.history.fencepost_error import off_by_a_sample
 from stages.history.repeatability import (
+    UNKNOWN,
+    Series,
     forecast_rows,
     jump_rows,
     jumps_of,
@@ -137,7 +140,7 @@ def history(
     others = kept.earlier(calibration)
     series = series_of([(each.row, results(each)) for each in [*others, entry]])
     jumps = jumps_of(series, level)
-    changes = tolerances(tolerance or {}, rows_of(allowed_changes))
+    allowed = tolerances(tolerance or {}, rows_of(allowed_changes))
     return {
         "archived": [archived],
         "earlier": [row for other in others for row in results(other)],
@@ -146,9 +149,20 @@ def history(
             *repeatability_rows(series, blocks),
             *between_switch_ons,
         ],
+        "changes": list(_changes(series, others, entry, level)),
         "jumps": list(jump_rows(jumps, len(series))),
-        "forecast": list(forecast_rows(series, jumps, changes)) if others else [],
+        "forecast": list(forecast_rows(series, jumps, allowed)) if others else [],
     }
+
+
+def _changes(series: Series, others: Sequence[Entry], entry: Entry, level: float) -> Iterator[Row]:
+    """What changed since the last calibration of a date before this one's."""
+    date = entry.row["date"]
+    before = [each.row for each in others if UNKNOWN != each.row["date"] < date != UNKNOWN]
+    if before:
+        last = max(before, key=lambda row: row["date"])
+        changed = changes(series, last["campaign"], entry.row["campaign"], level)
+        yield from change_rows(changed, last)
 
 
 def _made_by(provenance: Iterable[Mapping[str, Any]]) -> list[Row]:

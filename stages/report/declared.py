@@ -104,6 +104,7 @@ DECLARED = Declared(
         "archived": From("history", tables.ARCHIVED),
         "earlier": From("history", tables.EARLIER),
         "repeatability": From("history", tables.REPEATABILITY),
+        "changes": From("history", tables.CHANGES),
         "jumps": From("history", tables.JUMPS),
         "forecast": From("history", tables.FORECAST),
         "published_differences": From("history", tables.DIFFERENCES, "published_differences"),

@@ -303,6 +303,10 @@ def repeated() -> dict[str, Rows]:
     numbers = {"drift": 1e-7, "drift_sigma": 3e-7, "low": -1e-6, "median": 0.0, "high": 1e-6}
     return {
         "repeatability": [key | nothing | component for component in components],
+        "changes": [
+            {"sensor": "accel", "quantity": "scale_x", "unit": "1", "size": 5e-4, "sigma": 2e-5}
+            | {"since": "2025-07-02", "since_campaign": "b", "p_value": 1e-9, "beyond": True}
+        ],
         "jumps": [
             {**{k: key[k] for k in ("sensor", "quantity", "unit")}, "size": 2e-6, "sigma": 1e-7}
             | {"after": "2025-01-02", "after_campaign": "a", "until": "2025-07-02"}

@@ -8,18 +8,18 @@ from math import hypot
 from matplotlib.axes import Axes
 
 from inertial.campaign.records import grouped
-from inertial.sensors import SINGULAR, UNITS
+from inertial.sensors import PLURAL, SINGULAR, UNITS
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
-from inertial.text.parameters import SENSOR_OF
+from inertial.text.parameters import SENSOR_OF, sign_of
 from inertial.text.typography import capital
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
-from stages.report.results import KIND, RESULT_TABLES, final_results
+from stages.report.results import KIND, RESULT_TABLES, final_results, kind_of
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, parameter, with_mount
 
@@ -32,6 +32,7 @@ KINDS = {
     "fencepost": _("Published, this one"),
 }
 MOST_DIFFERENCES = 120
+MOST_CHANGES = 3  # that a sentence names
 
 
 def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
@@ -201,6 +202,7 @@ def history_parts(tables: Tables) -> Iterator[outline.Part]:
     calibrations = sorted(by_file.values(), key=_date)
     if calibrations:
         yield _calibrations(calibrations, now)
+        yield from _changed(tables)
         date = tables.row("campaign")["date"] or "unknown"
         yield _figure(calibrations[-MOST_DRAWN + 1 :], now, date)
     else:
@@ -235,9 +237,48 @@ HISTORY = outline.Section(
         "Each point is value ± σ of the result that counted, relative to the last value. A bias "
         "may change from one switch-on to the next; a scale error should not."
     ),
-    ("result", "verdict", "campaign", "earlier", "archived"),
+    ("result", "verdict", "campaign", "earlier", "changes", "archived"),
     history_parts,
 )
+
+
+def _changed(tables: Tables) -> Iterator[outline.Paragraph]:
+    """Scale factors and cross terms that are others than in the last calibration.
+
+    Biases may change from one switch-on to the next.
+    """
+    compared = [row for row in tables.rows("changes") if kind_of(row["quantity"]) != "bias"]
+    changed = sorted(
+        (row for row in compared if row["beyond"]), key=lambda row: -abs(row["size"] / row["sigma"])
+    )
+    if changed:
+        yield outline.Paragraph(
+            _(
+                "{count} of {all} scale factors and cross terms changed by more than chance since "
+                "{campaign} of {since}: {each}. A shock, another mounting or set-up does that; so "
+                "few calibrations may not tell it from a drift. make compare with that campaign "
+                "shows whether the IMU was only turned in its mounting.",
+                count=len(changed),
+                all=len(compared),
+                campaign=numbers.shortened(changed[0]["since_campaign"], 60),
+                since=numbers.shortened(changed[0]["since"], 20),
+                each=listed([_change(row) for row in changed[:MOST_CHANGES]])
+                + (_(" and others") if len(changed) > MOST_CHANGES else ""),
+            ),
+            "fair",
+        )
+
+
+def _change(row: Record) -> str:
+    unit = quantity(row["quantity"], row["unit"]).laboratory
+    return _(
+        "{parameter} of the {sensor} by {size} {unit} ({sigmas} σ)",
+        parameter=sign_of(row["quantity"]),
+        sensor=PLURAL[row["sensor"]],
+        size=numbers.plus_minus(unit.of(row["size"]), unit.of(row["sigma"])),
+        unit=unit.name,
+        sigmas=numbers.fixed(abs(row["size"] / row["sigma"]), 1),
+    )
 
 
 def _key(row: Record) -> Key:
