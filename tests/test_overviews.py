@@ -298,6 +298,7 @@ def test_two_simulated_campaigns_differ_by_what_was_changed_and_nothing_else(cal
         html = comparison_page(pair, Path("derived"), "c0de")
     assert "<script" not in html and "1 of 24 values differ" in html
     text = as_text(pair)
+    assert "A: Gyros: usable." in text and "B: Accelerometers: usable." in text
     assert "bias_x *" in text and max(map(len, text.splitlines())) < 160
 
 

@@ -303,9 +303,19 @@ def _lines(pair: Pair, caption: str, lines: Sequence[Line]) -> outline.Table:
 
 
 def as_text(pair: Pair) -> str:
-    """The same in plain text: remarks, parameters, effects, conditions, settings."""
+    """The same in plain text: remarks, verdicts, parameters, effects, conditions, settings."""
     texts = [_("A: {first}\nB: {second}", first=pair.names[0], second=pair.names[1])]
     texts += [textwrap.fill(part.text, LINE_WIDTH) for part in remarks(pair)]
+    verdicts = [
+        textwrap.fill(
+            f"{letter}: {with_mount(row['sentence'], row['mount'])}",
+            LINE_WIDTH,
+            subsequent_indent="   ",
+        )
+        for letter, tables in zip("AB", pair.tables, strict=True)
+        for row in tables.rows("verdict")
+    ]
+    texts.append("\n".join([_("Verdicts"), *verdicts]))
     for sensor in SENSORS:
         texts += _block(capital(PLURAL[sensor]), _ordered(pair.of(sensor)))
     texts += _block(_("Effects"), pair.effects)
