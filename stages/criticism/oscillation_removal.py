@@ -22,7 +22,6 @@ from stages.criticism.oscillation_hypotheses import IN_TIME
 from stages.criticism.oscillation_search import Oscillation
 
 MIN_BLOCKS = 8  # of a rest, in which a line is fitted
-MIN_APART = 0.3  # of a line in the blocks of a rest, that is no constant there
 MAX_CHANCE = 1e-3  # of noise that looks like a line at rest
 MIN_SHARE = 0.5  # of the amplitude in turns, of what goes on at rest
 
@@ -56,7 +55,7 @@ def without_lines(
     for rest in plan:
         own = (blocks["manoeuvre"] == rest.name).to_numpy()
         if rest.do == "rest" and own.any():
-            quiet.loc[own] = _of_rest(blocks[own], rest, lines, turns[0].step)
+            quiet.loc[own] = _of_rest(blocks[own], rest, lines, turns)
     return quiet
 
 
@@ -79,12 +78,15 @@ def _of_turn(blocks: pd.DataFrame, turn: SteadyTurn, lines: Sequence[Oscillation
 
 
 def _of_rest(
-    blocks: pd.DataFrame, rest: Manoeuvre, lines: Sequence[Oscillation], step: float
+    blocks: pd.DataFrame,
+    rest: Manoeuvre,
+    lines: Sequence[Oscillation],
+    turns: Sequence[SteadyTurn],
 ) -> pd.DataFrame:
-    """The blocks of a rest without lines; `step`: s, of a sample."""
+    """The blocks of a rest without lines."""
     quiet = blocks.copy()
     for part in (part for one in lines if one.at_rest for part in one.parts):
-        quiet[[*GYRO, *ACCEL]] -= _seen_at_rest(part, quiet, step)
+        quiet[[*GYRO, *ACCEL]] -= _seen_at_rest(part, quiet, turns)
     if rest.tumbled is not None and rest.tumbled.any():
         turned = float(np.linalg.norm(rest.tumbled))
         further = _further(lines, turned) * rest.tumbled / turned
@@ -157,20 +159,41 @@ def _lines(
             yield one, line
 
 
-def _seen_at_rest(line: Oscillation, blocks: pd.DataFrame, step: float) -> Array:
+def _seen_at_rest(line: Oscillation, blocks: pd.DataFrame, turns: Sequence[SteadyTurn]) -> Array:
     """The means of a line in all channels of the blocks of a rest, (k, 6), by its frequency.
 
-    None where the blocks show it as slow as a constant.
+    By least squares beside a constant. As large as in the turns is known beforehand, without which
+    a line that the blocks hardly show, or show as a constant, would be noise.
     """
     time, count = (blocks[name].to_numpy(np.float64) for name in ("time", "count"))
-    parts = _Line(line.mean.frequency, np.array([1.0, 1j, 0.0]), step)
-    both = parts.means(np.asarray(time - time.mean()), count)[:, :2]
+    unit = _Line(line.mean.frequency, np.array([1.0, 1j, 0.0]), turns[0].step)
+    waves = unit.means(np.asarray(time - time.mean()), count)[:, :2]
     read = blocks[[*GYRO, *ACCEL]].to_numpy(np.float64)
-    apart = both - both.mean(axis=0)
-    if len(both) < MIN_BLOCKS or np.linalg.norm(apart, -2) < MIN_APART * np.linalg.norm(both, 2):
-        return np.zeros_like(read)
     known = np.where(np.isfinite(read).all(axis=0), read, 0.0)
-    return np.asarray(both @ np.linalg.lstsq(apart, known - known.mean(axis=0))[0])
+    apart, left = waves - waves.mean(axis=0), known - known.mean(axis=0)
+    seen = np.zeros_like(known)
+    if len(blocks) < MIN_BLOCKS:
+        return seen
+    for channel, size in enumerate(_sizes(line, turns)):
+        if size:
+            residual = left[:, channel] - apart @ np.linalg.lstsq(apart, left[:, channel])[0]
+            weight = 2 * float(residual @ residual) / (len(blocks) - 3) / size**2
+            normal = apart.T @ apart + weight * np.eye(2)
+            seen[:, channel] = waves @ np.linalg.solve(normal, apart.T @ left[:, channel])
+    return seen
+
+
+def _sizes(line: Oscillation, turns: Sequence[SteadyTurn]) -> Array:
+    """The amplitudes of a line in all channels, rms over the turns, (6,); 0 of one not recorded."""
+    powers = [
+        [
+            abs(phasor(record, 1 / turn.step, hertz)) ** 2
+            for record in (*turn.truth.T, *turn.force.T)
+        ]
+        for turn in turns
+        if (hertz := line.likeliest.frequencies.get(turn.name)) is not None
+    ]
+    return np.asarray(np.sqrt(np.nan_to_num(np.mean(powers, axis=0))))
 
 
 # ---- Whether an oscillation goes on at rest, and what each moves in the joint result.
