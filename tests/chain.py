@@ -76,6 +76,13 @@ class Tables(Results, Mapping[str, pd.DataFrame]):
         other.arrow, other._frames = dict(self.arrow), dict(self._frames)
         return other
 
+    def replaced(self, name: str, rows: pd.DataFrame) -> "Tables":
+        """The same tables, one of them with other rows."""
+        other, schema = self.copy(), self.arrow[name].schema
+        other.arrow[name] = pa.Table.from_pandas(rows, schema, preserve_index=False)
+        other._frames[name] = rows
+        return other
+
     def add(self, stage: Stage, result: Any) -> None:
         """Keep what a stage returned, in the columns of its contracts."""
         pieces = result.items() if isinstance(result, Mapping) else result

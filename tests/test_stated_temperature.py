@@ -65,6 +65,35 @@ def test_its_own_sigma_decides() -> None:
     assert list(tight["segment/findings"]["cause"]) == ["temperature_misstated"]
 
 
+def test_where_the_thermometer_reads_nothing_it_is_as_warm_as_before_and_after() -> None:
+    """20, ?, 30, ?, 30.2, ? °C in one log: 25, 30.1, and 30.2 °C, the last of no other side."""
+    warm = {"x-up": 20.0, "y-up": 30.0, "z-up": 30.2}
+    document = stated()
+    document["handling"] |= {"change_s": 10}
+    for manoeuvre in document["campaign"]["plan"]:
+        manoeuvre["log"] = "session.asc"
+    recording = laboratory.perform(laboratory.specify(document))
+    decoded = chain.in_memory(recording, "quality")
+    rests = chain.in_memory(recording, "segment", onto=decoded.copy())["segment/segments"]
+    samples = decoded["decode/samples"].copy()
+    samples["temperature"] = np.nan
+    for name, degrees in warm.items():
+        own = rests[rests["manoeuvre"] == name]
+        first, after = own["from_record"].min(), own["to_record"].max()
+        samples.loc[samples["record"].between(first, after - 1), "temperature"] = degrees + ICE
+    changed = decoded.replaced("decode/samples", samples)
+    tables = chain.in_memory(recording, "segment", onto=changed)
+    means = tables["segment/blocks"].groupby("manoeuvre")["temperature"].mean() - ICE
+    assert means["x-down"] == pytest.approx(25.0, abs=1.0)
+    assert means["y-down"] == pytest.approx(30.1, abs=0.05)
+    assert means["z-down"] == pytest.approx(30.2)
+    findings = tables["segment/findings"].set_index("manoeuvre")
+    assert list(findings.index) == ["x-down", "y-down", "z-down"]
+    assert set(findings["cause"]) == {"temperature_unknown"}
+    assert dict(findings["severity"]) == {"x-down": 2, "y-down": 1, "z-down": 2}
+    assert findings.loc["x-down", "size"] == pytest.approx(10.0)
+
+
 def test_a_sigma_of_no_temperature_is_refused() -> None:
     document = stated()
     document["campaign"]["plan"][0]["temperature_sigma_k"] = 1.0

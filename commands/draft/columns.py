@@ -16,8 +16,11 @@ from inertial.text.messages import _
 
 INTERLEAVED_ROWS = 3  # mean length of runs of one word, up to which rows alternate
 COUNT = re.compile(r"(number[ _]of[ _])?samples|counts?|n|mean_of", re.IGNORECASE)
-TEMPERATURE = re.compile(r"temp|tmp|celsius|kelvin|°c|deg_?c(?![a-z])|^t_?c$", re.IGNORECASE)
-PLAUSIBLE = {"degC": (-80.0, 150.0), "K": (190.0, 425.0)}  # of an IMU
+TEMPERATURE = re.compile(
+    r"temp|tmp|celsius|kelvin|fahrenheit|°[cf]|deg_?[cf](?![a-z])|^t_?[cf]$", re.IGNORECASE
+)
+FAHRENHEIT = re.compile(r"fahrenheit|°f|deg_?f(?![a-z])|[_ (]f\)?$", re.IGNORECASE)
+PLAUSIBLE = {"degC": (-80.0, 150.0), "K": (190.0, 425.0), "degF": (-112.0, 302.0)}  # of an IMU
 
 
 @dataclass(frozen=True)
@@ -142,7 +145,8 @@ def _temperature_of(log: RawLog) -> tuple[Name, str] | None:
     for name, values in log.columns.items():
         if isinstance(name, str) and TEMPERATURE.search(name):
             read = finite(values)
-            for unit, (least, most) in PLAUSIBLE.items():
+            units = ["degF"] if FAHRENHEIT.search(name) else ["degC", "K"]
+            for unit, (least, most) in ((unit, PLAUSIBLE[unit]) for unit in units):
                 if least < read.min() and read.max() < most:
                     return name, unit
     return None

@@ -45,6 +45,7 @@ from inertial.detectors.table_rate import TableRateByGravity
 from inertial.detectors.temperatures import (
     TemperatureDrift,
     TemperatureMisstated,
+    TemperatureUnknown,
     WrongTemperatureUnit,
 )
 from inertial.detectors.time_of_turns import (
@@ -131,4 +132,5 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     RestsDivided(),
     TurningPointOnce(),
     TemperatureMisstated(),
+    TemperatureUnknown(),
 )

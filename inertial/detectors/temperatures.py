@@ -129,13 +129,16 @@ class TemperatureDrift(Detector):
 
 
 POSSIBLE = (150.0, 500.0)  # K, beyond which no IMU works, though a log may say so
-UNIT_OF_OFFSET = {-ICE_POINT: ("°C", "K"), ICE_POINT: ("K", "°C")}  # held, and stated
+OPERATING = (ICE_POINT - 55.0, ICE_POINT + 125.0)  # K, at the most
+KEYS = {"K": "K", "°C": "degC", "°F": "degF"}  # of units in campaign files
 
 
 class WrongTemperatureUnit(Detector):
-    """No IMU works at the temperature of a log, but at one that is 273.15 K off.
+    """No IMU works at the temperature of a log, but at what it is in another unit.
 
-    Cause: degrees Celsius that are stated as kelvin, or the reverse.
+    Cause: degrees Celsius that are stated as kelvin, or the reverse, or degrees Fahrenheit that are
+    stated as Celsius. These change by 1.8 for each kelvin, so that what depends on the temperature
+    does so by less.
     """
 
     name = "wrong_temperature_unit"
@@ -145,29 +148,53 @@ class WrongTemperatureUnit(Detector):
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         lowest, highest = _range(log.windows.temperature)
         low, high = POSSIBLE
-        for off in UNIT_OF_OFFSET:
+        for off, held, stated in ((-ICE_POINT, "°C", "K"), (ICE_POINT, "K", "°C")):
             if not low < lowest <= highest < high and low < lowest - off <= highest - off < high:
-                yield log.event(off, facts=(lowest, highest))
+                yield log.event(off, facts=(lowest, highest, held, stated))
+        coldest, warmest = OPERATING
+        if highest > warmest and coldest < _fahrenheit(lowest) <= _fahrenheit(highest) < warmest:
+            off = highest - _fahrenheit(highest)
+            yield log.event(off, facts=(lowest, highest, "°F", "°C"))
 
     def describe(self, event: Event, name: str) -> Description:
-        held, stated = UNIT_OF_OFFSET[event.size]
-        low, high = (_celsius(value) for value in event.facts)
+        low, high, held, stated = event.facts
+        says = _(
+            "{name}: temperatures from {low} to {high} °C, as if in {held} where {stated} is "
+            "stated.",
+            name=name,
+            low=_celsius(low),
+            high=_celsius(high),
+            held=held,
+            stated=stated,
+        )
+        cure = _("State unit: {unit} of the temperature.", unit=KEYS[held])
+        if held == "°F":
+            return Description(
+                _(
+                    "{says} In °F they are from {low} to {high} °C, at which IMUs work.",
+                    says=says,
+                    low=_celsius(_fahrenheit(low)),
+                    high=_celsius(_fahrenheit(high)),
+                ),
+                _(
+                    "What changes with the temperature then does so 1.8 times as much per kelvin "
+                    "as is estimated, and the parameters hold for another temperature."
+                ),
+                _("{cure} If the thermometer is right, leave it.", cure=cure),
+            )
         return Description(
-            _(
-                "{name}: temperatures from {low} to {high} °C, as if in {held} where {stated} is "
-                "stated.",
-                name=name,
-                low=low,
-                high=high,
-                held=held,
-                stated=stated,
-            ),
+            says,
             _(
                 "The parameters hold for a temperature that is 273.15 K off; how they change with "
                 "it is right."
             ),
-            _("State unit: {unit} of the temperature.", unit={"K": "K", "°C": "degC"}[held]),
+            cure,
         )
+
+
+def _fahrenheit(kelvin: float) -> float:
+    """What degrees Fahrenheit are that were taken for degrees Celsius, K."""
+    return (kelvin - ICE_POINT - 32.0) / 1.8 + ICE_POINT
 
 
 def _range(temperature: Array) -> tuple[float, float]:
@@ -267,4 +294,47 @@ class TemperatureMisstated(PlanDetector):
                 off=significant(abs(deviation.size), 2),
             ),
             _("Correct temperature_deg_c, or state its temperature_sigma_k."),
+        )
+
+
+class TemperatureUnknown(PlanDetector):
+    """The thermometer reads nothing in most of a manoeuvre, while it does in others of its log.
+
+    Cause: a thermometer that is read less often, or was not connected. The sensors are used at a
+    temperature between those before and after, which is as uncertain as these differ.
+    """
+
+    name = "temperature_unknown"
+    source = "JCGM 100:2008, 4.3: an estimate between limits"
+    unit = "K"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        logs = np.array(recorded.log)
+        unknown = np.isnan(recorded.temperature) & np.isnan(recorded.stated_temperature)
+        for log in dict.fromkeys(logs[unknown & recorded.found]):
+            own = np.flatnonzero((logs == log) & recorded.found)
+            known = own[~unknown[own]]
+            for i in own[unknown[own]] if len(known) else ():
+                before, after = known[known < i][-1:], known[known > i][:1]
+                beside = recorded.temperature[np.append(before, after)]
+                apart = float(np.ptp(beside)) if len(beside) > 1 else MAX_DRIFT
+                severity = 1 if apart < MAX_DRIFT else 2
+                yield self.of(recorded, int(i), apart, facts=tuple(beside), severity=severity)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        i = deviation.at
+        assert i is not None and deviation.size is not None
+        beside = [_celsius(kelvin) for kelvin in deviation.facts]
+        return Description(
+            _(
+                "{name}: the thermometer reads nothing; in those before and after {beside} °C.",
+                name=recorded.name[i],
+                beside=_(" and ").join(beside),
+            ),
+            _(
+                "Its readings are used, at a temperature between these. What depends on the "
+                "temperature is uncertain there by up to {apart} K.",
+                apart=significant(deviation.size, 2),
+            ),
+            _("State temperature_deg_c of the manoeuvre if it is known."),
         )

@@ -147,7 +147,7 @@ class Recorded:
     from_s, to_s: (m,).
     gyros: (m, 3), whether its log has readings of them.
     count: (m,), rad, what a count of its gyros is by the campaign, NaN where not stated.
-    temperature: (m,), K, recorded, NaN where it is not; stated_temperature and its
+    temperature: (m,), K, recorded, NaN where it mostly is not; stated_temperature and its
     temperature_sigma: those of the plan, NaN where not stated.
     gyro_signs: (3,), +1 right and −1 wrong, by the earth rate, 0 where it does not show.
     misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of

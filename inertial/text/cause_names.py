@@ -43,6 +43,7 @@ NAMES = {
     "temperature_drift": _("temperature drift"),
     "wrong_temperature_unit": _("temperature in another unit than is stated"),
     "temperature_misstated": _("temperature misstated"),
+    "temperature_unknown": _("temperature not recorded"),
     "time_stands_still": _("time stands still"),
     "wrong_angle": _("turn that goes too far"),
     "wrong_direction": _("wrong direction"),

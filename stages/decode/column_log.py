@@ -21,6 +21,9 @@ from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
 from stages.decode.decoded import Decoded, first_of, intervals_of, on_axis
 from stages.decode.table_angle import ANGLE_UNITS, Continuous
 
+# What a degree of a unit is in K, and its zero.
+KELVIN = {"degC": (1.0, ICE_POINT), "K": (1.0, 0.0), "degF": (5 / 9, ICE_POINT - 32 * 5 / 9)}
+
 
 @dataclass(frozen=True)
 class Stamped:
@@ -153,8 +156,8 @@ class ColumnLog:
                 unit = ANGLE_UNITS[self._layout["table_angle"]["unit"]]
                 samples["table_angle"] = continuous(rows.table_angle * unit)
             if rows.temperature is not None:
-                above = ICE_POINT if self._layout["temperature"]["unit"] == "degC" else 0.0
-                samples["temperature"] = rows.temperature + above
+                degree, zero = KELVIN[self._layout["temperature"]["unit"]]
+                samples["temperature"] = rows.temperature * degree + zero
             sigmas = {
                 **self._sigmas("accel", "accelerometer", rows.accelerometer_sigma),
                 **self._sigmas("gyro", "gyro", rows.gyro_sigma),

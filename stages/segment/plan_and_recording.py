@@ -89,7 +89,9 @@ def recorded_of(
     parts = _parts(recording.segments)
     done = [recording.performed[m.name] for m in plan]
     observations = [_shown(m, where[m.name]) for m in plan]
-    warm = recording.blocks.groupby("manoeuvre")["temperature"].mean().to_dict()
+    by_manoeuvre = recording.blocks.groupby("manoeuvre")["temperature"]
+    mostly = by_manoeuvre.count() > by_manoeuvre.size() / 2
+    warm = by_manoeuvre.mean().where(mostly).to_dict()
     places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
     swapped = [in_order(exchanged, plan) for exchanged in explained.exchanged]
     first, after, from_s, to_s = np.array(places).reshape(-1, 4).T

@@ -172,12 +172,23 @@ class Blocks(SumsOver):
 
 
 def with_temperatures(blocks: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFrame:
-    """The table of blocks with the stated temperature where none is recorded, K."""
+    """The table of blocks with a temperature where none is recorded, K.
+
+    That which is stated, or else, in a log that has some, one between those before and after.
+    """
     stated = {m.name: m.temperature for m in plan if m.temperature is not None}
-    if not stated:
-        return blocks
-    temperature = blocks["temperature"].fillna(blocks["manoeuvre"].map(stated).astype(np.float64))
-    return blocks.assign(temperature=temperature)
+    temperature = blocks["temperature"]
+    if stated:
+        temperature = temperature.fillna(blocks["manoeuvre"].map(stated).astype(np.float64))
+    filled = temperature.to_numpy(np.float64).copy()
+    for places in blocks.groupby("log").indices.values():
+        own, record = filled[places], blocks["from_record"].to_numpy()[places]
+        known = np.isfinite(own)
+        if known.any() and not known.all():
+            order = np.argsort(record[known])
+            between = np.interp(record, record[known][order], own[known][order])
+            filled[places] = np.where(known, own, between)
+    return blocks.assign(temperature=filled)
 
 
 def _edges(part: Part, length: int, gaps: Integers, unseen: Integers) -> tuple[Integers, Integers]:

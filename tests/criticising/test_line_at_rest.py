@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import chain
 import numpy as np
 import pandas as pd
-import pyarrow as pa
 import pytest
 from residuals_of_turns import NOISE, turns
 
@@ -73,12 +72,9 @@ def decoded():
 def criticised(decoded, disturbance):
     """The findings where the rates, as functions of the samples, are added to the x gyro."""
     recording, tables_before = decoded
-    disturbed = tables_before.copy()
-    samples = disturbed["decode/samples"].copy()
+    samples = tables_before["decode/samples"].copy()
     samples["gyro_x"] += disturbance(samples)
-    schema = disturbed.arrow["decode/samples"].schema
-    disturbed.arrow["decode/samples"] = pa.Table.from_pandas(samples, schema, preserve_index=False)
-    disturbed._frames.clear()
+    disturbed = tables_before.replaced("decode/samples", samples)
     results = chain.in_memory(recording, "criticism", chain.BESIDE, onto=disturbed)
     return results["criticism/findings"].set_index("cause"), results["criticism/effects"]
 

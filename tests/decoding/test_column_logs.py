@@ -39,6 +39,29 @@ def test_units_and_counts_become_si(tmp_path):
     assert samples["gyro_y"][1] == 180
 
 
+@pytest.mark.parametrize("delimiter", [",", ";"])
+def test_a_temperature_that_is_not_told_costs_no_sample(tmp_path, delimiter):
+    """°F are 5/9 K; what is no number and not nothing is damage, and its row is refused."""
+    temperatures = ("77", "", "NaN", "n/a", "7x7", "-40", "inf")
+    rows = (f"{time} 1 2 3 {warm}" for time, warm in enumerate(temperatures))
+    path = tmp_path / "log.csv"
+    path.write_text("".join(row.replace(" ", delimiter) + "\n" for row in rows))
+    layout = {
+        "kind": "columns",
+        "delimiter": delimiter,
+        "time": {"column": 1, "unit": "s"},
+        "gyro": {"columns": [2, 3, 4], "unit": "deg/s"},
+        "temperature": {"column": 5, "unit": "degF"},
+    }
+    tables = one(path, layout)
+    assert tables["samples"]["record"] == [0, 1, 2, 3, 5]
+    warm = tables["samples"]["temperature"]
+    assert [warm[0], warm[4]] == [pytest.approx(298.15), pytest.approx(233.15)]
+    assert all(each is None or math.isnan(each) for each in warm[1:4])
+    refused = tables["refused"]
+    assert refused["line"] == [5, 7] and "'7x7', expected a finite number" in refused["reason"][0]
+
+
 def test_without_time_there_is_no_clock(tmp_path):
     path = tmp_path / "log.txt"
     path.write_bytes(b"1 2 3\n4 5 6\n")

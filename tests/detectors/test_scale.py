@@ -225,6 +225,8 @@ def test_an_imu_that_turns_and_falls_has_signed_counts():
         (298.0, None),
         (230.0, None),
         (1e4, None),
+        (273.15 + 149.0, "In °F they are from 65.0 to 65.0 °C"),  # (149 − 32) · 5/9
+        (273.15 + 120.0, None),
     ],
 )
 def test_temperatures_in_the_other_unit(temperature, said):

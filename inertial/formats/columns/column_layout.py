@@ -61,8 +61,8 @@ class ColumnLayout:
 
     @property
     def of_every_row(self) -> list[Column]:
-        """The columns that hold a number in every row."""
-        columns = (self.time, self.mean_of, self.table_angle, self.temperature)
+        """The columns that hold a number in every row; a temperature may be unknown."""
+        columns = (self.time, self.mean_of, self.table_angle)
         return [column for column in columns if column]
 
     @property
@@ -79,8 +79,14 @@ class ColumnLayout:
     @property
     def number_indices(self) -> list[int]:
         """The columns of numbers whose text is not required."""
-        numbers = {column.index for column in (*self.of_every_row, *self.axes, *self.sigmas)}
+        numbers = {column.index for column in self.of_numbers}
         return sorted(numbers - set(self.text_indices))
+
+    @property
+    def of_numbers(self) -> list[Column]:
+        """The columns of numbers."""
+        temperature = [self.temperature] if self.temperature else []
+        return [*self.of_every_row, *temperature, *self.axes, *self.sigmas]
 
     @property
     def text_indices(self) -> list[int]:
@@ -100,7 +106,7 @@ class ColumnLayout:
     @property
     def all(self) -> list[Column]:
         """Every column that is required."""
-        return [*self.of_every_row, *self.texts, *self.axes, *self.sigmas]
+        return [*self.of_numbers, *self.texts]
 
 
 def without_comment_mark(header: str) -> str:

@@ -18,6 +18,7 @@ from inertial.formats.arrow_arrays import array_of_texts, numbers_of
 _DECIMAL = pa.decimal128(38, 9)  # holds every number of nanoseconds since 1970 to its last digit
 _TO_WHOLE = pc.CastOptions(target_type=pa.int64(), allow_decimal_truncate=True)
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?", re.ASCII)
+NO_VALUE = ("", "nan", "na", "n/a", "null", "none", "-", "--")  # in lower case
 _TIME_ALONE = r"^(\d?\d:\d\d?:\d\d?)"
 _DAY_FIRST = r"^(\d\d?)\.(\d\d?)\.(\d{4}),?[ T]"
 _MONTH_FIRST = r"^(\d\d?)/(\d\d?)/(\d{4}),? (.*[AaPp]\.?[Mm]\.?)$"
@@ -46,6 +47,9 @@ class ColumnValues(Protocol):
 
     def blank(self) -> Booleans:
         """Where nothing stands, (n,)."""
+
+    def unknown(self) -> Booleans:
+        """Where it is said that there is no value: nothing, NaN, n/a, (n,)."""
 
     def text(self, row: int) -> str:
         """What stands in one row, for whoever has to correct it."""
@@ -92,6 +96,11 @@ class TextValues:
         """Which texts are empty, (n,)."""
         return np.asarray(numbers_of(pc.utf8_length(self._texts)) == 0)
 
+    def unknown(self) -> Booleans:
+        """Which texts say that there is no value, (n,)."""
+        known = pc.is_in(pc.utf8_lower(self._texts), array_of_texts(list(NO_VALUE)))
+        return np.asarray(numbers_of(known.cast(pa.int8())) == 1)
+
     def texts(self) -> list[str]:
         """The texts as they stand in the file, (n,)."""
         texts: list[str] = self._texts.to_pylist()
@@ -121,6 +130,10 @@ class NumberValues:
         """Nowhere: what is no number is damaged, (n,)."""
         return np.zeros(len(self._values), bool)
 
+    def unknown(self) -> Booleans:
+        """Which are NaN, (n,)."""
+        return np.isnan(self.numbers())
+
     def texts(self) -> list[str]:
         """The numbers in digits, whole ones without a point: 3, not 3.0, (n,)."""
         return [_digits(value) for value in self._values.tolist()]
@@ -149,6 +162,10 @@ class WordValues:
     def blank(self) -> Booleans:
         """Where there is no word, (n,)."""
         return np.array([not text for text in self.texts()], bool)
+
+    def unknown(self) -> Booleans:
+        """Which words say that there is no value, (n,)."""
+        return np.array([text.lower() in NO_VALUE for text in self.texts()], bool)
 
     def texts(self) -> list[str]:
         """The words, empty where there is none, (n,)."""

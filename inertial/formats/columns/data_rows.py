@@ -68,21 +68,21 @@ def sort_rows(
     """The rows whose wanted columns, by index, are `fields`; `unreadable` ones are refused anyway.
 
     A row is refused where the layout wants a number and there is no finite one. A sensor all of
-    whose columns are blank in a row is not recorded in it.
+    whose columns are blank in a row is not recorded in it, and a temperature that is blank or NaN
+    is unknown.
     """
     count = len(place.record)
     reasons = dict(unreadable or {})
     intact = np.ones(count, bool)
     intact[list(reasons)] = False
     exact = columns.exact_time
-    required = dict.fromkeys([*columns.of_every_row, *columns.axes, *columns.sigmas])
-    numbers = {each: fields[each.index].numbers() for each in required if each != exact}
+    numbers = {each: fields[each.index].numbers() for each in columns.of_numbers if each != exact}
     held = [_held(triad, fields, numbers, count) for triad in columns.triads]
     selected = _selected(columns, held)
     wanted = [(column, selected) for column in columns.of_every_row if column != exact]
     axes = [_axes(*each, numbers) for each in zip(columns.triads, held, strict=True)]
-    for triad, holds in zip(columns.triads, held, strict=True):
-        wanted += [(column, holds) for column in triad.columns if column]
+    of_triads = zip(columns.triads, held, strict=True)
+    wanted += [(column, holds) for triad, holds in of_triads for column in triad.columns if column]
 
     def refuse(column: Column, where: Booleans, expected: str) -> None:
         for row in np.flatnonzero(intact & where).tolist():
@@ -101,6 +101,9 @@ def sort_rows(
         refuse(exact, selected & ~known, whole)
     for column, needed in wanted:
         refuse(column, needed & ~np.isfinite(numbers[column]), _("a finite number"))
+    if warm := columns.temperature:
+        wrong = selected & _wrong(fields[warm.index], numbers[warm])
+        refuse(warm, wrong, _("a finite number, or nothing where it is unknown"))
     for column, unusable in _unusable_sigmas(columns, numbers, axes):
         refuse(column, unusable, _("the standard deviation of a mean, above 0"))
     taken = intact & selected
@@ -163,6 +166,12 @@ def _sigmas(triad: Triad, numbers: Mapping[Column, Array], taken: Booleans) -> A
     none = np.full(len(taken), np.nan)
     own = [none if column is None else numbers[column] for column in triad.sigmas]
     return np.column_stack(own)[taken]
+
+
+def _wrong(values: ColumnValues, numbers: Array) -> Booleans:
+    """Where there is neither a number nor nothing, (n,)."""
+    infinite = ~np.isfinite(numbers)
+    return infinite & ~values.unknown() if infinite.any() else infinite
 
 
 def _unusable_sigmas(

@@ -279,7 +279,7 @@ def _table(
         else:
             values[index] = NumberValues(numbers_of(column))
             if not np.isfinite(values[index].numbers()).all():
-                return None
+                return None  # among them an infinite or unknown temperature, which texts tell apart
     return values, table.num_rows, others
 
 
