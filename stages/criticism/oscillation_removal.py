@@ -40,10 +40,10 @@ def without_lines(
     """The same blocks, each line removed from the steady ones with its own phase in each turn.
 
     An oscillation of the case adds no angle from rest to rest; what goes on at rest is removed from
-    ramps and rests too. A ripple of the table adds angle where its order is no
-    integer, or the turn no whole one, which is removed too where one ripple against the angle
-    explains all turns. What else it adds in the steady part is removed while the table accelerates
-    and decelerates. In the rests of a tumble such a ripple is an error of the position.
+    ramps and rests too. A ripple of the table adds angle where its order is no integer, or the turn
+    no whole one, which is removed too where one ripple against the angle explains all turns. What
+    else it adds in the steady part is removed while the table accelerates and decelerates. In the
+    rests of a tumble such a ripple is an error of the position.
     """
     if not lines:
         return blocks
