@@ -14,7 +14,7 @@
 #                                 table time>, 30, CRITERION=A, D or worst, NAME=<name>
 #   make design CAMPAIGN=<name> TABLE=<table>   what to record next, so that a class is split; with
 #                                 WANT=gyroscope/scale=5e-6, so that wanted sigmas are reached
-#   make trace ID=<number>        from a number of the report, such as gyroscope/joint/bias_x, back to
+#   make trace ID=<number>        from a number of the report, as diagnosis/gyroscope/bias_x, back to
 #                                 the lines of the logs; also with CAMPAIGN=<name>
 #   make index                    reports/index.html: all campaigns that have a result, to filter and
 #                                 sort; and reports/history/<serial>.html: each IMU over its calibrations

@@ -149,10 +149,32 @@ def test_nothing_conforms_of_a_sensor_that_is_not_usable():
     result = [row | {"value": 1e-6, "sigma": 1e-8}, row | {"sensor": "accel"}]
     limit = {"kind": "bias", "limit": 1e-5, "unit": "rad/s", "decision_rule": GUARD_BAND}
     limits = [limit | {"sensor": "gyro"}]
-    (usable,) = conformity_rows(result, limits, ())
-    (unusable,) = conformity_rows(result, limits, {("gyro", "")})
+    (usable,) = conformity_rows(result, limits, (), {})
+    (unusable,) = conformity_rows(result, limits, {("gyro", "")}, {})
     assert usable["statement"] == CONFORMS
     assert unusable["statement"] == "not_assessed" and unusable["risk"] is None
+
+
+def test_a_bias_that_jumped_is_judged_by_what_it_is_since_then():
+    """0.3 °/h before and 3.3 after, of a tolerance of 2; their errors add to 0.05 °/h."""
+    hour = np.radians(1 / 3600)
+    own = {"mount": "", "sensor": "gyro", "unit": "rad/s"}
+    bias = {"id": "b", "parameter": "bias_x", "effect": None, "value": 0.3 * hour}
+    jump = {"id": "j", "parameter": "gyro_bias_jump.b_x", "effect": "gyro_bias_jump"}
+    result = [
+        own | bias | {"sigma": 0.04 * hour},
+        own | jump | {"value": 3.0 * hour, "sigma": 0.05 * hour},
+    ]
+    limit = {"sensor": "gyro", "kind": "bias", "limit": 2 * hour, "unit": "rad/s"}
+    limits = [limit | {"decision_rule": GUARD_BAND}]
+    common = {("b", "j"): -0.0008 * hour**2}
+    (after,) = conformity_rows(result, limits, (), common)
+    assert after["statement"] == DOES_NOT_CONFORM and after["risk"] < 1e-9
+    (before,) = conformity_rows(result[:1], limits, (), common)
+    assert before["statement"] == CONFORMS
+    result[1]["value"] = 1.65 * hour  # 1.95 ± 0.05: within, and not by two sigma
+    (near,) = conformity_rows(result, limits, (), common)
+    assert near["statement"] == NOT_SHOWN
 
 
 # ---- In the report

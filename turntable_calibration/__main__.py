@@ -153,7 +153,7 @@ def new(of: tuple[Path, int], plan: str, name: str) -> int:
 @click.argument("number")
 @click.pass_obj
 def trace(of: tuple[Path, int], campaign: str, number: str) -> int:
-    """Follow NUMBER, such as gyroscope/joint/bias_x, back to the lines of the logs."""
+    """Follow NUMBER, such as diagnosis/gyroscope/bias_x, back to the lines of the logs."""
     return command("trace", ["--campaign", campaign, f"--id={number}"], of[0])
 
 

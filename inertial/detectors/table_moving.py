@@ -157,16 +157,17 @@ class TableMoving(Detector):
         kind = _("tilts") if motion.kind == "tilt" else _("creeps")
         return Description(
             _(
-                "{name}: the table {kind} by {size} {span}, while it should rest: the direction "
+                "{name}: {what} {kind} by {size} {span}, while it should rest: the direction "
                 "of gravity turns in the case, {confirmation}.",
                 name=name,
+                what=_("the table, or the IMU on it,") if moved.attitude_set else _("the IMU"),
                 kind=kind,
                 size=size,
                 span=span,
                 confirmation=confirmation,
             ),
             _cost(moved),
-            _("The rest is used as it is. Record it again, once the table stands."),
+            _("The rest is used as it is. Record it again, on what does not give way."),
         )
 
 

@@ -21,6 +21,7 @@ class AccelLatency(Effect):
     source = "Titterton & Weston 2004, bandwidth of accelerometers"
     parameters = (Parameter("tau", "s", 1e-3, _("by which accelerometers lag behind gyros")),)
     sizes = by_grade(1e-3, 5, 3, 5, 10)
+    stays = _("set the stamps of one sensor right by it instead")
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         return replace(truth, force=truth.force + values[0] * cross(motion.omega, truth.force))

@@ -153,9 +153,9 @@ def reads_in_words(axes: Permutation) -> str:
 def _handed(misread: Misread, recorded: Recorded) -> str:
     flips = misread.axes.in_place
     usual = (
-        _("A sign that a reader forgets, or takes twice, is the usual cause: RAWIMUS has −y.")
+        _("A sign that a reader forgets, or takes twice, is the usual cause.")
         if flips
-        else _("Another order of the fields is the usual cause: RAWIMUS has z, −y, x.")
+        else _("Another order of the fields in the log is the usual cause.")
     )
     if determinant(misread.axes) < 0:
         return _(

@@ -48,8 +48,8 @@ NO_COMMON_TIME = _(
 )
 ACTION_OF_JUMP = _(
     "If the IMU was switched off and on at that time, state power_cycle: true in the first "
-    "manoeuvre after it; else remove it at its origin, or compensate readings with its terms too, "
-    "which the export holds where the result includes them."
+    "manoeuvre after it; else find what changed then. Later readings have the value before the "
+    "jump and the jump together, which the export holds where the result includes them."
 )
 ACTION_OF_LATITUDE = _(
     "By the gyros the table stands at {latitude}°: correct latitude_deg, from which the earth's "

@@ -24,6 +24,7 @@ OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_erro
 TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
 MAX_WIDENED = 1.5  # times noise: smaller residuals without a name widen the sigmas, no more
+MIN_SHARE = 0.1  # of the SNR², of what held-out manoeuvres bear out
 MIN_WIDENED_DROP = 0.5  # of the SNR²: what effects then bring on held-out manoeuvres at least
 
 NO_JOINT = _("There is no joint result of the {sensors}.")
@@ -55,7 +56,11 @@ REPLACED = _(
 )
 REPLACED_WALK = _(
     "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {drop} "
-    "against the joint fit and its random walk{left}."
+    "against the joint fit, with its random walk if it has one{left}."
+)
+LITTLE = _(
+    " That is {share} % of what it should be: the held-out manoeuvres hardly bear it out. Compare "
+    "the sigmas with those of the joint fit."
 )
 NOTHING_LEFT = _(", and no finding remains unexplained")
 WIDENED = _(
@@ -152,6 +157,8 @@ def decided(
         expected=significant(best["snr_squared"]),
         left=WIDENED.format(ratio=significant(widened, 2)) if widened > 1 else NOTHING_LEFT,
     )
+    if best["drop"] < MIN_SHARE * best["snr_squared"]:
+        reason += LITTLE.format(share=significant(100 * best["drop"] / best["snr_squared"], 2))
     return Decision(best["method"], reason + others, widened=widened)
 
 

@@ -70,9 +70,10 @@ class SensorResult:
         return self._smallest(SCALE)
 
     @property
-    def scale_sigmas(self) -> dict[str, float]:
-        """The sigma of each scale factor that is determined, by the name of the parameter."""
-        rows = (row for row in self.chosen.rows if row["parameter"] in SCALE and row["sigma"])
+    def matrix_sigmas(self) -> dict[str, float]:
+        """The sigma of each scale factor and cross term that is determined, by its name."""
+        names = {*SCALE, *CROSS}
+        rows = (row for row in self.chosen.rows if row["parameter"] in names and row["sigma"])
         return {row["parameter"]: float(row["sigma"]) for row in rows}
 
     @property

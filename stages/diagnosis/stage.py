@@ -12,6 +12,7 @@ from inertial.tables.stage import Stage, Tables
 from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
+from stages.diagnosis.result import covariance_by_ids
 from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.sizes_of_causes import by_result, sentences, sizes
 from stages.diagnosis.temperature_curves import curve_rows
@@ -69,13 +70,14 @@ def diagnosis(
         for result, given in zip(results, verdicts, strict=True)
         if given.verdict == NOT_USABLE
     }
+    covariance = covariance_by_ids(*(result.chosen.covariance_rows() for result in results))
     return {
         "causes": [cause.row(own_sizes, own_sentences) for cause in causes],
         "members": [row for cause in causes for row in _members(cause, findings)],
         "consequences": [row for cause in causes for row in _consequences(cause)],
         "result": written,
         **_written(results, verdicts, rows_of(swept)),
-        "conformity": [*conformity_rows(written, rows_of(tolerances), unusable)],
+        "conformity": [*conformity_rows(written, rows_of(tolerances), unusable, covariance)],
         "verdict": [
             {
                 "mount": result.mount,

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import degrees
 
 from inertial.campaign.hypotheses import MODEL
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed, significant
-from inertial.text.parameters import sign_of
+from inertial.text.parameters import CROSS, SCALE, sign_of
 from inertial.text.units import ICE_POINT
 from stages.diagnosis.causes import (
     CURVE,
@@ -40,7 +41,9 @@ LIMITS = {
 }
 IF_SET_RIGHT = _("{sensors}: {causes}. Set right; the result is valid on condition: {conditions}.")
 IF_ASSUMED = _("{sensors}: {causes}. The result is valid on condition: {conditions}.")
-MAX_SCALE_SIGMA = 0.01  # of a scale factor: what is known to no better is said of a usable result
+# What is known to no better is said of a usable result.
+MAX_SCALE_SIGMA = 0.01  # of a scale factor
+MAX_CROSS_SIGMA = 5e-3  # rad, of a cross term
 MOST_NAMES = 4  # of causes, or parameters, in a sentence
 
 
@@ -122,15 +125,19 @@ def verdict(
 
 
 def _coarse(result: SensorResult) -> str:
-    """The scale factors that the recording hardly tells, as a sentence that follows another one."""
-    coarse = {name: sigma for name, sigma in result.scale_sigmas.items() if sigma > MAX_SCALE_SIGMA}
-    if not coarse:
-        return ""
-    return _(
-        " Known to {percent} % (σ) only: {names}.",
-        percent=significant(100 * max(coarse.values()), 2),
-        names=", ".join(map(sign_of, sorted(coarse))),
-    )
+    """What of M the recording hardly tells, as a sentence that follows another one."""
+    said = ""
+    for names, least, percent in ((SCALE, MAX_SCALE_SIGMA, True), (CROSS, MAX_CROSS_SIGMA, False)):
+        coarse = {n: s for n, s in result.matrix_sigmas.items() if n in names and s > least}
+        if coarse:
+            largest = max(coarse.values())
+            size = (100 * largest, " %") if percent else (degrees(largest), "°")
+            said += _(
+                " Known to {known} (σ) only: {names}.",
+                known=f"{significant(size[0], 2)}{size[1]}",
+                names=", ".join(map(sign_of, sorted(coarse))),
+            )
+    return said
 
 
 def not_recorded(sensor: str) -> Verdict:

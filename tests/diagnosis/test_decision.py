@@ -1,10 +1,13 @@
 """Which candidate counts: predicted better, no alarm, carried by no manoeuvre, nothing lost."""
 
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from stages.diagnosis.decision import alarms_of, decided
+from stages.diagnosis.verdict import verdict
 
 Row = dict[str, Any]
 
@@ -146,3 +149,22 @@ def test_what_is_not_understood_is_an_alarm_of_its_sensor_and_a_random_walk_is_n
     assert [r["cause"] for r in alarms_of(findings, "", "gyro")] == ["gyro_drift", "unexplained"]
     assert alarms_of(findings, "", "accel") == []
     assert [row["cause"] for row in alarms_of(findings, "lying", "gyro")] == ["table_tilt"]
+
+
+def test_of_what_held_out_manoeuvres_hardly_bear_out_the_share_is_said():
+    """229 of 12,030: 1.9 %."""
+    little = decided([JOINT, candidate(drop=229.0, snr_squared=12030.0)], [effect()])
+    assert little.method == "extended" and "That is 1.9 % of what it should be" in little.reason
+    much = decided([JOINT, candidate(drop=9000.0, snr_squared=12030.0)], [effect()])
+    assert "hardly bear it out" not in much.reason
+
+
+def test_what_of_the_matrix_is_hardly_known_is_said_of_a_usable_result():
+    """A cross term to 1100″ is said; one to 100″ and a scale factor to 0.1 % are not."""
+    known = {"scale_x": 1e-3, "cross_xy": np.radians(100 / 3600), "cross_yz": np.radians(0.306)}
+    result = SimpleNamespace(sensor="gyro", undetermined=[], matrix_sigmas=known)
+    told = verdict(result, [])
+    assert told.verdict == "usable_within_limits"
+    assert told.sentence == "Gyros: usable. Known to 0.31° (σ) only: m_yz."
+    del known["cross_yz"]
+    assert verdict(result, []).verdict == "usable"

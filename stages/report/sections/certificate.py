@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from inertial.sensors import PLURAL
@@ -20,9 +20,8 @@ from inertial.text.statements import (
     TRACEABILITY,
 )
 from inertial.text.typography import capital
-from inertial.text.units import COVERAGE_FACTOR, DEGREES, ICE_POINT, Unit
+from inertial.text.units import COVERAGE_FACTOR, DEGREES, ICE_POINT
 from stages.report.outline import (
-    Column,
     Equation,
     Facts,
     Figure,
@@ -30,26 +29,28 @@ from stages.report.outline import (
     Level,
     Paragraph,
     Part,
-    Row,
     Section,
     Sentences,
     Signatures,
     Table,
-    Traced,
     columns,
-    head,
     table_row,
 )
 from stages.report.results import (
     RESULT_TABLES,
-    Estimate,
     final_results,
-    quantity_of,
-    symbol,
     withheld,
 )
 from stages.report.sections import basis
 from stages.report.sections.axes_of_case import axes_of_case
+from stages.report.sections.certified_values import (
+    NOT_USABLE,
+    earlier_values,
+    frame_of,
+    further_terms,
+    values,
+)
+from stages.report.sections.comparisons import changed_in_words
 from stages.report.sections.conformity import conformity
 from stages.report.sections.findings import causes, spoils
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
@@ -73,7 +74,6 @@ ITEMS = {  # of the left and of the right column, each with the items that it jo
     _("Measured with"): ("conditions.measured_with",),
 }
 IF_STATED = {"laboratory.place", "item.axes", "conditions.humidity", "conditions.measured_with"}
-NOT_USABLE = "not_usable"  # the verdict
 GUESSES = _(
     "Guessed in the campaign file and not confirmed: {guesses}. The values below are as good as "
     "these guesses. Correct them there, and delete from `guessed` what is confirmed."
@@ -114,7 +114,7 @@ def parts(tables: Tables) -> Iterator[Part]:
         yield Paragraph(GUESSES.format(guesses=listed(guesses)), "fair")
     yield Facts(tuple(_facts(tables)))
     yield _standards(tables)
-    if _frame(final_results(tables)) == BODY:
+    if frame_of(final_results(tables)) == BODY:
         yield Figure(
             _("Axes of the case: right-handed; the axis that points up reads +g."),
             axes_of_case(),
@@ -138,13 +138,13 @@ def parts(tables: Tables) -> Iterator[Part]:
         ),
     )
     yield Heading(_("Results"), breaks=True)
-    earlier = _earlier(tables)
+    earlier = earlier_values(tables)
     shown = [result for result in final_results(tables) if result.place not in withheld(tables)]
     for mount in dict.fromkeys(result.mount for result in shown):
         own = [result for result in shown if result.mount == mount]
-        yield _values(own, mount, earlier)
+        yield values(own, mount, earlier)
         if effects := [row for result in own for row in result.effects]:
-            yield _effects(effects)
+            yield further_terms(effects)
     yield from _not_for_use(tables)
     yield from conformity(tables)
     yield Sentences(tuple(_statements(tables, earlier)))
@@ -307,142 +307,6 @@ def _misfits(tables: Tables) -> Iterator[str]:
             yield f"{capital(result.sensor)}: {words}."
 
 
-def _frame(results: Sequence[Estimate]) -> str:
-    """The frame of the results: by hand nothing tells the axes of the case."""
-    frames = (row["frame"] for one in results for row in one.parameters if row["frame"])
-    return str(next(frames, BODY))
-
-
-def _values(results: Sequence[Estimate], mount: str, earlier: Mapping[str, Record]) -> Table:
-    """The twelve parameters of each sensor side by side, in the order of the first."""
-    sensors = [result.sensor for result in results]
-    names = list(dict.fromkeys(n for one in results for n in map(_name, one.parameters)))
-    by_sensor = [{_name(row): row for row in one.parameters} for one in results]
-    written = [_with_uncertainty(list(own.values())) for own in by_sensor]
-    rows: list[Row] = []
-    for name in names:
-        cells = [symbol(name)]
-        for own, texts in zip(by_sensor, written, strict=True):
-            cells += [*texts.get(name, ("—", "—", ""))]
-            if earlier:
-                cells.append(_change(own.get(name), earlier))
-        rows.append(table_row(*cells))
-    extra = [Column(_("change"), "number")] if earlier else []
-    return Table(
-        _(
-            "Bias b, scale error s and cross-axis terms m{mount}, frame: {frame}; index ij: "
-            "response of sensor i to an input along axis j. U: expanded uncertainty, k = 2, about "
-            "95 %.",
-            mount=_(", mount {mount}", mount=mount) if mount else "",
-            frame=term(_frame(results)),
-        ),
-        (
-            Column("", "symbol"),
-            *(
-                Column(column.heading, column.kind, sensor)
-                for sensor in sensors
-                for column in (
-                    Column(_("value"), "number"),
-                    Column("± U", "sigma"),
-                    Column(_("unit"), "unit"),
-                    *extra,
-                )
-            ),
-        ),
-        rows,
-        _("None: no parameter was determined."),
-        _("—: not determined; “Undetermined parameters” says why.")
-        if any(len(texts) < len(names) for texts in written)
-        else "",
-    )
-
-
-def _name(row: Record) -> str:
-    return str(row["parameter"])
-
-
-def _with_uncertainty(rows: Sequence[Record]) -> dict[str, tuple[str, str, str]]:
-    """Value, U and unit of each, to two digits of its U."""
-    written: dict[str, tuple[str, str, str]] = {}
-    for row in rows:
-        if row["value"] is not None:
-            unit = quantity_of(row).shown
-            value, spread = _pair(row, unit)
-            written[_name(row)] = (Traced(value, row["id"]), spread, unit.name)
-    return written
-
-
-def _pair(row: Record, unit: Unit) -> tuple[str, str]:
-    spread = _expanded(row, unit)
-    return numbers.with_own_sigma(unit.of(row["value"]), spread)
-
-
-def _expanded(row: Record, unit: Unit) -> float | None:
-    return None if row["sigma"] is None else unit.of(COVERAGE_FACTOR * row["sigma"])
-
-
-def _effects(rows: Sequence[Record]) -> Table:
-    lines: list[Row] = []
-    for effect in dict.fromkeys(row["effect"] for row in rows):
-        lines.append(head(capital(in_words(effect))))
-        for row in rows:
-            if row["effect"] == effect and row["value"] is not None:
-                unit = quantity_of(row).shown
-                value, spread = _pair(row, unit)
-                cells = (Traced(value, row["id"]), spread, unit.name, row["meaning"])
-                lines.append(table_row(symbol(row["parameter"]), *cells))
-    return Table(
-        _(
-            "Further terms of the measurement model, estimated together with the parameters above. "
-            "Use all of them together."
-        ),
-        (
-            Column("", "symbol"),
-            Column(_("value"), "number"),
-            Column("± U", "sigma"),
-            Column(_("unit"), "unit"),
-            Column(_("meaning"), "note"),
-        ),
-        lines,
-        note=_("Where a parameter depends on the temperature, the value above is that at T0.")
-        if any(symbol(row["parameter"]) == "T0" for row in rows)
-        else "",
-    )
-
-
-# ---- The last calibration before this one.
-
-
-@once
-def _earlier(tables: Tables) -> Mapping[str, Record]:
-    """The parameters of the latest earlier calibration that is usable, by sensor, mount, name."""
-    dated = [row for row in tables.rows("earlier") if row["date"][:1].isdigit()]
-    rows = [row for row in dated if row["verdict"] != NOT_USABLE]
-    latest = max(((row["date"], row["file"]) for row in rows), default=None)
-    return {
-        _key(row["sensor"], row["mount"], row["quantity"]): row
-        for row in rows
-        if (row["date"], row["file"]) == latest
-    }
-
-
-def _key(sensor: str, mount: str, quantity: str) -> str:
-    return f"{sensor}@{mount}/{quantity}"
-
-
-def _change(row: Record | None, earlier: Mapping[str, Record]) -> str:
-    if row is None or row["value"] is None:
-        return "—"
-    before = earlier.get(_key(row["sensor"], row["mount"], row["parameter"]))
-    if before is None:
-        return "—"
-    unit = quantity_of(row).shown
-    decimals = numbers.decimals_of(_expanded(row, unit))
-    change = unit.of(row["value"] - before["value"])
-    text = numbers.significant(change, 2) if decimals is None else numbers.fixed(change, decimals)
-    return text if text.startswith("−") else f"+{text}"
-
-
 # ---- Statements.
 
 
@@ -457,6 +321,8 @@ def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
                 cause=in_words(row["cause"]),
                 share=numbers.significant(moves / COVERAGE_FACTOR, 2),
             )
+    if changed := changed_in_words(tables):
+        yield changed
     if earlier:
         before = next(iter(earlier.values()))
         yield _(
@@ -492,7 +358,15 @@ SECTION = Section(
     (
         *RESULT_TABLES,
         *("campaign", "certificate", "guesses", "standards", "known", "clocks", "blocks"),
-        *("manoeuvres", "conformity", "earlier", "causes", "verdict", "uncertainty_budget"),
+        *(
+            "manoeuvres",
+            "conformity",
+            "earlier",
+            "changes",
+            "causes",
+            "verdict",
+            "uncertainty_budget",
+        ),
     ),
     parts,
 )

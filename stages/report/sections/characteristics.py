@@ -36,7 +36,7 @@ def parts(tables: Tables) -> Iterator[Part]:
 
 def _figures(known: Sequence[Record]) -> Table:
     return Table(
-        _("Figures of each axis, as IEEE Std 528 defines them."),
+        _("Figures of each axis, in the terms of IEEE Std 528 (wording not compared with it)."),
         (
             Column(_("Axis"), "name"),
             Column(_("value"), "number"),

@@ -33,6 +33,10 @@ KINDS = {
 }
 MOST_DIFFERENCES = 120
 MOST_CHANGES = 3  # that a sentence names
+OF_A_CHANGE = _(
+    "A shock, another mounting or set-up does that; so few calibrations may not tell it from a "
+    "drift. make compare with that campaign shows whether the IMU was only turned in its mounting."
+)
 
 
 def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
@@ -202,7 +206,8 @@ def history_parts(tables: Tables) -> Iterator[outline.Part]:
     calibrations = sorted(by_file.values(), key=_date)
     if calibrations:
         yield _calibrations(calibrations, now)
-        yield from _changed(tables)
+        if changed := changed_in_words(tables):
+            yield outline.Paragraph(f"{changed} {OF_A_CHANGE}", "fair")
         date = tables.row("campaign")["date"] or "unknown"
         yield _figure(calibrations[-MOST_DRAWN + 1 :], now, date)
     else:
@@ -242,8 +247,8 @@ HISTORY = outline.Section(
 )
 
 
-def _changed(tables: Tables) -> Iterator[outline.Paragraph]:
-    """Scale factors and cross terms that are others than in the last calibration.
+def changed_in_words(tables: Tables) -> str:
+    """Scale factors and cross terms that are others than in the last calibration; or nothing.
 
     Biases may change from one switch-on to the next.
     """
@@ -251,22 +256,18 @@ def _changed(tables: Tables) -> Iterator[outline.Paragraph]:
     changed = sorted(
         (row for row in compared if row["beyond"]), key=lambda row: -abs(row["size"] / row["sigma"])
     )
-    if changed:
-        yield outline.Paragraph(
-            _(
-                "{count} of {all} scale factors and cross terms changed by more than chance since "
-                "{campaign} of {since}: {each}. A shock, another mounting or set-up does that; so "
-                "few calibrations may not tell it from a drift. make compare with that campaign "
-                "shows whether the IMU was only turned in its mounting.",
-                count=len(changed),
-                all=len(compared),
-                campaign=numbers.shortened(changed[0]["since_campaign"], 60),
-                since=numbers.shortened(changed[0]["since"], 20),
-                each=listed([_change(row) for row in changed[:MOST_CHANGES]])
-                + (_(" and others") if len(changed) > MOST_CHANGES else ""),
-            ),
-            "fair",
-        )
+    if not changed:
+        return ""
+    return _(
+        "{count} of {all} scale factors and cross terms changed by more than chance since "
+        "{campaign} of {since}: {each}.",
+        count=len(changed),
+        all=len(compared),
+        campaign=numbers.shortened(changed[0]["since_campaign"], 60),
+        since=numbers.shortened(changed[0]["since"], 20),
+        each=listed([_change(row) for row in changed[:MOST_CHANGES]])
+        + (_(" and others") if len(changed) > MOST_CHANGES else ""),
+    )
 
 
 def _change(row: Record) -> str:

@@ -182,8 +182,9 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
     ]
     yield outline.Table(
         _(
-            "Of each effect that was tested and not detected, the smallest size that this campaign "
-            "would have detected (5 σ), along the least and the most sensitive axis."
+            "Of each effect that was tested and not detected, the size that would stand out by "
+            "5 σ, along the least and the most sensitive axis. Of effects as large as that about "
+            "two in three are detected, of those at 8 σ nearly all."
         ),
         (
             outline.Column(_("Effect")),

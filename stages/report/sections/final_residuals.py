@@ -36,6 +36,10 @@ from stages.report.tables import Tables, once
 STEADY = "steady"
 MAX_SIGMAS = 3.0
 REACH, BIN = 4.5, 0.25  # σ, of the histogram
+NO_ATTITUDE = _(
+    "None: no attitude is known to predict readings by. In positions of unknown attitude "
+    "“Compensation” compares |f| with gravity."
+)
 
 
 @once
@@ -70,13 +74,8 @@ def final_residuals(tables: Tables) -> dict[str, list[Residual]]:
 def parts(tables: Tables) -> Iterator[Part]:
     """A figure of each sensor, and how the residuals compare with the noise."""
     if not any(final_residuals(tables).values()):
-        yield Paragraph(
-            _(
-                "None: there is no final result, or no attitude is known to predict readings by. "
-                "In positions of unknown attitude “Compensation” compares |f| with gravity."
-            ),
-            "fair",
-        )
+        there = any(row["value"] is not None for row in tables.rows("result"))
+        yield Paragraph(NO_ATTITUDE if there else _("None: there is no final result."), "fair")
         return
     for sensor, shown in final_residuals(tables).items():
         if shown:
@@ -87,15 +86,19 @@ def parts(tables: Tables) -> Iterator[Part]:
 SECTION = Section(
     "residuals",
     _("Residuals"),
-    _("Measured readings less those that the final result predicts, effects included."),
     _(
-        "Left, fifths of each static position and whole steady rotations, with ±3 σ of white "
+        "Measured readings less those that the final result predicts, its terms of the sensors "
+        "included."
+    ),
+    _(
+        "Effects of the table, the site or the mounting are not taken off a reading, and appear "
+        "here. Left, fifths of each static position and whole steady rotations, with ±3 σ of white "
         "noise; right, the residuals of blocks and of seconds of rotation over their σ, of which "
         "noise alone leaves 0.3 % beyond 3. Where the table's heading is not known, the azimuth of "
         "each static position is estimated with the result, so one direction of the gyros' "
         "residuals at rest is fitted away."
     ),
-    ("residuals", "manoeuvres"),
+    ("residuals", "manoeuvres", "result"),
     parts,
 )
 

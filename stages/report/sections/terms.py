@@ -27,7 +27,10 @@ TERMS: tuple[tuple[str, str], ...] = (  # each with what it means
     ),
     (
         _("detection limit"),
-        _("Size of an effect from which on this campaign would have detected it, five σ."),
+        _(
+            "Size of an effect that stands out by five σ in this campaign: about two in three as "
+            "large as that are detected."
+        ),
     ),
     (
         _("effect"),

@@ -1,0 +1,162 @@
+"""The values of a certificate with their expanded uncertainty, and how they changed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from inertial.campaign.records import grouped
+from inertial.sensors import PLURAL
+from inertial.tables import BODY
+from inertial.text import numbers
+from inertial.text.cause_names import in_words
+from inertial.text.messages import _
+from inertial.text.typography import capital
+from inertial.text.units import COVERAGE_FACTOR, Unit
+from stages.report.outline import Column, Row, Table, Traced, head, table_row
+from stages.report.results import Estimate, quantity_of, symbol
+from stages.report.tables import Record, Tables, once
+from stages.report.words import term
+
+NOT_USABLE = "not_usable"  # the verdict
+
+
+def frame_of(results: Sequence[Estimate]) -> str:
+    """The frame of the results: by hand nothing tells the axes of the case."""
+    frames = (row["frame"] for one in results for row in one.parameters if row["frame"])
+    return str(next(frames, BODY))
+
+
+def values(results: Sequence[Estimate], mount: str, earlier: Mapping[str, Record]) -> Table:
+    """The twelve parameters of each sensor side by side, in the order of the first."""
+    sensors = [result.sensor for result in results]
+    names = list(dict.fromkeys(n for one in results for n in map(_name, one.parameters)))
+    by_sensor = [{_name(row): row for row in one.parameters} for one in results]
+    written = [_with_uncertainty(list(own.values())) for own in by_sensor]
+    rows: list[Row] = []
+    for name in names:
+        cells = [symbol(name)]
+        for own, texts in zip(by_sensor, written, strict=True):
+            cells += [*texts.get(name, ("—", "—", ""))]
+            if earlier:
+                cells.append(_change(own.get(name), earlier))
+        rows.append(table_row(*cells))
+    extra = [Column(_("change"), "number")] if earlier else []
+    return Table(
+        _(
+            "Bias b, scale error s and cross-axis terms m{mount}, frame: {frame}; index ij: "
+            "response of sensor i to an input along axis j. U: expanded uncertainty, k = 2, about "
+            "95 %.",
+            mount=_(", mount {mount}", mount=mount) if mount else "",
+            frame=term(frame_of(results)),
+        ),
+        (
+            Column("", "symbol"),
+            *(
+                Column(column.heading, column.kind, sensor)
+                for sensor in sensors
+                for column in (
+                    Column(_("value"), "number"),
+                    Column("± U", "sigma"),
+                    Column(_("unit"), "unit"),
+                    *extra,
+                )
+            ),
+        ),
+        rows,
+        _("None: no parameter was determined."),
+        _("—: not determined; “Undetermined parameters” says why.")
+        if any(len(texts) < len(names) for texts in written)
+        else "",
+    )
+
+
+def _name(row: Record) -> str:
+    return str(row["parameter"])
+
+
+def _with_uncertainty(rows: Sequence[Record]) -> dict[str, tuple[str, str, str]]:
+    """Value, U and unit of each, to two digits of its U."""
+    written: dict[str, tuple[str, str, str]] = {}
+    for row in rows:
+        if row["value"] is not None:
+            unit = quantity_of(row).shown
+            value, spread = _pair(row, unit)
+            written[_name(row)] = (Traced(value, row["id"]), spread, unit.name)
+    return written
+
+
+def _pair(row: Record, unit: Unit) -> tuple[str, str]:
+    spread = _expanded(row, unit)
+    return numbers.with_own_sigma(unit.of(row["value"]), spread)
+
+
+def _expanded(row: Record, unit: Unit) -> float | None:
+    return None if row["sigma"] is None else unit.of(COVERAGE_FACTOR * row["sigma"])
+
+
+def further_terms(rows: Sequence[Record]) -> Table:
+    """The parameters of effects, by effect and, where both show it, by sensor."""
+    lines: list[Row] = []
+    by_place = grouped(rows, lambda row: (row["effect"], row["sensor"]))
+    for (effect, sensor), own in by_place.items():
+        heading = capital(in_words(effect))
+        if sum(other == effect for other, _sensor in by_place) > 1:
+            heading = _("{effect}, from the {sensors}", effect=heading, sensors=PLURAL[sensor])
+        lines.append(head(heading))
+        for row in own:
+            if row["value"] is not None:
+                unit = quantity_of(row).shown
+                value, spread = _pair(row, unit)
+                cells = (Traced(value, row["id"]), spread, unit.name, row["meaning"])
+                lines.append(table_row(symbol(row["parameter"]), *cells))
+    return Table(
+        _(
+            "Further terms of the measurement model, estimated together with the parameters above. "
+            "Use all of them together, but take off no reading what the table, the site or the "
+            "mounting causes: its finding says so."
+        ),
+        (
+            Column("", "symbol"),
+            Column(_("value"), "number"),
+            Column("± U", "sigma"),
+            Column(_("unit"), "unit"),
+            Column(_("meaning"), "note"),
+        ),
+        lines,
+        note=_("Where a parameter depends on the temperature, the value above is that at T0.")
+        if any(symbol(row["parameter"]) == "T0" for row in rows)
+        else "",
+    )
+
+
+# ---- The last calibration before this one.
+
+
+@once
+def earlier_values(tables: Tables) -> Mapping[str, Record]:
+    """The parameters of the latest earlier calibration that is usable, by sensor, mount, name."""
+    dated = [row for row in tables.rows("earlier") if row["date"][:1].isdigit()]
+    rows = [row for row in dated if row["verdict"] != NOT_USABLE]
+    latest = max(((row["date"], row["file"]) for row in rows), default=None)
+    return {
+        _key(row["sensor"], row["mount"], row["quantity"]): row
+        for row in rows
+        if (row["date"], row["file"]) == latest
+    }
+
+
+def _key(sensor: str, mount: str, quantity: str) -> str:
+    return f"{sensor}@{mount}/{quantity}"
+
+
+def _change(row: Record | None, earlier: Mapping[str, Record]) -> str:
+    if row is None or row["value"] is None:
+        return "—"
+    before = earlier.get(_key(row["sensor"], row["mount"], row["parameter"]))
+    if before is None:
+        return "—"
+    unit = quantity_of(row).shown
+    decimals = numbers.decimals_of(_expanded(row, unit))
+    change = unit.of(row["value"] - before["value"])
+    text = numbers.significant(change, 2) if decimals is None else numbers.fixed(change, decimals)
+    return text if text.startswith("−") else f"+{text}"
