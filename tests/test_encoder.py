@@ -11,7 +11,7 @@ from scipy.signal import lfilter
 
 import laboratory
 from inertial.campaign.records import Manoeuvre
-from inertial.detectors.encoder_against_plan import EncoderScale
+from inertial.detectors.encoder_against_plan import EncoderAngles, EncoderScale
 from inertial.estimation.encoder_angle import against_encoder, corrected, low_pass, ripple
 from stages.decode.table_angle import Continuous
 from stages.segment.encoder import by_encoder
@@ -54,7 +54,11 @@ def test_turns_that_stop_anywhere_ask_nothing(spread):
     for seed in range(50):
         random = np.random.default_rng(seed)
         beside = ARC_SECOND * (spread * random.standard_normal(6) + 2 * random.standard_normal(6))
+        noise = 10 * ARC_SECOND * random.standard_normal(6)
         recorded = SimpleNamespace(
+            about=np.tile([0, 0, 1.0], (6, 1)),
+            turned_farther=(stated + beside) * (1 + 6e-4) + noise,
+            encoder_jump=np.full(6, np.nan),
             angle=stated + beside,
             stated_angle=stated,
             angle_sigma=2 * ARC_SECOND,
@@ -63,6 +67,7 @@ def test_turns_that_stop_anywhere_ask_nothing(spread):
             name=list("abcdef"),
         )
         assert not list(EncoderScale().detect(recorded))
+        assert not list(EncoderAngles().detect(recorded))
 
 
 def test_without_the_encoder_the_turn_that_stopped_early_is_told_by_the_others():

@@ -118,6 +118,14 @@ SPOILING = (
     "normalised_force",
 )
 OF_ANGLES = ("clock_scale", "samples_lost")  # of these what is in proportion, and one turn's angle
+# What a gyro seems to have where the angles of turns are off, each by another amount.
+BY_ANGLES_OF_TURNS = (
+    "turn_angle_error",
+    "table_angle_scale",
+    "gyro_scale_asymmetry",
+    "gyro_scale_quadratic",
+    "sense_of_turns",
+)
 OF_TRIADS = ("axis_swap", "sign_flip", "wrong_scale_factor", "manoeuvre_swapped")
 IN_PROPORTION = frozenset(
     {
@@ -210,6 +218,7 @@ EXPLANATIONS = (
     Explanation(("time_backwards",), ("short_rest",), same_log),
     Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), anywhere),
     Explanation(("encoder_scale",), ("rate_off",), anywhere),
+    Explanation(("encoder_angles",), (*BY_ANGLES_OF_TURNS, *MISFITS), anywhere),
     Explanation(("clock_scale", "rate_off"), ("table_rate_off",), anywhere),
     Explanation(("table_rate_off",), ("wrong_rate",), anywhere),
     Explanation(
@@ -278,6 +287,8 @@ def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
         return other.cause == "oscillation" and _size(other) < _size(cause)
     if cause.cause == "bias_removed":  # at rest, and with it the earth's rate
         return "earth_rate_omitted" in other.causes
+    if cause.cause == "encoder_angles":
+        return not other.causes.isdisjoint(BY_ANGLES_OF_TURNS)
     if cause.cause in ("position_not_kept", "fixture_creep"):
         return other.cause in ("position_scatter", "mounting_shift", *POSITION_OFF)
     if cause.cause not in OF_ANGLES:

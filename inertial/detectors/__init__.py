@@ -11,7 +11,7 @@ from inertial.detectors.clock_scale import ClockScale
 from inertial.detectors.copied_channel import CopiedChannel
 from inertial.detectors.copied_log import CopiedLog
 from inertial.detectors.dead_axis import DeadAxis
-from inertial.detectors.encoder_against_plan import EncoderScale
+from inertial.detectors.encoder_against_plan import EncoderAngles, EncoderScale
 from inertial.detectors.fixture_creep import FixtureCreep
 from inertial.detectors.gap import Gap
 from inertial.detectors.gravity_error import GravityError
@@ -126,6 +126,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     MotionAfterTurns(),
     WrongRate(),
     EncoderScale(),
+    EncoderAngles(),
     ShortRest(),
     PositionNotKept(),
     FixtureCreep(),

@@ -1,10 +1,12 @@
-"""An encoder by which all turns go farther than planned, by one ratio."""
+"""An encoder by which turns go farther, or less far, than planned."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import stdtr
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Integers
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.messages import _
@@ -13,6 +15,10 @@ from inertial.text.numbers import counted, fixed, significant
 MIN_TURNS = 3  # that agree; two may stop alike
 MAX_CHANCE = 5e-3  # that turns which stop anywhere differ from the plan so nearly alike
 LEAST_RANGE = 2.0  # sigma of a difference of two angles: no agreement is taken as closer
+MIN_SIGMAS = 5.0  # of a difference of two angles, from which a turn differs from its plan
+MIN_LOG_ODDS = 5.3  # by which the gyros contradict an encoder: 200 to 1, as MAX_CHANCE
+MAX_CHANCE_OF_MEAN = 1e-3  # that turns which stop anywhere differ from the plan on the mean
+MAX_APART = np.radians(5.0)  # of jumps that are at one place of the encoder
 
 
 class EncoderScale(PlanDetector):
@@ -30,14 +36,10 @@ class EncoderScale(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        off = recorded.angle / recorded.stated_angle - 1
-        read = np.flatnonzero(recorded.found & ~recorded.steady & (np.abs(off) > 0))
-        if len(read) < MIN_TURNS:
-            return
-        sigma = np.sqrt(2) * recorded.angle_sigma / np.median(np.abs(recorded.angle[read]))
-        alike = _alike(off[read], LEAST_RANGE * sigma)
+        read, off = _read(recorded)
+        alike = _of_one_ratio(recorded, read, off)
         if alike is not None:
-            ratio = float(np.mean(off[read][alike]))
+            ratio = float(np.mean(off[alike]))
             names = [recorded.name[int(i)] for i in read[alike]]
             yield Deviation(None, "", ratio, self.sensor, count=len(names), facts=names)
 
@@ -54,7 +56,8 @@ class EncoderScale(PlanDetector):
                 name=deviation.facts[0],
                 read=fixed(read, 4),
                 planned=fixed(planned, 4),
-            ),
+            )
+            + _jumping(recorded),
             _(
                 "The encoder's angles are used. If the plan's are right, the scale factors of all "
                 "gyros are off by {ppm} ppm.",
@@ -66,6 +69,108 @@ class EncoderScale(PlanDetector):
                 "out of the campaign; if the encoder is right, state the angles of the plan by it."
             ),
         )
+
+
+@dataclass(frozen=True)
+class Unlike:
+    """Turns that an encoder has otherwise than the plan; log_odds: of the plan, by the gyros."""
+
+    turns: Integers
+    log_odds: float
+
+
+class EncoderAngles(PlanDetector):
+    """Encoder and plan differ in turns by no one ratio, and the gyros do not say that it is right.
+
+    Each direction has its own difference, or each turn. Where turns stop now here, now there, the
+    gyros go as far as the encoder says, and nothing is wrong. Where they go as the plan says, or
+    do not tell, but the turns differ from the plan on the mean, the scale factors rest on what
+    may be wrong.
+
+    Cause: the encoder loses or gains counts, jumps at one place, or reads its zero anew; or the
+    table stops elsewhere in one direction than in the other.
+    """
+
+    name = "encoder_angles"
+    source = "IEEE Std 1554-2005: the accuracy of angles is that of the encoder"
+    severity = 3
+    sensor = "gyro"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        read, off = _read(recorded)
+        if _of_one_ratio(recorded, read, off) is not None:
+            return
+        sigma = np.sqrt(2) * recorded.angle_sigma
+        far = np.abs(off * recorded.stated_angle[read]) > MIN_SIGMAS * sigma
+        if not far.any():
+            return
+        odds = _odds_of_plan(recorded, read)
+        on_the_mean = abs(odds) < MIN_LOG_ODDS and far.sum() >= MIN_TURNS and _biased(off)
+        if odds >= MIN_LOG_ODDS or on_the_mean:
+            size = _largest_mean(recorded, read, off)
+            turns = read[far]
+            facts = Unlike(turns, odds)
+            yield Deviation(None, "", size, self.sensor, count=len(turns), facts=facts)
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        assert deviation.size is not None
+        unlike: Unlike = deviation.facts
+        beyond = np.sign(recorded.stated_angle) * (recorded.angle - recorded.stated_angle)
+        least, most = (int(unlike.turns[f(beyond[unlike.turns])]) for f in (np.argmin, np.argmax))
+        by_gyros = (
+            _(
+                " By the gyros the turns differ among themselves as the plan has it, and not as "
+                "the encoder has it."
+            )
+            if unlike.log_odds >= MIN_LOG_ODDS
+            else ""
+        )
+        jumping = _jumping(recorded)
+        return Description(
+            _(
+                "By the encoder {turns} differ from the plan by no one ratio: {name} by {angle}″ "
+                "in its sense, {other} by {other_angle}″. Either the encoder is off, or the table "
+                "does stop elsewhere than planned.",
+                turns=counted(deviation.count, "turn"),
+                name=recorded.name[least],
+                angle=_arc(beyond[least]),
+                other=recorded.name[most],
+                other_angle=_arc(beyond[most]),
+            )
+            + by_gyros
+            + jumping,
+            _(
+                "The encoder's angles are used. If the plan's are right, the scale factors of the "
+                "gyros are off by up to {ppm} ppm.",
+                ppm=significant(1e6 * abs(deviation.size), 3),
+            ),
+            _(
+                "Correct the encoder, or its log, or leave it out of the campaign, so that the "
+                "plan's angles are used."
+            )
+            if jumping
+            else _(
+                "Turn the table by a whole revolution, in both senses, against a mark, an "
+                "autocollimator or a polygon. If it turns as planned, correct the encoder, or "
+                "leave it out of the campaign; if the encoder is right, state the angles of the "
+                "plan by it."
+            ),
+        )
+
+
+def _read(recorded: Recorded) -> tuple[Integers, Array]:
+    """The turns of which an encoder is used, (k,), and by which share they go beyond the plan."""
+    off = recorded.angle / recorded.stated_angle - 1
+    read = np.flatnonzero(recorded.found & ~recorded.steady & (np.abs(off) > 0))
+    return read, off[read]
+
+
+def _of_one_ratio(recorded: Recorded, read: Integers, off: Array) -> Array | None:
+    """Which of the turns differ from the plan by one ratio; None where they do not."""
+    if len(read) < MIN_TURNS:
+        return None
+    sigma = np.sqrt(2) * recorded.angle_sigma / np.median(np.abs(recorded.angle[read]))
+    return _alike(off, LEAST_RANGE * sigma)
 
 
 def _alike(off: Array, least: float) -> Array | None:
@@ -82,3 +187,71 @@ def _alike(off: Array, least: float) -> Array | None:
         if len(alike) >= MIN_TURNS and chance < MAX_CHANCE:
             return np.sort(alike)
     return None
+
+
+def _odds_of_plan(recorded: Recorded, read: Integers) -> float:
+    """The logarithm of the odds of the plan's angles against the encoder's, by the gyros.
+
+    Each gyro has one scale factor in all its turns, about an axis of the table or its reverse, and
+    what is left is noise of unknown variance: (left by the encoder / left by the plan)^(ν/2), of
+    ν degrees of freedom. What all turns have in common is in the scale factor, and tells nothing.
+    0 where no axis has two turns.
+    """
+    left, degrees = np.zeros(2), 0
+    known = read[np.isfinite(recorded.turned_farther[read])]
+    for same in _by_axis(recorded, known):
+        gyro = recorded.turned_farther[same]
+        for i, angle in enumerate((recorded.angle[same], recorded.stated_angle[same])):
+            left[i] += float(np.sum((gyro - angle * (angle @ gyro) / (angle @ angle)) ** 2))
+        degrees += len(same) - 1
+    if not degrees or not (left > 0).all():
+        return 0.0
+    return float(degrees / 2 * np.log(left[0] / left[1]))
+
+
+def _by_axis(recorded: Recorded, turns: Integers) -> Iterator[Integers]:
+    """Turns about one axis of the case, in either sense of it."""
+    axes = np.round(np.abs(recorded.about[turns]), 3)
+    for axis in np.unique(axes, axis=0):
+        yield turns[(axes == axis).all(axis=1)]
+
+
+def _biased(off: Array) -> bool:
+    """Whether turns differ from the plan on the mean by more than turns that stop anywhere."""
+    scatter = float(np.std(off, ddof=1)) / np.sqrt(len(off))
+    chance = 2 * float(stdtr(len(off) - 1, -abs(float(np.mean(off))) / scatter))
+    return chance < MAX_CHANCE_OF_MEAN
+
+
+def _largest_mean(recorded: Recorded, read: Integers, off: Array) -> float:
+    """The largest of the means about each axis, relative: by so much a scale factor may be off."""
+    share = dict(zip(read.tolist(), off.tolist(), strict=True))
+    means = [float(np.mean([share[int(i)] for i in own])) for own in _by_axis(recorded, read)]
+    return max(means, key=abs)
+
+
+def _jumping(recorded: Recorded) -> str:
+    """What the encoder's log shows within turns that the gyros do not, as a further sentence."""
+    least = MIN_SIGMAS * np.sqrt(2) * recorded.angle_sigma
+    jumps = np.flatnonzero(np.abs(recorded.encoder_jump) > least)
+    if len(jumps) < MIN_TURNS:
+        return ""
+    size = float(np.median(np.abs(recorded.encoder_jump[jumps])))
+    places = np.exp(1j * recorded.encoder_jump_at[jumps])
+    middle = complex(np.mean(places))
+    at = ""
+    if (np.abs(np.angle(places / middle)) < MAX_APART).all():
+        where = fixed(float(np.degrees(np.angle(middle))) % 360, 0)
+        at = _(", where it reads {angle}° or whole turns more", angle=where)
+    return _(
+        " In {turns} the encoder's angle jumps by {size}° within 0.1 s{at}, which no gyro feels: "
+        "by so much it is the encoder that is off.",
+        turns=counted(len(jumps), "turn"),
+        size=significant(float(np.degrees(size)), 2),
+        at=at,
+    )
+
+
+def _arc(angle: float) -> str:
+    """An angle, rad, in arc seconds, with its sign."""
+    return fixed(float(np.degrees(angle)) * 3600, 0)

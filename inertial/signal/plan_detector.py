@@ -141,6 +141,10 @@ class Recorded:
     unsteady: (m,), what quarters of that scatter by, relative, 0 where not known;
     static_means: of all rests;
     after_stop: (m,), rad, what it turns farther in the rest after it, NaN where not known;
+    turned_farther: (m,), rad, the angle of its gyros about `about` beyond what they read there in
+    the rests of its position, NaN where that is not known.
+    encoder_jump, encoder_jump_at: (m,), rad, by how much its encoder jumps where the gyros do not,
+    and at which angle; NaN where it does not.
     lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, of the rest
     or from start to stop.
     first, after: (m,), records of it, or of what its log holds instead, −1 where there are none;
@@ -184,6 +188,9 @@ class Recorded:
     gravity_rate: Array
     unsteady: Array
     after_stop: Array
+    turned_farther: Array
+    encoder_jump: Array
+    encoder_jump_at: Array
     static_means: StaticMeans
     lacking: Array
     lacking_s: Array

@@ -45,7 +45,7 @@ MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed sp
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
-ENCODER_SCALE = "encoder_scale"
+OF_ENCODER = ("encoder_scale", "encoder_angles")
 RATE_OFF, TABLE_RATE_OFF = "rate_off", "table_rate_off"
 QUANTISATION = "quantisation"
 MOUNTING_SHIFT = "mounting_shift"  # turns the axes of both sensors, whichever shows it
@@ -455,7 +455,7 @@ def _moved_by_measure(cause: Hypothesis, own: Sequence[SensorResult]) -> float |
     size = abs(cause.row["size"] or 0.0)
     if cause.cause in (RATE_OFF, TABLE_RATE_OFF) and cause.stage == PLAN:
         shares = [(abs(size - 1), result.scale_sigma) for result in own]
-    elif cause.cause == ENCODER_SCALE:
+    elif cause.cause in OF_ENCODER:
         shares = [(size, result.scale_sigma) for result in own]
     elif cause.cause == CLOCK and cause.sensor == "gyro":
         shares = [(1e-6 * size, result.scale_sigma) for result in own]

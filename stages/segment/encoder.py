@@ -7,11 +7,16 @@ from math import degrees
 import numpy as np
 import pandas as pd
 
+from inertial.arrays import Array
+from inertial.campaign.encoder_jumps import Jump, JumpsOver
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import ENCODER
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
+from stages.segment.matching import Part
+
+STEADY = "steady"  # the phase of a turn in which its rate does not change
 
 
 @dataclass(frozen=True)
@@ -121,6 +126,33 @@ def without_unused(blocks: pd.DataFrame, turned: Mapping[str, ByEncoder]) -> pd.
     return blocks.assign(
         **{name: blocks[name].where(blocks["manoeuvre"].isin(used)) for name in ENCODER}
     )
+
+
+class EncoderJumps:
+    """The largest jump of the encoder in the steady part of each turn, added up batch by batch."""
+
+    def __init__(self, parts: Sequence[Part], plan: Sequence[Manoeuvre]) -> None:
+        axes = {m.name: m.about for m in plan if m.do == "turn" and m.about is not None}
+        steady = [part for part in parts if part.phase == STEADY and part.manoeuvre in axes]
+        self._parts: dict[str, list[Part]] = {}
+        for part in sorted(steady, key=lambda part: part.first):
+            self._parts.setdefault(part.log, []).append(part)
+        edges = {
+            log: (np.array([p.first for p in own]), np.array([p.after for p in own]))
+            for log, own in self._parts.items()
+        }
+        about: dict[str, Array] = {
+            log: np.array([axes[p.manoeuvre] for p in own]) for log, own in self._parts.items()
+        }
+        self.sums = JumpsOver(edges, about)
+
+    def result(self) -> dict[str, Jump]:
+        """By manoeuvre; NaN where there is none."""
+        return {
+            part.manoeuvre: jump
+            for log, jumps in self.sums.result().items()
+            for part, jump in zip(self._parts[log], jumps, strict=True)
+        }
 
 
 def plan_by_encoder(

@@ -7,7 +7,8 @@ from typing import TypeVar
 import numpy as np
 import pandas as pd
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Integers
+from inertial.campaign.encoder_jumps import Jump
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.signal.detector import Given
 from inertial.signal.plan_detector import (
@@ -57,6 +58,7 @@ class Recording:
     counts : rad, what a count of the gyros is, by log; NaN where not stated
     stated_angles : rad, by manoeuvre, those of the plan before an encoder's took their place
     angle_sigma, rate_sigma : of the table, rad, and relative, NaN where not stated
+    jumps : of the encoder, by manoeuvre
     """
 
     performed: Mapping[str, Performed]
@@ -66,6 +68,7 @@ class Recording:
     stated_angles: Mapping[str, float | None]
     angle_sigma: float
     rate_sigma: float
+    jumps: Mapping[str, Jump]
 
 
 def recorded_of(
@@ -94,6 +97,7 @@ def recorded_of(
     warm = by_manoeuvre.mean().where(mostly).to_dict()
     places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
     swapped = [in_order(exchanged, plan) for exchanged in explained.exchanged]
+    jumps = [recording.jumps.get(m.name, Jump()) for m in plan]
     first, after, from_s, to_s = np.array(places).reshape(-1, 4).T
     return Recorded(
         given=given,
@@ -123,6 +127,9 @@ def recorded_of(
         gravity_rate=_gravity_rates(plan, recording.blocks),
         unsteady=_unsteady(plan, recording.blocks),
         after_stop=_after_stop(plan, recording.blocks),
+        turned_farther=_turned_farther(plan, recording.blocks),
+        encoder_jump=np.array([jump.size for jump in jumps]),
+        encoder_jump_at=np.array([jump.at for jump in jumps]),
         static_means=_static_means(plan, recording.blocks),
         lacking=_numbers([d.missing_angle for d in done]),
         lacking_s=_numbers([d.missing_s for d in done]),
@@ -209,6 +216,34 @@ def _after_stop(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
                 for rates, seconds in (before, after)
             )
             angle[i] = np.sign(rounds) * (later - earlier) * after[1].sum()
+    return angle
+
+
+def _turned_farther(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
+    """The angle of each turn by its gyros less what they read at rest in its position, rad, (m,).
+
+    So without bias and earth's rate about its axis, which stands still in the room; NaN where a
+    part of it, or such a rest, is not recorded.
+    """
+    angle = np.full(len(plan), np.nan)
+    position = blocks["manoeuvre"].map({m.name: m.position for m in plan})
+    at_rest = blocks["phase"].isin(STATIC_PHASES).to_numpy()
+    rests = dict(list(blocks[at_rest].groupby(position[at_rest])))
+    turns = dict(list(blocks[~at_rest].groupby("manoeuvre")))
+    for i, m in enumerate(plan):
+        if m.about is None or m.do != "turn" or m.name not in turns or m.position not in rests:
+            continue
+        own = np.flatnonzero(m.about)
+
+        def along(part: pd.DataFrame, about: Array = m.about, own: Integers = own) -> Array:
+            return np.asarray(part[list(GYRO)].to_numpy(np.float64)[:, own] @ about[own])
+
+        rest, turn = rests[m.position], turns[m.name]
+        known = np.isfinite(along(rest)) & (rest["seconds"].to_numpy(np.float64) > 0)
+        if not known.any() or (turn["missing_s"] != 0).any():
+            continue
+        still = float(np.average(along(rest)[known], weights=rest["seconds"][known]))
+        angle[i] = float(np.sum((along(turn) - still) * turn["seconds"].to_numpy(np.float64)))
     return angle
 
 

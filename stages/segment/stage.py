@@ -24,7 +24,7 @@ from inertial.text.messages import _
 from stages.segment import completeness, reduction, repair, turn_completeness
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, compare
-from stages.segment.encoder import ByEncoder, plan_by_encoder, without_unused
+from stages.segment.encoder import ByEncoder, EncoderJumps, plan_by_encoder, without_unused
 from stages.segment.located import Located
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
 from stages.segment.plan_and_recording import Recording, recorded_of
@@ -118,7 +118,8 @@ def segment(
     known = {m.name for m in made.plan if m.up is not None}
     rests = ExaminationOfRests(OF_RESTS, places.parts, by_name, masked, known)
     index = RecordIndex()
-    read_once(samples, [block_sums, segment_times, traces, rests, index], read_as)
+    jumps = EncoderJumps(places.parts, made.plan)
+    read_once(samples, [block_sums, segment_times, traces, rests, index, jumps.sums], read_as)
     blocks, segments = block_sums.table(), segment_times.table()
     by_encoder = plan_by_encoder(made.plan, blocks, stated.angle_sigma, angle_tolerance)
     turned, by_encoder = _turned(
@@ -138,6 +139,7 @@ def segment(
             {m.name: m.angle for m in made.plan},
             stated.angle_sigma,
             stated.rate_sigma,
+            jumps.result(),
         ),
         stated.given,
         angle_tolerance,
