@@ -1,11 +1,11 @@
 """A case that rings."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Booleans
 from inertial.signal.detector import Description, Detector, Event, Log, Piece, channel_name, read_in
 from inertial.signal.tones import Tone, tones
 from inertial.text.messages import _
@@ -16,6 +16,10 @@ MAX_GYRO_BIAS = 0.1  # rad/s, which no gyro reads at rest
 BLOCK_READINGS = 128  # readings whose mean rate is taken
 MIN_MAJORITY = 0.9  # of the time of an oscillation
 MIN_REST_BLOCKS = 3  # blocks at rest without it, for it to be absent at rest
+MIN_WINDOWS = 3  # at rest, or in turns, by which its amplitude there is known
+MAX_ABSENT_SHARE = 0.2  # of its amplitude elsewhere: where it has less it is absent
+MAX_EQUAL_SHARE = 0.8  # the same: where it has more it is as large there
+MIN_PRESENT_SIGMAS = 3.0  # of its square, by noise
 
 
 @dataclass(frozen=True)
@@ -24,13 +28,17 @@ class Ringing:
 
     tone: the largest; others: the same in other channels; besides: Hz, what its channel has at the
     same time; turning: share of its time in which the IMU turned, NaN without gyros; not_at_rest:
-    the IMU was at rest without it.
+    the IMU was at rest without it, not_turning: it turned without it.
+    at_rest, in_turns: its amplitudes, where it has both and they differ.
     """
 
     tone: Tone
     besides: tuple[float, ...]
     turning: float
     not_at_rest: bool
+    not_turning: bool = False
+    at_rest: float = np.nan
+    in_turns: float = np.nan
 
 
 class Oscillation(Detector):
@@ -64,18 +72,22 @@ class Oscillation(Detector):
                 without[one.start : one.end] = np.nan
             inside = turning[tone.start : tone.end]
             known = inside[np.isfinite(inside)]
-            yield piece.event(
-                tone.start,
-                tone.end,
-                tone.amplitude,
-                channel=tone.channel,
-                p_value=tone.p_value,
-                facts=Ringing(
+            ringing = _by_circumstance(
+                Ringing(
                     tone,
                     besides,
                     float(known.mean()) if len(known) else np.nan,
                     int(np.count_nonzero(without == 0)) >= MIN_REST_BLOCKS * BLOCK_READINGS,
                 ),
+                turning,
+            )
+            yield piece.event(
+                tone.start,
+                tone.end,
+                ringing.tone.amplitude,
+                channel=tone.channel,
+                p_value=tone.p_value,
+                facts=ringing,
             )
 
     def describe(self, event: Event, name: str) -> Description:
@@ -132,11 +144,63 @@ def _when(ringing: Ringing) -> str:
         return ""
     if ringing.turning > MIN_MAJORITY:
         return _(", while the IMU turns") + (_(", and not at rest") if ringing.not_at_rest else "")
-    return (
-        _(", at rest")
-        if ringing.turning < 1 - MIN_MAJORITY
-        else _(", at rest and while the IMU turns")
-    )
+    if ringing.turning < 1 - MIN_MAJORITY:
+        return _(", at rest") + (_(", and not while the IMU turns") if ringing.not_turning else "")
+    if np.isfinite(ringing.at_rest):
+        scale, unit = read_in(ringing.tone.channel)
+        return _(
+            ", at rest by {at_rest} {unit} and while the IMU turns by {in_turns} {unit}",
+            at_rest=significant(scale * ringing.at_rest, 2),
+            in_turns=significant(scale * ringing.in_turns, 2),
+            unit=unit,
+        )
+    return _(", at rest and while the IMU turns")
+
+
+def _by_circumstance(ringing: Ringing, turning: Array) -> Ringing:
+    """The same with the amplitude of where it is: at rest, while the IMU turns, or both.
+
+    By windows that lie in one of the two as a whole. `turning`: of each record, (n,), 1 or 0.
+    """
+    tone = ringing.tone
+    at_rest, in_turns = (_wholly(tone, turning, state) for state in (0.0, 1.0))
+    if min(int(at_rest.sum()), int(in_turns.sum())) < MIN_WINDOWS:
+        return ringing
+    (rest, rest_sigma), (turn, turn_sigma) = map(tone.by_window.size, (at_rest, in_turns))
+    larger = max(rest, turn)
+    smaller, sigma = (rest, rest_sigma) if rest < turn else (turn, turn_sigma)
+    if larger <= 0:
+        return ringing
+    size = replace(tone, amplitude=float(np.sqrt(larger)))
+    if smaller < max(MAX_ABSENT_SHARE**2 * larger, MIN_PRESENT_SIGMAS * sigma):
+        at_most = smaller + MIN_PRESENT_SIGMAS * sigma
+        absent = at_most < (2 * MAX_ABSENT_SHARE) ** 2 * larger
+        return replace(
+            ringing,
+            tone=size,
+            turning=float(turn > rest),
+            not_at_rest=absent and turn > rest,
+            not_turning=absent and rest > turn,
+        )
+    if smaller > MAX_EQUAL_SHARE**2 * larger:
+        return replace(ringing, turning=0.5)
+    in_both = replace(ringing, at_rest=float(np.sqrt(rest)), in_turns=float(np.sqrt(turn)))
+    return replace(in_both, tone=size, turning=0.5)
+
+
+def _wholly(tone: Tone, turning: Array, state: float) -> Booleans:
+    """Which windows of a tone lie at rest, 0, or in turns, 1, with a block before and after, (k,).
+
+    Without these blocks where hardly a window has them.
+    """
+    alike = np.append(0, np.cumsum(turning == state))
+    for beside in (BLOCK_READINGS, 0):
+        first = np.maximum(tone.by_window.places[:, 0] - beside, 0)
+        after = np.minimum(tone.by_window.places[:, 1] + 1 + beside, len(turning))
+        within = np.asarray(alike[after] - alike[first] == after - first, bool)
+        if within.sum() >= MIN_WINDOWS:
+            break
+    return within
 
 
 def _consequence(tone: Tone, only_turning: bool) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.fft import rfft
 
-from inertial.arrays import Array, Integers
+from inertial.arrays import Array, Booleans, Integers
 from inertial.signal.detector import Log, Piece
 from inertial.signal.held_readings import new_readings, records_of_a_reading
 from inertial.signal.spectral_lines import (
@@ -53,6 +53,29 @@ class Tone:
     others: tuple[tuple[int, float], ...]
     rate: float
     p_value: float
+    by_window: "ByWindow"
+
+
+@dataclass(frozen=True, eq=False)
+class ByWindow:
+    """An oscillation in the k windows of its stretch.
+
+    places: (k, 2), of the first and last reading in the piece; squares: (k,), of its amplitude;
+    noise: what noise alone has of these on the mean.
+    """
+
+    places: Integers
+    squares: Array
+    noise: float
+
+    def size(self, within: Booleans) -> tuple[float, float]:
+        """The square of the amplitude over some of the windows, and its sigma by noise."""
+        count = int(within.sum())
+        # Of windows that overlap by half about one in two is independent.
+        return (
+            float(self.squares[within].mean()) - self.noise,
+            self.noise * float(np.sqrt(2 / count)),
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,7 +249,20 @@ def _tone(largest: AxisLine, alike: list[AxisLine], triads: list[Triad], log: Lo
         others=tuple((channel, whole * amplitude * share) for channel, share in shares),
         rate=triad.rate,
         p_value=min(other.line.p_value for other in alike),
+        by_window=_by_window(triad, largest.axis, line, noise, whole),
     )
+
+
+def _by_window(triad: Triad, axis: int, line: Line, noise: float, whole: float) -> ByWindow:
+    """A line by windows; `noise`: of a reading; `whole`: the rate's amplitude by a reading's."""
+    if triad.window != WINDOW:
+        return ByWindow(np.zeros((0, 2), np.int64), np.zeros(0), 0.0)
+    cut, weights = triad.cut(axis, line), hann(triad.window)
+    squares = np.abs(phasors(cut, triad.times(line), line.frequency)) ** 2
+    starts = HOP * np.arange(line.first, line.first + len(cut))
+    places = np.column_stack([triad.places[starts], triad.places[starts + WINDOW - 1]])
+    by_noise = 4 * noise**2 * float(weights @ weights) / weights.sum() ** 2
+    return ByWindow(places, whole**2 * squares, whole**2 * by_noise)
 
 
 def _extent(largest: AxisLine) -> tuple[int, int]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from on_a_table import carried, recorded, rest, tumble, turn
+from on_a_table import carried, profile, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
 
 from inertial.detectors.oscillation import Oscillation
@@ -54,6 +54,40 @@ def test_what_it_does_to_an_angle_is_told_as_s0_has_it():
     assert "80.00 or 120.00 Hz cannot be distinguished" in words.sentence
     assert "swings by 0.00456°: at most" in words.consequence  # 7.96e-5 · 180/π
     assert "13 ppm of a turn of 360°, 25 ppm of one of 180°" in words.consequence
+
+
+def session(*steady):
+    """Rests of 14 s and turns of so many records, one after the other; whether it turns, (n,)."""
+    parts = [turn(seed, still=700, steady=n) for seed, n in enumerate(steady, 1)]
+    rates = [profile(still=700, steady=n) for n in steady]
+    return np.concatenate(parts), np.concatenate(rates) > 0
+
+
+@pytest.mark.parametrize(
+    ("at_rest", "in_turns", "said"),
+    [
+        (0.0, 0.0400, "by 0.040 m/s², from {s}while the IMU turns, and not at rest."),
+        (0.0400, 0.0, "by 0.040 m/s², from {s}at rest, and not while the IMU turns."),
+        (0.0400, 0.0400, "by 0.040 m/s², from {s}at rest and while the IMU turns."),
+        (
+            0.0200,
+            0.0400,
+            "by 0.040 m/s², from {s}at rest by 0.020 m/s² and while the IMU turns by 0.040 m/s².",
+        ),
+    ],
+)
+def test_it_is_said_where_it_is_with_the_amplitude_that_it_has_there(at_rest, in_turns, said):
+    """Six turns among rests that are shorter than the stretch in which a line is sought."""
+    values, turns = session(*[1200] * 6)
+    time = INTERVAL * np.arange(len(values))
+    size = np.where(turns, in_turns, at_rest)
+    values[:, 0] += size * np.sinc(37 * INTERVAL) * np.sin(2 * np.pi * 37 * time)
+    events = found(values)
+    assert len(events) == 1
+    words = Oscillation().describe(events[0], "log").sentence
+    between = words.split("from ")[1].split(" s, ")[0]
+    assert said.format(s=between + " s, ") in words
+    assert events[0].size == pytest.approx(max(at_rest, in_turns), rel=0.05)
 
 
 def test_other_axes_in_step_are_named_with_their_part():
