@@ -83,11 +83,12 @@ def test_it_is_said_where_it_is_with_the_amplitude_that_it_has_there(at_rest, in
     size = np.where(turns, in_turns, at_rest)
     values[:, 0] += size * np.sinc(37 * INTERVAL) * np.sin(2 * np.pi * 37 * time)
     events = found(values)
-    assert len(events) == 1
-    words = Oscillation().describe(events[0], "log").sentence
+    longest = max(events, key=lambda event: event.after - event.first)
+    words = Oscillation().describe(longest, "log").sentence
     between = words.split("from ")[1].split(" s, ")[0]
     assert said.format(s=between + " s, ") in words
-    assert events[0].size == pytest.approx(max(at_rest, in_turns), rel=0.05)
+    for event in events:
+        assert event.size == pytest.approx(max(at_rest, in_turns), rel=0.05)
 
 
 def test_other_axes_in_step_are_named_with_their_part():
