@@ -149,7 +149,7 @@ class OscillationResults:
                 "cause": named.effect,
                 "sensor": "gyro",
                 "count": 1,
-                "size": ripple.amplitude if ripple else oscillation.mean.amplitude,
+                "size": _size_of(oscillation, ripple),
                 "unit": "rad" if ripple else "rad/s",
                 "p_value": oscillation.p_value,
                 "severity": 2,
@@ -265,6 +265,13 @@ class OscillationResults:
             if name in named.oscillation.effects:
                 return sentences.may_be(named.effect, name)
         return not_named(self.result, name)
+
+
+def _size_of(oscillation: Oscillation, ripple: Ripple | None) -> float:
+    """Of a step by how much the angle jumps, of a ripple its amplitude, rad; in time rad/s."""
+    if oscillation.step:
+        return abs(oscillation.step.size)
+    return ripple.amplitude if ripple else oscillation.mean.amplitude
 
 
 def _kind(order: float | None) -> str:

@@ -27,6 +27,7 @@ from stages.criticism.oscillation_fits import (
 )
 from stages.criticism.oscillation_hypotheses import (
     ANGLE,
+    ECCENTRICITY,
     IN_TIME,
     MIN_LOG_ODDS,
     RIPPLE,
@@ -36,11 +37,15 @@ from stages.criticism.oscillation_hypotheses import (
     folded,
     hypotheses_of,
 )
+from stages.criticism.step_per_turn import MIN_ORDERS, StepPerTurn, step_per_turn
 
 MAX_MULTIPLE = 10  # of a frequency or an order, that is still the same cause
 MAX_ALIAS_MULTIPLE = 3  # the same beyond half the sample rate
 MULTIPLE_SIGMAS = 4.0  # within which a line is a multiple of another
 MAX_MULTIPLE_SHARE = 0.02  # of a frequency or an order: less certain, a multiple is not informative
+# By which the order of a line of a step may be off from a whole number: in turns of about one
+# revolution its other lines, that are not found yet, draw it along by more than its sigma.
+MAX_FROM_WHOLE = 0.1
 UNRESOLVED_BINS = 2.0  # between two lines, that are one whose frequency wanders
 
 
@@ -53,6 +58,7 @@ class Oscillation:
     lines : its line in each turn; coupled : the other axes of the case
     multiples : further lines of the same cause, at multiples of its frequency or order
     at_rest : whether it goes on while the table rests
+    step : of the table's angle in each turn, that explains it and its multiples
     """
 
     hypotheses: Sequence[Hypothesis]
@@ -62,6 +68,7 @@ class Oscillation:
     coupled: Sequence[Coupled]
     multiples: Sequence["Oscillation"] = ()
     at_rest: bool = False
+    step: StepPerTurn | None = None
 
     @property
     def likeliest(self) -> Hypothesis:
@@ -85,6 +92,15 @@ class Oscillation:
     def ripple(self) -> Ripple | None:
         """Its order against the angle, where it has one."""
         return next((one.ripple for one in self.hypotheses if one.ripple), None)
+
+    @property
+    def order(self) -> int | None:
+        """The whole number near its order against the table's angle, the same in all turns."""
+        ripple = self.likeliest.ripple
+        if self.likeliest.effect == IN_TIME or ripple is None or not ripple.common:
+            return None
+        off = abs(ripple.order - round(ripple.order))
+        return round(ripple.order) if off <= MAX_FROM_WHOLE else None
 
     @property
     def parts(self) -> Sequence["Oscillation"]:
@@ -334,7 +350,31 @@ def in_causes(
                 break
         else:
             causes.append(one)
-    return sorted(causes, key=lambda cause: detected[id(cause)])
+    return _of_one_step(sorted(causes, key=lambda cause: detected[id(cause)]), turns)
+
+
+def _of_one_step(
+    causes: Sequence[Oscillation], turns: Sequence[SteadyTurn]
+) -> Sequence[Oscillation]:
+    """Ripples of whole orders as one cause, where one step in each turn explains more than they.
+
+    Lines of a gear's teeth, and of another, are whole orders too: no step is in their sum.
+    """
+    whole = [one for one in causes if all(part.order is not None for part in one.parts)]
+    parts = [replace(part, multiples=()) for one in whole for part in one.parts]
+    ripples = [part for part in parts if part.likeliest.effect != ECCENTRICITY]
+    if len(parts) < MIN_ORDERS or not ripples:
+        return causes
+    step = step_per_turn(turns)
+    if step is None or step.drop < sum(part.ripple.drop for part in parts if part.ripple):
+        return causes
+    main = min(ripples, key=lambda part: part.order or 0)
+    others = sorted((part for part in parts if part is not main), key=lambda part: part.order or 0)
+    hypotheses = [one for one in main.hypotheses if one.effect == RIPPLE]
+    of_step = replace(main, hypotheses=hypotheses, multiples=others, step=step)
+    first = next(i for i, one in enumerate(causes) if one in whole)
+    left = [one for one in causes[:first] if one not in whole]
+    return [*left, of_step, *(one for one in causes[first:] if one not in whole)]
 
 
 def _is_multiple(

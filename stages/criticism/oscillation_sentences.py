@@ -9,6 +9,7 @@ from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Ripple
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, plus_minus, significant
 from inertial.text.typography import capital
@@ -16,6 +17,7 @@ from inertial.text.units import ARC_SECOND
 from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
 from stages.criticism.oscillation_hypotheses import ANGLE, IN_TIME
 from stages.criticism.oscillation_search import Oscillation
+from stages.criticism.step_per_turn import StepPerTurn
 
 MAX_ALIKE_LOG_ODDS = 0.7  # a factor of two
 MAX_LOG_ODDS = 40.0  # beyond which the number of the odds is not informative
@@ -65,6 +67,12 @@ NOT_IN_TIME = _(
 NOT_IN_ANGLE = _(
     " As a ripple of the table's angle (order {orders}) it would be about the table's axis; that "
     "is less likely by a factor of {odds}."
+)
+STEP = _(
+    "The table's angle jumps by {size}° at {at}° of each turn, "
+    "within about {width}°, and runs back evenly over the rest of it, {turns}. This one step has "
+    "ripples of the rate of all whole orders; {orders} per revolution were found, and it explains "
+    "more than these."
 )
 MULTIPLES = _(" Lines at {each} have the same cause.")
 VERY_LARGE_ODDS = _("more than 10¹⁷")
@@ -162,6 +170,8 @@ def _in_turns(names: Sequence[str]) -> str:
 
 def of_ripple(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTurn]) -> str:
     """A ripple of the table, or its eccentricity."""
+    if oscillation.step:
+        return _of_step(oscillation, oscillation.step)
     in_turns = SAME_IN_TURNS if ripple.common else OWN_IN_TURNS
     sentence = (ECCENTRIC if eccentric(ripple) else RIPPLE).format(
         order=_order(ripple),
@@ -176,6 +186,17 @@ def of_ripple(oscillation: Oscillation, ripple: Ripple, turns: Sequence[SteadyTu
     )
 
 
+def _of_step(oscillation: Oscillation, step: StepPerTurn) -> str:
+    """A step of the table's angle, of which its ripples are."""
+    return STEP.format(
+        size=plus_minus(degrees(step.size), degrees(step.sigma)),
+        at=fixed(degrees(step.at), 0),
+        width=significant(degrees(step.width), 2),
+        turns=SAME_IN_TURNS.format(count=step.turns) if step.turns > 1 else IN_ONE_TURN,
+        orders=listed([str(part.order) for part in oscillation.parts]),
+    )
+
+
 def eccentric(ripple: Ripple) -> bool:
     """Whether the order is fixed at 1."""
     return ripple.order_sigma == 0
@@ -185,7 +206,7 @@ def consequence(oscillation: Oscillation) -> str:
     """The effect on the model and on angles."""
     ripple = oscillation.ripple
     if oscillation.likeliest.bound_to == ANGLE and ripple is not None:
-        swing = 2 * ripple.amplitude
+        swing = abs(oscillation.step.size) if oscillation.step else 2 * ripple.amplitude
         off = abs(ripple.order - round(ripple.order))
         turn = CLOSED if off < MAX_INTEGER_SIGMAS * ripple.order_sigma + 1e-9 else NOT_CLOSED
     else:
