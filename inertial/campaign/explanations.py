@@ -218,7 +218,7 @@ EXPLANATIONS = (
     Explanation(("time_backwards",), ("short_rest",), same_log),
     Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), anywhere),
     Explanation(("encoder_scale",), ("rate_off",), anywhere),
-    Explanation(("encoder_angles",), (*BY_ANGLES_OF_TURNS, *MISFITS), anywhere),
+    Explanation(("encoder_angles",), (*BY_ANGLES_OF_TURNS, *MISFITS), same_sensor),
     Explanation(("clock_scale", "rate_off"), ("table_rate_off",), anywhere),
     Explanation(("table_rate_off",), ("wrong_rate",), anywhere),
     Explanation(

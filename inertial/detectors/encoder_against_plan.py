@@ -128,7 +128,7 @@ class EncoderAngles(PlanDetector):
         jumping = _jumping(recorded)
         return Description(
             _(
-                "By the encoder {turns} differ from the plan by no one ratio: {name} by {angle}″ "
+                "By the encoder {turns} differ from the plan, by no one ratio: {name} by {angle}″ "
                 "in its sense, {other} by {other_angle}″. Either the encoder is off, or the table "
                 "does stop elsewhere than planned.",
                 turns=counted(deviation.count, "turn"),
