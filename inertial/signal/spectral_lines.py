@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.fft import rfft
 from scipy.special import gammaincc, gammainccinv
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Booleans
 from inertial.signal.scatter import median
 
 Complex = NDArray[np.complex128]
@@ -100,14 +100,18 @@ def lines(cut: Array, time: Array) -> Iterator[Line]:
         if seed is None:
             return
         first, after, bin_, chance = seed
-        first, after = _stretch(ratio[:, bin_ - 1 : bin_ + 2].max(axis=1), first, after)
+        beside = ratio[:, bin_ - 1 : bin_ + 2].max(axis=1)
+        first, after = _stretch(beside, first, after)
         near = slice(max(bin_ - LINE_BINS, PART_BINS), bin_ + LINE_BINS + 1)
         if after - first >= STRETCH_WINDOWS[0]:
             # A strong line is capped in several bins; the largest of them is nearest to it, by the
             # median, for in a single window a motion may be larger.
-            peak = near.start + int(np.argmax(np.median(power[first:after, near], axis=0)))
+            # Most windows may lie between the turns that have it.
             inside = slice(first, after)
-            frequency, in_step = _tuned(cut[inside], time[inside], peak / WINDOW)
+            having = _having(beside[inside])
+            typical = np.median(power[inside, near][having], axis=0)
+            peak = near.start + int(np.argmax(typical))
+            frequency, in_step = _tuned(cut[inside], time[inside], peak / WINDOW, having)
             if in_step > MIN_COHERENCE:
                 yield Line(first, after, frequency, min(chance * SEARCHED_SUMS, 1.0))
         ratio[max(first - 2, 0) : after + 2, near] = 0.0
@@ -203,18 +207,22 @@ def _stretch(ratio: Singles, first: int, after: int) -> tuple[int, int]:
     return start, middle + 1 + int(np.argmax(sums[middle + 1 :]))
 
 
-def _tuned(cut: Array, time: Array, frequency: float) -> tuple[float, float]:
+def _having(ratio: Singles) -> Booleans:
+    """Which windows of a stretch have its line, (k,): half of its mean above noise, or more."""
+    return np.asarray(ratio >= min((float(ratio.mean()) + NOISE_RATIO) / 2, float(ratio.max())))
+
+
+def _tuned(cut: Array, time: Array, frequency: float, having: Booleans) -> tuple[float, float]:
     """The frequency by which a line keeps its phase, and how well it does.
 
-    From window to window at first, then over ever more of them.
+    From window to window at first, then over ever more of them. `having`: which have it, (k,).
     """
     lag, in_step = 1, 0.0
     while lag < max(len(cut) / 2, 3) and lag < len(cut):
         tones = phasors(cut, time, frequency)
         sizes = np.abs(tones)
-        tones /= np.maximum(
-            sizes, 2 * np.median(sizes)
-        )  # no window weighs more than twice its share
+        # No window weighs more than twice its share.
+        tones /= np.maximum(sizes, 2 * np.median(sizes[having]))
         product = tones[lag:] * tones[:-lag].conj()
         coherence = float(np.abs(product.sum()) / max(np.abs(product).sum(), 1e-300))
         if lag == 2:

@@ -56,10 +56,10 @@ def test_what_it_does_to_an_angle_is_told_as_s0_has_it():
     assert "13 ppm of a turn of 360°, 25 ppm of one of 180°" in words.consequence
 
 
-def session(*steady):
-    """Rests of 14 s and turns of so many records, one after the other; whether it turns, (n,)."""
-    parts = [turn(seed, still=700, steady=n) for seed, n in enumerate(steady, 1)]
-    rates = [profile(still=700, steady=n) for n in steady]
+def session(still, *steady):
+    """Rests and turns of so many records, one after the other; whether it turns, (n,)."""
+    parts = [turn(seed, still=still, steady=n) for seed, n in enumerate(steady, 1)]
+    rates = [profile(still=still, steady=n) for n in steady]
     return np.concatenate(parts), np.concatenate(rates) > 0
 
 
@@ -76,9 +76,10 @@ def session(*steady):
         ),
     ],
 )
-def test_it_is_said_where_it_is_with_the_amplitude_that_it_has_there(at_rest, in_turns, said):
-    """Six turns among rests that are shorter than the stretch in which a line is sought."""
-    values, turns = session(*[1200] * 6)
+@pytest.mark.parametrize("still", [700, 1500])
+def test_it_is_said_where_it_is_with_the_amplitude_there(at_rest, in_turns, said, still):
+    """Six turns of 16 s among rests of 14 or 30 s, over which the stretch of a line reaches."""
+    values, turns = session(still, *[1200] * 6)
     time = INTERVAL * np.arange(len(values))
     size = np.where(turns, in_turns, at_rest)
     values[:, 0] += size * np.sinc(37 * INTERVAL) * np.sin(2 * np.pi * 37 * time)
