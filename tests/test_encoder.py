@@ -244,3 +244,24 @@ def test_between_rests_of_the_plan_the_angle_of_a_turn_is_the_encoders_too():
     }
     row = made.parameters("gyroscope").loc["scale_x"]
     assert row["value"] == pytest.approx(SCALES["x"] - ENCODER, abs=3.5 * row["sigma"])
+
+
+@pytest.mark.slow
+def test_an_encoder_that_jumps_in_turns_leaves_no_result_of_the_gyros():
+    """Once in each turn, by 0.10° forward and by 0.05° backward, where the table does not."""
+    document = deepcopy(laboratory.read(SOURCE).document)
+    document["effects"], document["encoder"]["scale_ppm"] = {}, 0
+    recording = laboratory.perform(laboratory.specify(document))
+    decoded = chain.in_memory(recording, "decode")
+    samples = decoded["decode/samples"].copy()
+    turned = np.degrees(samples["table_angle"].to_numpy(np.float64))
+    by = np.where(turned > 140, 0.10, np.where(turned < -140, -0.05, 0.0))
+    samples["table_angle"] = np.radians(turned + by)
+    changed = decoded.replaced("decode/samples", samples)
+    made = chain.in_memory(recording, "diagnosis", chain.BESIDE, onto=changed)
+    [cause] = made["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] == "encoder_angles" and cause["count"] == 6
+    assert cause["size"] == pytest.approx(0.075 / 360, rel=0.02)  # the mean of both senses
+    assert "In 6 turns the encoder's angle jumps by" in cause["sentence"]
+    verdicts = made["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts["gyro"] == "not_usable" and verdicts["accel"] == "usable"
