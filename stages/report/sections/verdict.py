@@ -60,7 +60,7 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         "fair",
         _(
             "Departures from the ideal were found, each of which is corrected, modelled, excluded, "
-            "interpolated or too small to matter, as is stated; or a scale factor is known "
+            "interpolated or too small to matter, as is stated; or a parameter is known "
             "coarsely."
         ),
     ),
