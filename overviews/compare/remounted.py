@@ -20,7 +20,7 @@ from inertial.estimation.triad import linear_names
 from inertial.sensors import PLURAL, SENSORS
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, plus_minus, significant
-from inertial.text.parameters import AXES, sign_of
+from inertial.text.parameters import AXES, CROSS, sign_of
 from inertial.text.units import ARC_SECOND
 from overviews.compare.pair import Compared, Pair
 
@@ -48,7 +48,13 @@ class Remounted:
 
 
 def remounted(pair: Pair) -> Iterator[Remounted]:
-    """The rotation of each mount, where one is significant and nearly all of the difference."""
+    """The rotation of each mount, where one is significant and nearly all of the difference.
+
+    Only where all cross terms of both sensors are known in both results, and no difference follows
+    from others.
+    """
+    if not all(pair.together(sensor) for sensor in SENSORS):
+        return
     for mount in dict.fromkeys(one.key[0] for one in pair.compared):
         rows = [
             [
@@ -58,7 +64,7 @@ def remounted(pair: Pair) -> Iterator[Remounted]:
             ]
             for sensor in SENSORS
         ]
-        if all(rows):
+        if all({*CROSS} <= {one.key[2] for one in own} for own in rows):
             found = _rotation(pair, mount, rows)
             drop = found.before - found.after
             if chi2_sf(drop, 3) < pair.level and drop > MIN_SHARE * found.before:
