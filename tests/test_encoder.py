@@ -14,7 +14,7 @@ from inertial.campaign.records import Manoeuvre
 from inertial.detectors.encoder_against_plan import EncoderAngles, EncoderScale
 from inertial.estimation.encoder_angle import against_encoder, corrected, low_pass, ripple
 from stages.decode.table_angle import Continuous
-from stages.segment.encoder import by_encoder
+from stages.segment.encoder import _in_motion, by_encoder
 
 SOURCE = chain.ROOT / "data/simulated/encoder.yaml"
 ARC_SECOND = np.pi / 648_000
@@ -200,6 +200,21 @@ def test_an_encoder_that_contradicts_the_gyros_is_not_used():
     blocks["table_angle"] = np.radians([0.0, -180.0, -359.0])  # it counts the other way
     found = by_encoder(turn, blocks, 1e-5, 0.1)
     assert found.manoeuvre.angle == pytest.approx(np.radians(359))
+
+
+def test_the_angle_of_a_recorded_motion_is_that_from_its_beginning_to_its_end():
+    """Of 360°, 10° lie in a gap; a jump spoils two edges between the blocks by 33″."""
+    off = 33 / 3600
+    moving = pd.DataFrame(
+        {
+            "angle_from": np.radians([0.0, 90.0, 190.0 - off, 270.0]),
+            "angle_to": np.radians([90.0, 180.0, 270.0 - off, 360.0]),
+            "missing_s": [0.0, 0.0, 1.0, 0.0],
+        }
+    )
+    assert np.degrees(_in_motion(moving)) == pytest.approx(350 + off)
+    moving["missing_s"] = 0.0
+    assert np.degrees(_in_motion(moving)) == pytest.approx(360)
 
 
 def test_a_ripple_needs_more_than_noise_and_harmonics_are_taken_off():

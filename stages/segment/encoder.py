@@ -116,8 +116,16 @@ def _rate(moving: pd.DataFrame) -> float:
 
 
 def _in_motion(moving: pd.DataFrame) -> float:
-    """The angle of the recorded motion, rad; NaN where the encoder does not know all of it."""
-    return float((moving["angle_to"] - moving["angle_from"]).sum(skipna=False))
+    """The angle of the recorded motion, rad; NaN where the encoder does not know all of it.
+
+    From its beginning to its end, less what lies in gaps: the edges of blocks between them are
+    fitted through few readings, which a jump of the encoder spoils.
+    """
+    begin, end = (moving[f"angle_{at}"].to_numpy(np.float64) for at in ("from", "to"))
+    if not len(moving) or not np.isfinite([begin, end]).all():
+        return np.nan
+    hole = moving["missing_s"].to_numpy(np.float64)[1:] != 0
+    return float(end[-1] - begin[0] - (begin[1:] - end[:-1])[hole].sum())
 
 
 def without_unused(blocks: pd.DataFrame, turned: Mapping[str, ByEncoder]) -> pd.DataFrame:
