@@ -104,8 +104,9 @@ class EncoderAngles(PlanDetector):
         far = np.abs(off * recorded.stated_angle[read]) > MIN_SIGMAS * sigma
         if not far.any():
             return
+        least = float(sigma / np.median(np.abs(recorded.stated_angle[read])))
         odds = _odds_of_plan(recorded, read)
-        on_the_mean = abs(odds) < MIN_LOG_ODDS and far.sum() >= MIN_TURNS and _biased(off)
+        on_the_mean = abs(odds) < MIN_LOG_ODDS and far.sum() >= MIN_TURNS and _biased(off, least)
         if odds >= MIN_LOG_ODDS or on_the_mean:
             size = _largest_mean(recorded, read, off)
             turns = read[far]
@@ -212,13 +213,17 @@ def _odds_of_plan(recorded: Recorded, read: Integers) -> float:
 def _by_axis(recorded: Recorded, turns: Integers) -> Iterator[Integers]:
     """Turns about one axis of the case, in either sense of it."""
     axes = np.round(np.abs(recorded.about[turns]), 3)
-    for axis in np.unique(axes, axis=0):
+    known = np.isfinite(axes).all(axis=1)
+    for axis in np.unique(axes[known], axis=0):
         yield turns[(axes == axis).all(axis=1)]
 
 
-def _biased(off: Array) -> bool:
-    """Whether turns differ from the plan on the mean by more than turns that stop anywhere."""
-    scatter = float(np.std(off, ddof=1)) / np.sqrt(len(off))
+def _biased(off: Array, least: float) -> bool:
+    """Whether turns differ from the plan on the mean by more than turns that stop anywhere.
+
+    `least`: the sigma of a difference, relative: they scatter by no less.
+    """
+    scatter = max(float(np.std(off, ddof=1)), least) / np.sqrt(len(off))
     chance = 2 * float(stdtr(len(off) - 1, -abs(float(np.mean(off))) / scatter))
     return chance < MAX_CHANCE_OF_MEAN
 
@@ -227,7 +232,7 @@ def _largest_mean(recorded: Recorded, read: Integers, off: Array) -> float:
     """The largest of the means about each axis, relative: by so much a scale factor may be off."""
     share = dict(zip(read.tolist(), off.tolist(), strict=True))
     means = [float(np.mean([share[int(i)] for i in own])) for own in _by_axis(recorded, read)]
-    return max(means, key=abs)
+    return max(means, key=abs, default=float(np.mean(off)))
 
 
 def _jumping(recorded: Recorded) -> str:

@@ -75,6 +75,15 @@ def test_where_the_gyros_do_not_tell_both_are_named_only_if_the_mean_is_off():
     assert found <= 2  # by chance 0.2
 
 
+def test_turns_that_are_off_alike_or_about_unknown_axes_end_no_run():
+    alike = turns(np.full(12, 15.0), np.full(12, np.nan))
+    assert len([*EncoderScale().detect(alike), *EncoderAngles().detect(alike)]) == 1
+    unknown = turns(np.where(SENSES > 0, 360.0, 180.0), np.zeros(12))
+    unknown.about = np.full((12, 3), np.nan)
+    [found] = EncoderAngles().detect(unknown)
+    assert found.size == pytest.approx(270 / ROUND, rel=1e-6)
+
+
 def read_at(step_arcsec, seconds=11.0, rate=30.0):
     """A gyro at 100 Hz, an encoder at 50 Hz that counts 0.36″, interpolated; it is 4 ms late."""
     random = np.random.default_rng(7)
