@@ -150,6 +150,13 @@ def reads_in_words(axes: Permutation) -> str:
     return " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
 
 
+# Messages of NovAtel receivers send the axes so.
+RAWIMUS: dict[tuple[int, ...], str] = {
+    (0, 1, 2): _(" RAWIMUS has −y."),
+    (2, 1, 0): _(" RAWIMUS has z, −y, x."),
+}
+
+
 def _handed(misread: Misread, recorded: Recorded) -> str:
     flips = misread.axes.in_place
     usual = (
@@ -157,6 +164,8 @@ def _handed(misread: Misread, recorded: Recorded) -> str:
         if flips
         else _("Another order of the fields in the log is the usual cause.")
     )
+    if misread.axes.signs == (1, -1, 1):
+        usual += RAWIMUS.get(misread.axes.sources, "")
     if determinant(misread.axes) < 0:
         return _(
             "So the triad is left-handed (determinant −1), which no mounting does. {usual}",
