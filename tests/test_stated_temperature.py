@@ -65,6 +65,17 @@ def test_its_own_sigma_decides() -> None:
     assert list(tight["segment/findings"]["cause"]) == ["temperature_misstated"]
 
 
+def test_in_one_log_without_a_thermometer_what_is_not_stated_stays_unknown() -> None:
+    document = stated(-10.0, 40.0)
+    document["handling"] |= {"change_s": 10}
+    for manoeuvre in document["campaign"]["plan"]:
+        manoeuvre["log"] = "session.asc"
+    tables = segmented(document)
+    own = tables["segment/blocks"].groupby("manoeuvre")["temperature"]
+    assert own.mean()["x-up"] - ICE == pytest.approx(-10) and np.isnan(own.mean()["y-up"])
+    assert tables["segment/findings"].empty
+
+
 def test_where_the_thermometer_reads_nothing_it_is_as_warm_as_before_and_after() -> None:
     """20, ?, 30, ?, 30.2, ? °C in one log: 25, 30.1, and 30.2 °C, the last of no other side."""
     warm = {"x-up": 20.0, "y-up": 30.0, "z-up": 30.2}

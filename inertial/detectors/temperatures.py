@@ -313,7 +313,7 @@ class TemperatureUnknown(PlanDetector):
         unknown = np.isnan(recorded.temperature) & np.isnan(recorded.stated_temperature)
         for log in dict.fromkeys(logs[unknown & recorded.found]):
             own = np.flatnonzero((logs == log) & recorded.found)
-            known = own[~unknown[own]]
+            known = own[np.isfinite(recorded.temperature[own])]
             for i in own[unknown[own]] if len(known) else ():
                 before, after = known[known < i][-1:], known[known > i][:1]
                 beside = recorded.temperature[np.append(before, after)]

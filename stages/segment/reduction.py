@@ -174,20 +174,21 @@ class Blocks(SumsOver):
 def with_temperatures(blocks: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFrame:
     """The table of blocks with a temperature where none is recorded, K.
 
-    That which is stated, or else, in a log that has some, one between those before and after.
+    That which is stated, or else, in a log that records some, one between those before and after.
     """
     stated = {m.name: m.temperature for m in plan if m.temperature is not None}
-    temperature = blocks["temperature"]
+    recorded = blocks["temperature"].to_numpy(np.float64)
+    filled = recorded.copy()
     if stated:
-        temperature = temperature.fillna(blocks["manoeuvre"].map(stated).astype(np.float64))
-    filled = temperature.to_numpy(np.float64).copy()
+        planned = blocks["manoeuvre"].map(stated).to_numpy(np.float64)
+        filled = np.where(np.isnan(filled), planned, filled)
     for places in blocks.groupby("log").indices.values():
-        own, record = filled[places], blocks["from_record"].to_numpy()[places]
+        own, record = recorded[places], blocks["from_record"].to_numpy()[places]
         known = np.isfinite(own)
-        if known.any() and not known.all():
+        if known.any() and np.isnan(filled[places]).any():
             order = np.argsort(record[known])
             between = np.interp(record, record[known][order], own[known][order])
-            filled[places] = np.where(known, own, between)
+            filled[places] = np.where(np.isnan(filled[places]), between, filled[places])
     return blocks.assign(temperature=filled)
 
 
