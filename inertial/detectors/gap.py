@@ -128,14 +128,12 @@ class Gap(Detector):
                 angle=significant(angle, 3),
             ),
             _(
-                "The sum of increments over the turn lacks about {angle}°.",
+                "The sum of increments over the turn lacks about {angle}°. The joint fit can "
+                "interpolate it where the rate is steady for at least 1 s (or the length of the "
+                "gap, if shorter) on both sides; whole-turn formulas do not use this turn.",
                 angle=significant(angle, 3),
             ),
-            _(
-                "The joint fit interpolates gaps with at least 1 s of steady rate (or the length "
-                "of the gap, if shorter) on both sides; whole-turn formulas do not use this turn. "
-                "Find what loses samples, such as a buffer, a cable or a disk."
-            ),
+            _("Find what loses samples, such as a buffer, a cable or a disk."),
         )
 
 

@@ -231,18 +231,11 @@ class Shift:
 
     @property
     def sigmas(self) -> float | None:
-        """How far apart they are, in sigmas of the joint fit; none where one has no value."""
-        return None if self.joint is None else self._over(self.joint["sigma"])
-
-    @property
-    def own_sigmas(self) -> float | None:
-        """The same in sigmas of the extended fit."""
-        return self._over(self.extended["sigma"])
-
-    def _over(self, sigma: float | None) -> float | None:
-        if self.joint is None or self.extended["value"] is None or not sigma:
+        """How far apart they are, in sigmas of the extended fit; none where one has no value."""
+        sigma, value = self.extended["sigma"], self.extended["value"]
+        if self.joint is None or self.joint["value"] is None or value is None or not sigma:
             return None
-        return float((self.extended["value"] - self.joint["value"]) / sigma)
+        return float((value - self.joint["value"]) / sigma)
 
     @property
     def name(self) -> str:

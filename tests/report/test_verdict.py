@@ -19,7 +19,7 @@ from tests.report.synthetic_values import GAP_FINDING, rows_as
 CARD = re.compile(
     r'<article class="finding[^"]*" id="cause/diagnosis/([^"]+)">(.*?)</article>', re.S
 )
-QUESTIONS = ["How sure", "How large", "What it does", "What was done", "In the laboratory"]
+QUESTIONS = ["How sure", "How large", "What it does", "What was done", "What to do"]
 
 
 def page_one(made: dict[str, Any]) -> str:
@@ -73,7 +73,7 @@ def test_each_cause_has_one_card_that_answers_every_question() -> None:
     for card in found.values():
         assert [name for name in answers(card) if name in QUESTIONS][:1] == ["How sure"]
     told = answers(found["criticism/gyro_g_sensitivity"])
-    assert [*told] == [*QUESTIONS[:4], "Gain", "In the laboratory"]
+    assert [*told] == [*QUESTIONS[:4], "Gain", "What to do"]
     assert "SNR 77" in told["How sure"]
     # 6.9e-7 (rad/s)/(m/s²) · 9.80665 m/s² · 3600 s · 180°/π = 1.396 °/h/g
     assert told["How large"] == "1.396 ± 0.028 °/h/g"

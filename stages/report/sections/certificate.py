@@ -41,7 +41,7 @@ from stages.report.results import (
     final_results,
     withheld,
 )
-from stages.report.sections import basis
+from stages.report.sections import basis, unmodelled_effects
 from stages.report.sections.axes_of_case import axes_of_case
 from stages.report.sections.certified_values import (
     NOT_USABLE,
@@ -55,7 +55,7 @@ from stages.report.sections.conformity import conformity
 from stages.report.sections.findings import causes, spoils
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
-from stages.report.words import term, with_mount
+from stages.report.words import count_in_words, term, with_mount
 
 ITEMS = {  # of the left and of the right column, each with the items that it joins
     _("Laboratory"): ("laboratory.name", "laboratory.address", "laboratory.accreditation"),
@@ -321,6 +321,15 @@ def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
                 cause=in_words(row["cause"]),
                 share=numbers.significant(moves / COVERAGE_FACTOR, 2),
             )
+    shifting, every = unmodelled_effects.shifts_beyond(tables, COVERAGE_FACTOR)
+    if shifting:
+        yield _(
+            "No component of U: effects that were not detected. {shifting} of {every} would shift "
+            "a parameter by more than U if they were as large as their detection limits, which "
+            "“Unmodelled effects” states.",
+            shifting=capital(count_in_words(shifting)),
+            every=count_in_words(every),
+        )
     if changed := changed_in_words(tables):
         yield changed
     if earlier:
@@ -367,6 +376,7 @@ SECTION = Section(
             "verdict",
             "uncertainty_budget",
         ),
+        *unmodelled_effects.LIMIT_TABLES,
     ),
     parts,
 )

@@ -326,10 +326,10 @@ def _largest(rows: Sequence[Record], what: str, unit: str) -> tuple[str, str]:
 
 def largest_shift(shifts: Sequence[Shift]) -> str:
     """Which parameter of a sensor moves most with the effects in the model; or nothing."""
-    moved = [(shift, shift.sigmas) for shift in shifts if shift.sigmas is not None]
+    moved = [(abs(shift.sigmas), shift) for shift in shifts if shift.sigmas is not None]
     if not moved:
         return ""
-    most, sigmas = max(moved, key=lambda pair: abs(pair[1]))
+    _sigmas, most = max(moved, key=lambda pair: pair[0])
     assert most.joint is not None  # for it has moved
     unit = quantity_of(most.joint).shown
     before, after = (
@@ -338,11 +338,9 @@ def largest_shift(shifts: Sequence[Shift]) -> str:
         for sigma in [unit.of(row["sigma"])]
     )
     return _(
-        "{name} changes most of the parameters: from {before} to {after} {name_2}, by "
-        "{sigmas} σ of the joint fit.",
+        "{name} changes most of the parameters: from {before} to {after} {name_2}.",
         name=most.name,
         before=before,
         after=after,
         name_2=unit.name,
-        sigmas=fixed(sigmas, 1),
     )

@@ -116,12 +116,15 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
                 *outline.value_and_sigma(_("Joint fit")),
                 *outline.value_and_sigma(_("Extended")),
                 outline.Column(_("unit"), "unit"),
-                *outline.columns(
-                    "number", _("joint fit"), _("extended"), group=_("Shift, in σ of the fit")
-                ),
+                outline.Column(_("shift, in σ extended"), "number"),
                 outline.Column(_("Meaning"), "note"),
             ),
             list(_shifts(own)),
+            note=_(
+                "The joint fit allows for a scatter between manoeuvres where it needs one, and "
+                "weighs them otherwise; by how much an effect that is left out shifts a parameter "
+                "with all weights unchanged is stated in “What is wrong, and what was done”."
+            ),
         )
 
 
@@ -138,19 +141,16 @@ def _shifts(each: Sequence[Shift]) -> Iterator[outline.Row]:
         cells += in_units(both, units)
     extended, joint = cells[::2], cells[1::2]
     sides = [column for side in (joint, extended) for column in zip(*side, strict=True)]
-    sigmas = [
-        (numbers.fixed(shift.sigmas, 1), numbers.fixed(shift.own_sigmas, 1)) for shift in each
-    ]
-    lines = iter(zip(sigmas, *sides, strict=True))
+    lines = iter(zip(*sides, strict=True))
     for kind, own in kinds.items():
         yield outline.head(KIND.get(kind, kind))
-        for shift, (in_sigmas, *line) in zip(own, lines, strict=False):
+        for shift, line in zip(own, lines, strict=False):
             far = shift.sigmas is not None and abs(shift.sigmas) > MIN_SIGMAS
             yield outline.table_row(
                 symbol(shift.extended["parameter"]),
                 *line,
                 quantity_of(shift.extended).shown.name,
-                *in_sigmas,
+                numbers.fixed(shift.sigmas, 1),
                 numbers.shortened(shift.extended["meaning"], 160),
                 anchor=shift.extended["id"],
                 tone="fair" if far else "",
@@ -167,7 +167,7 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
     """
     by_name = {(effect.effect, effect.mount): effect for effect in tested}
     own = [row for row in rows if _effect(row) in by_name]
-    seen = [row for row in own if row["reason"] == VISIBLE and row["limit"] is not None]
+    seen = visible_limits(rows, tested)
     hidden = [row for row in own if row not in seen]
     # An effect that is not sought in equations and turns: its score says how.
     hidden += [
@@ -228,6 +228,30 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         )
 
 
+def visible_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> list[Record]:
+    """The detection limits of those effects that the campaign makes observable."""
+    names = {(effect.effect, effect.mount) for effect in tested}
+    return [
+        row
+        for row in rows
+        if _effect(row) in names and row["reason"] == VISIBLE and row["limit"] is not None
+    ]
+
+
+def shifts_beyond(
+    rows: Sequence[Record], tested: Sequence[Tested], sigmas: float
+) -> tuple[int, int]:
+    """How many effects, as large as their limit, shift a parameter by more than `sigmas` of it.
+
+    The second number: of how many it is known.
+    """
+    by_effect: dict[Effect, list[Record]] = {}
+    for row in visible_limits(rows, tested):
+        by_effect.setdefault(_effect(row), []).append(row)
+    most = [limit["moves"] for own in by_effect.values() if (limit := moves_most(own))]
+    return sum(moves > sigmas for moves in most), len(most)
+
+
 def _remarks(rows: Sequence[Record], by_name: Mapping[Effect, Tested]) -> Iterator[str]:
     """What is said of single effects, each with its name."""
     if any(row["effect"].startswith(DEAD_BAND) for row in rows):
@@ -254,12 +278,19 @@ def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
     )
 
 
+def moves_most(rows: Sequence[Record]) -> Record | None:
+    """The limit of these rows of one effect at which it moves a parameter most, where known."""
+    if rows[0]["effect"] in THERE_OR_NOT:
+        return None
+    known = [row for row in rows if row["moves"] is not None and row["limit"] <= _largest(row)]
+    return max(known, key=lambda row: float(row["moves"]), default=None)
+
+
 def _moves(rows: Sequence[Record]) -> tuple[str, str, str]:
     """By how many sigma undetected effects of these rows move a parameter, which, and whose."""
-    known = [row for row in rows if row["moves"] is not None and row["limit"] <= _largest(row)]
-    if not known or rows[0]["effect"] in THERE_OR_NOT:
+    most = moves_most(rows)
+    if most is None:
         return "", "", ""
-    most = max(known, key=lambda row: row["moves"])
     slight = most["moves"] < LEAST_MOVE
     moves = f"< {LEAST_MOVE}" if slight else numbers.significant(most["moves"], 2)
     return moves, symbol(most["moved_parameter"]), SINGULAR[most["moved_sensor"]]

@@ -60,9 +60,22 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     yield _summary(tables)
     yield from _decisions(tables)
     yield from effect_tables.structure_tests(tables.rows("structures"))
-    if missed := list(_not_detected(tables)):
+    if missed := list(not_detected(tables)):
         yield outline.Heading(_("Detection limits"))
         yield from effect_tables.detection_limits(tables.rows("detection_limits"), missed)
+
+
+def shifts_beyond(tables: Tables, sigmas: float) -> tuple[int, int]:
+    """How many undetected effects, as large as their detection limit, shift a parameter more.
+
+    The second number: of how many it is known.
+    """
+    return effect_tables.shifts_beyond(
+        tables.rows("detection_limits"), list(not_detected(tables)), sigmas
+    )
+
+
+LIMIT_TABLES = (*FINDING_TABLES, "scores", "detection_limits", *CAUSE_TABLES[1:])
 
 
 SECTION = outline.Section(
@@ -75,8 +88,8 @@ SECTION = outline.Section(
     "",
     (
         *RESULT_TABLES,
-        *FINDING_TABLES,
-        *("scores", "detection_limits", "structures", *CAUSE_TABLES[1:], *GAIN_TABLES),
+        *LIMIT_TABLES,
+        *("structures", *GAIN_TABLES),
     ),
     parts,
 )
@@ -123,7 +136,7 @@ def _decisions(tables: Tables) -> Iterator[outline.Paragraph]:
             yield outline.Paragraph(shortened(mount + row["reason"], 900), tone)
 
 
-def _not_detected(tables: Tables) -> Iterator[Tested]:
+def not_detected(tables: Tables) -> Iterator[Tested]:
     """The effects that no finding is about, nor may be instead."""
     named = {
         (name, row["mount"])

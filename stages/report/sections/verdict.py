@@ -146,7 +146,7 @@ def _answers(tables: Tables, row: Record) -> outline.Pairs:
         _("Gain"): row["gain"],
         _("Valid if"): _sentence(row["condition"] or ""),
         _("Therefore"): _sentence(_therefore(tables, row)),
-        _("In the laboratory"): row["action"],
+        _("What to do"): row["action"],
     }
     return tuple((name, shortened(text, 600)) for name, text in texts.items() if text)
 
