@@ -8,7 +8,7 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.effect_sentences import Estimated
 from inertial.effects import CATALOGUE
-from inertial.estimation.random_walk import MeasuredDrift
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.model_selection.cause import ONE_OF_CLASS, UNKNOWN_STRUCTURE
 from inertial.sensors import PLURAL, UNITS
 from inertial.tables import AXES
@@ -26,6 +26,8 @@ WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 # Effects by the beginning of their names that change the readings of a sensor though not its own.
 SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
 NOT_TESTED = _("Not detected; section “Noise” states the upper limit (K).")
+EXPLAINED = _("Section “Noise” states a K, which what is named explains better.")
+BESIDE_NAMED = _("Section “Noise” states K, for which the sigmas allow beside what is named.")
 NO_FLICKER = _("The noise at rest does not show it.")
 FLICKER = _("The noise at rest shows {sizes} in the order of the axes, which the sigmas allow for.")
 OF_QUALITY = _("Sought in the quality of the samples: findings “{finding}”.")
@@ -67,14 +69,21 @@ REPEAT = _(
 SHORTEN = _("A shorter campaign, or rotations forth and back, reduce its influence.")
 
 
-def other_scores(walk: Walk | None, measured: MeasuredDrift, mount: str) -> Iterator[TableRow]:
+def other_scores(
+    walk: Walk | None, at_rest: MeasuredDrift, kept: bool, named: bool, mount: str
+) -> Iterator[TableRow]:
     """Effects sought in the noise, then in the quality of samples.
 
-    `walk`, `measured`: of the gyros, between stretches, if any, and by the noise at rest.
+    `walk`, `at_rest`: of the gyros, between stretches, if any, and by the noise at rest;
+    `kept`: whether the equations hold the second; `named`: whether another cause of them is named.
     """
+    measured = NO_DRIFT if named else at_rest
     walks = {WALK: WALK_SCORE.format(size=_walk_size("gyro", walk))} if walk else {}
     if walk is None and measured.walk.any():
         walks = {WALK: WALK_SCORE.format(size=_sizes(measured.walk, WALK_UNITS["gyro"]))}
+    unnamed = NOT_TESTED
+    if at_rest.walk.any():
+        unnamed = BESIDE_NAMED if kept else EXPLAINED
     shown = measured.instability.any()
     flicker = FLICKER.format(sizes=_sizes(measured.instability, "rad/s")) if shown else NO_FLICKER
     others = [effect for effect in CATALOGUE.values() if effect.sought_in in ("noise", "quality")]
@@ -83,7 +92,7 @@ def other_scores(walk: Walk | None, measured: MeasuredDrift, mount: str) -> Iter
         if effect.sought_in == "quality":
             sentence = OF_QUALITY.format(finding=in_words(effect.finding))
         else:
-            sentence = {"gyro_flicker": flicker, **walks}.get(effect.name, NOT_TESTED)
+            sentence = {"gyro_flicker": flicker, **walks}.get(effect.name, unnamed)
         yield (
             "scores",
             {

@@ -11,7 +11,6 @@ from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
-from inertial.estimation.random_walk import NO_DRIFT
 from inertial.sensors import SENSORS
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -121,8 +120,14 @@ def _of_mount(
     ).rows()
     moves = shifts(data, turns, spectrum.oscillations, campaign)
     yield from OscillationResults(spectrum, mount, moves).rows()
-    shown = NO_DRIFT if "gyro" in lawful else measured.drifts["gyro"]
-    yield from other_scores(random_walks.get("gyro"), shown, mount)
+    at_rest_of_gyros = measured.drifts["gyro"]
+    yield from other_scores(
+        random_walks.get("gyro"),
+        at_rest_of_gyros,
+        campaign.drifts["gyro"] is at_rest_of_gyros,
+        "gyro" in lawful,
+        mount,
+    )
     yield from structure_rows(tested, lawless.reported_structures, mount)
     yield from unexplained_rows(selection, lawless, level * UNEXPLAINED_SHARE, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)

@@ -34,6 +34,7 @@ DECLARED = Declared(
         "levels": From("noise", tables.LEVELS),
         "allan": From("noise", tables.ALLAN),
         "spectra": From("noise", tables.SPECTRA),
+        "drifts_at_rest": From("criticism", tables.DRIFTS_AT_REST),
         "noise_terms": From("noise", tables.NOISE_TERMS, "terms"),
         "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
         "accelerometer_fit": From("accelerometer", tables.FIT),

@@ -72,6 +72,9 @@ def test_a_jump_within_a_rest_is_seen_there_as_a_drift_and_stays_a_jump() -> Non
     assert (found["cause"], found["verdict"]) == ("gyro_bias_jump", "found")
     (at,) = results["criticism/effects"].query("parameter == 't0'").to_dict("records")
     assert at["value"] == pytest.approx(1000, abs=4 * at["sigma"])
+    (walk,) = results["criticism/scores"].query("effect == 'gyro_random_walk'").to_dict("records")
+    assert not walk["named"]
+    assert walk["sentence"] == "Section “Noise” states a K, which what is named explains better."
 
 
 @pytest.mark.slow

@@ -56,7 +56,10 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         sensors = [s for s in NAME if any(row["channel"].startswith(s) for row in terms)]
         for sensor in sensors:
             own = [row for row in terms if row["channel"].startswith(sensor)]
-            yield _terms_table(sensor, own, _note(terms, sheet) if sensor == sensors[-1] else "")
+            notes = [*_explained(tables, sensor)]
+            if sensor == sensors[-1]:
+                notes.append(_note(terms, sheet))
+            yield _terms_table(sensor, own, " ".join(filter(None, notes)))
     else:
         yield _levels(tables.rows("levels"), sheet)
 
@@ -74,7 +77,7 @@ SECTION = outline.Section(
         "counts that are coarse beside it; of the data sheet, dashed, the bias instability is used "
         "as far as the rests leave it open, and nothing else."
     ),
-    ("allan", "spectra", "noise_terms", "levels", "sensors", "segments"),
+    ("allan", "spectra", "noise_terms", "levels", "sensors", "segments", "drifts_at_rest"),
     parts,
 )
 
@@ -99,6 +102,18 @@ def _nothing(segments: Iterable[Record]) -> str:
 
 
 # ---- terms
+
+
+def _explained(tables: Tables, sensor: str) -> Iterator[str]:
+    """That the drift of a sensor at rest is better explained otherwise, so that no σ holds it."""
+    own = [row for row in tables.rows("drifts_at_rest") if row["sensor"] == sensor]
+    if own and not any(row["kept"] for row in own):
+        yield _(
+            "B and K of the {sensors} contain a change of their biases that what is named, or "
+            "single manoeuvres, explain better: the fit with effects in the model does without "
+            "them.",
+            sensors=PLURAL[sensor],
+        )
 
 
 def _note(terms: Sequence[Record], sheet: Sequence[Record]) -> str:
