@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import ClassVar, Self
 
 import numpy as np
+from scipy.signal import savgol_filter
 
 from inertial.arrays import Array, Booleans
 from inertial.physics.effect import (
@@ -32,6 +33,9 @@ SETTLING_TIMES = (30.0, 3000.0)  # s, of τ: a shorter one is over before the fi
 ON = "on_"  # and a number: the constants of a warm-up that begins anew
 SETTLING_CANDIDATES = 9  # of τ; between two of them the trace changes by a tenth
 THERMOMETER_ERROR = 1.0  # K beyond the coldest and the warmest mean; resolution of many
+
+SLOPE_SHARE = 0.5  # of the thermometer's time constant, over which its slope is taken
+SLOPE_POINTS = 17  # of a straight line
 
 NO_CLOCK = _(
     "The logs share no clock, so nothing tells how long after one another they were recorded."
@@ -204,19 +208,37 @@ def known_at(temperature: Array, valid: tuple[float, float] | None) -> Booleans:
 def delay(time: Array, temperature: Array, lag: float) -> Array:
     """By how much a part of the instrument is warmer than its thermometer, (n,), K.
 
-    It follows with a time constant `lag`, s, of first order: τ dT'/dt = T − T'. A negative one is
-    that of the thermometer, which follows the part: T' = T + |τ| dT/dt, whose derivative is taken
-    with the same time constant, so that it is that of a ramp after |τ|. Between the times (n,), in
-    any order, the temperature is linear; at the first of them both are alike.
+    It follows with a time constant `lag`, s, of first order: τ dT'/dt = T − T', both alike at the
+    first of the times (n,), which are in any order. A negative one is that of the thermometer,
+    which follows the part: T' = T + |τ| dT/dt. Between the times the temperature is linear.
     """
     if not lag or not np.isfinite(time).all():
         return np.zeros(len(time))
     constant = abs(lag)
     at, place = np.unique(time, return_inverse=True)
     course = np.bincount(place, temperature) / np.bincount(place)
+    if lag < 0:
+        return np.asarray(constant * _slopes(at, course, constant)[place])
     behind, below = np.zeros(len(at)), 0.0
     for i, (step, rise) in enumerate(zip(np.diff(at), np.diff(course), strict=True), 1):
         ramp = constant * rise / step
         below = (below - ramp) * np.exp(-step / constant) + ramp
         behind[i] = below
-    return np.asarray(-np.sign(lag) * behind[place])
+    return np.asarray(-behind[place])
+
+
+def _slopes(time: Array, course: Array, constant: float) -> Array:
+    """The slope of a course at its times, (n,), by straight lines over half a time constant.
+
+    So short a line hardly changes what a first-order response shows, and averages the thermometer.
+    """
+    step = constant * SLOPE_SHARE / (SLOPE_POINTS - 1)
+    count = int(np.ceil((time[-1] - time[0]) / step)) + 1
+    if count <= SLOPE_POINTS:
+        return np.full(len(time), np.polyfit(time - time[0], course, 1)[0] if count > 1 else 0.0)
+    place = np.rint((time - time[0]) / step).astype(np.int64)
+    number = np.bincount(place, minlength=count)
+    known, grid = np.flatnonzero(number), np.arange(count)
+    means = np.interp(grid, known, np.bincount(place, course, count)[known] / number[known])
+    slopes = savgol_filter(means, SLOPE_POINTS, 1, deriv=1, delta=step, mode="interp")
+    return np.interp(time, time[0] + step * grid, slopes)

@@ -254,12 +254,30 @@ def test_hysteresis_and_a_drift_in_time_are_one_class_where_it_turns_back_once()
 
 
 def test_a_delay_is_that_of_a_first_order():
-    """After a long ramp a part is behind by rate × τ, and a part before it ahead by as much."""
+    """After a long ramp a part is behind by rate × τ; a part that a thermometer follows is ahead.
+
+    By as much all the time, for the thermometer's own readings rise all the time.
+    """
     time = np.arange(0.0, 3000.0, 10.0)
     behind, ahead = (delay(time, 0.01 * time, lag) for lag in (100.0, -100.0))
-    assert behind[0] == ahead[0] == 0.0
+    assert behind[0] == 0.0
+    assert ahead == pytest.approx(np.ones(300), rel=1e-6)
     assert behind[-1] == pytest.approx(-1.0, rel=1e-6)
-    assert ahead[-1] == pytest.approx(1.0, rel=1e-6)
+
+
+def test_a_thermometer_that_lags_is_led_back_to_the_part():
+    """From its own first-order response to a course that turns about, by its closed formula."""
+    time = np.arange(0.0, 4000.0, 20.0)
+    since = np.clip(time - 2000, 0, None)
+    part = 0.03 * time - 0.06 * since
+    response = [0.03 * (time - 120 * (1 - np.exp(-time / 120))) - 0.06 * since]
+    response.append(0.06 * 120 * (1 - np.exp(-since / 120)))
+    read = np.sum(response, axis=0)
+    assert np.abs(read - part).max() == pytest.approx(3.6, abs=0.01)
+    recovered = read + delay(time, read, -120.0)
+    assert np.abs(recovered - part).max() < 0.5
+    away = (np.abs(time - 2000) > 60) & (time > 60)
+    assert np.abs(recovered - part)[away].max() < 0.06
     assert behind[10] == pytest.approx(-(1 - np.exp(-1)), rel=1e-9)
 
 
