@@ -69,9 +69,7 @@ def test_what_is_wrong_with_the_demo(data: Path, capsys: pytest.CaptureFixture[s
     lines = said.splitlines()
     assert lines[0] == "demo: 12 of 12 manoeuvres found, 11 complete."
     assert "1 197 samples are missing between 2771.800 s and 2783.780 s" in " ".join(said.split())
-    assert (
-        said.count("What it does: ") == said.count("What to do: ") == said.count(" · ") / 2
-    )
+    assert said.count("What it does: ") == said.count("What to do: ") == said.count(" · ") / 2
     assert lines[-1] == "2 causes: 2 are good to know."  # a gap, and an oscillation of the case
     assert code == 0
 

@@ -232,13 +232,14 @@ def _slopes(time: Array, course: Array, constant: float) -> Array:
 
     So short a line hardly changes what a first-order response shows, and averages the thermometer.
     """
-    step = constant * SLOPE_SHARE / (SLOPE_POINTS - 1)
-    count = int(np.ceil((time[-1] - time[0]) / step)) + 1
+    shortest = constant * SLOPE_SHARE / (SLOPE_POINTS - 1)
+    count = int((time[-1] - time[0]) / shortest) + 1
     if count <= SLOPE_POINTS:
         return np.full(len(time), np.polyfit(time - time[0], course, 1)[0] if count > 1 else 0.0)
-    place = np.rint((time - time[0]) / step).astype(np.int64)
-    number = np.bincount(place, minlength=count)
-    known, grid = np.flatnonzero(number), np.arange(count)
-    means = np.interp(grid, known, np.bincount(place, course, count)[known] / number[known])
-    slopes = savgol_filter(means, SLOPE_POINTS, 1, deriv=1, delta=step, mode="interp")
-    return np.interp(time, time[0] + step * grid, slopes)
+    grid = np.linspace(time[0], time[-1], count)
+    _each, place = np.unique(np.rint((time - time[0]) / step), return_inverse=True)
+    number = np.bincount(place)
+    at, means = np.bincount(place, time) / number, np.bincount(place, course) / number
+    even = np.interp(grid, at, means)
+    slopes = savgol_filter(even, SLOPE_POINTS, 1, deriv=1, delta=grid[1] - grid[0], mode="interp")
+    return np.interp(time, grid, slopes)
