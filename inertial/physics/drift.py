@@ -237,9 +237,10 @@ def _slopes(time: Array, course: Array, constant: float) -> Array:
     if count <= SLOPE_POINTS:
         return np.full(len(time), np.polyfit(time - time[0], course, 1)[0] if count > 1 else 0.0)
     grid = np.linspace(time[0], time[-1], count)
+    step = float(grid[1] - grid[0])
     _each, place = np.unique(np.rint((time - time[0]) / step), return_inverse=True)
     number = np.bincount(place)
     at, means = np.bincount(place, time) / number, np.bincount(place, course) / number
     even = np.interp(grid, at, means)
-    slopes = savgol_filter(even, SLOPE_POINTS, 1, deriv=1, delta=grid[1] - grid[0], mode="interp")
+    slopes = savgol_filter(even, SLOPE_POINTS, 1, deriv=1, delta=step, mode="interp")
     return np.interp(time, grid, slopes)
