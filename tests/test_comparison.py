@@ -15,6 +15,7 @@ from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.physics.site import earth_rate
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
+from stages.comparison.methods_compared import Results, method_against_method
 from stages.plan.published import published_values
 
 DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
@@ -283,3 +284,18 @@ def test_a_poor_campaign_has_few_differences_and_no_failure(clean):
         clean[0], "comparison", gyroscope_parameters=blank, accelerometer_parameters=blank
     )
     assert found["differences"].empty
+
+
+@pytest.mark.parametrize(
+    ("sigmas", "variances"), [((2.0, 3.0), (4 - 1, 9 - 4)), ((0.5, 3.0), (0.25 + 1, 9 + 4))]
+)
+def test_a_method_that_allows_for_less_is_not_weighed_as_if_it_were_the_best(sigmas, variances):
+    """Hausman's variance needs the joint estimate, 1 and 2, to be the better one throughout."""
+    rows = [
+        {"method": method, "parameter": f"bias_{axis}", "mount": "", "unit": "m/s²"}
+        | {"id": f"{method}/{axis}", "value": 0.0, "sigma": sigma}
+        for method, own in (("joint", (1.0, 2.0)), ("six_position", sigmas))
+        for axis, sigma in zip("xy", own, strict=True)
+    ]
+    found = method_against_method(Results("accelerometer", pd.DataFrame(rows), ""), "six_position")
+    assert [difference.sigma**2 for difference in found] == pytest.approx(variances)

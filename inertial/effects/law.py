@@ -8,7 +8,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.physics.effect import Constant, Effect, Parameter, Reading, Truth, by_grade
-from inertial.physics.laws import LAWS, OWN, functions, powers, unknown
+from inertial.physics.laws import LAWS, OWN, SHAPED_IN_STATE, UNITS, functions, powers, unknown
 from inertial.physics.motion import Motion
 from inertial.sensors import SENSORS
 from inertial.text.messages import _
@@ -72,8 +72,9 @@ class Law(Effect):
         return unknown(self.state, motion)
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
+        unit = UNITS.get(self.state, "g") if self.family in SHAPED_IN_STATE else "1"
         return [
-            Constant(f"shape_{i}", "1", _("shape of the law"), value)
+            Constant(f"shape_{i}", unit, _("shape of the law"), value)
             for i, value in enumerate(self.shape, 1)
         ]
 

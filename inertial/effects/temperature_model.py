@@ -19,6 +19,7 @@ from inertial.physics.drift import delay, temperature_constants, warmer, without
 from inertial.physics.effect import Constant, Effect, Parameter, Reading, Term, Truth
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
+from inertial.text.numbers import significant
 from inertial.text.parameters import PARTS
 from inertial.text.units import DEGREE, STANDARD_GRAVITY
 
@@ -113,7 +114,7 @@ class TemperatureModel(Effect):
         self.pieces = tuple(pieces)
         self.knots = dict(knots or {})
         self.name = temperature_name(sensor)  # type: ignore[misc]
-        self.cause = CAUSES[sensor]  # type: ignore[misc]
+        self.cause = CAUSES[sensor] + _behind(lag)  # type: ignore[misc]
         self.parameters = tuple(map(self._parameter, self.pieces))  # type: ignore[misc]
         self.terms = tuple(map(self._term, self.pieces))  # type: ignore[misc]
 
@@ -238,6 +239,16 @@ CAUSES = {
     ),
     "gyro": _("bias, scale factors or cross terms of the gyros are functions of the temperature"),
 }
+
+
+def _behind(lag: float) -> str:
+    """Which of sensors and thermometer follows the other; nothing where both go together."""
+    if not lag:
+        return ""
+    seconds = significant(abs(lag), 2)
+    if lag < 0:
+        return _(", which the thermometer follows with a time constant of {s} s", s=seconds)
+    return _(", which they follow with a time constant of {s} s", s=seconds)
 
 
 def temperature_name(sensor: str) -> str:

@@ -27,6 +27,15 @@ OF_STATE = {
     "temperature": ("polynomial", "exponential", "hysteresis"),
     "temperature_rate": ("odd_power", "product"),
 } | dict.fromkeys(("force_x", "force_y", "force_z", "own_force"), OF_FORCE)
+UNITS = {  # of the states; of forces g
+    "time": "h",
+    "run_time": "h",
+    "angle": "rad",
+    "rate": "× 10 °/s",
+    "temperature": "K",
+    "temperature_rate": "K/min",
+}
+SHAPED_IN_STATE = ("exponential", "ramp", "telegraph", "hysteresis")  # by values of the state
 OWN = ("own_force", "other_forces")  # states that differ from axis to axis: laws of all axes
 FACTORS = ("time", "rate", "force_x", "force_y", "force_z", "temperature", "temperature_rate")
 PRODUCTS = tuple(

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+from inertial.text.messages import _
+
 AXES = ("x", "y", "z")
 
 
@@ -46,6 +48,13 @@ LETTERS = {
     **{"dphi": "Δφ", "dpsi": "Δψ", "dg": "Δg"},
 }
 
+# The coefficients of a function of temperature by the ends of their names.
+OF_TEMPERATURE = {
+    **{"1": _("per K"), "2": _("per K²"), "3": _("per K³"), "bend": _("beyond the knot")},
+    **{"shift": _("at the knot"), "bend_below": _("beyond the lower knot")},
+    "bend_above": _("beyond the upper knot"),
+}
+
 JOINT, EXTENDED = "joint", "extended"  # results: of the joint fit, with the unmodelled effects
 MIXTURE = "mixture"  # of several members of a class, each by its probability
 FREE = "free_positions"  # of static positions of unknown attitude
@@ -54,9 +63,16 @@ SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}
 
 
 def sign_of(parameter: str) -> str:
-    """A parameter as it is written: m_xy for cross_xy, θ_x for theta_x, Δφ for dphi."""
+    """A parameter as it is written: m_xy for cross_xy, θ_x for theta_x, Δφ for dphi.
+
+    Of a coefficient of a function of temperature, bias_x_2, the parameter and what it is of.
+    """
     if parameter in PARTS:
         kind, axes = PARTS[parameter]
         return f"{SIGNS[kind]}_{axes}"
+    for ending, words in OF_TEMPERATURE.items():
+        function = parameter.removesuffix(f"_{ending}")
+        if function != parameter and function in PARTS:
+            return f"{sign_of(function)} {words}"
     letter, underscore, axes = parameter.partition("_")
     return LETTERS.get(letter, letter) + underscore + axes

@@ -77,6 +77,8 @@ RANDOM_WALK = {
 _RATIO = Quantity(PPM, Unit("10⁻⁶", 1e-6))
 _SHARE = Quantity(PER_CENT, PER_CENT)  # of a whole, 0 to 1
 _ANGLE = Quantity(SECONDS_OF_ARC, Unit("µrad", 1e-6))
+_NUMBER = Quantity(Unit("", 1.0), Unit("", 1.0))
+_NUMBERS = ("shape", "degree", "probability")  # of laws and functions of temperature: no ratios
 _BY_UNIT = {
     "m/s²": Quantity(MICRO_G, Unit("10⁻³ m/s²", 1e-3)),
     "rad/s": Quantity(DEGREES_PER_HOUR, Unit("10⁻⁶ rad/s", 1e-6)),
@@ -153,6 +155,8 @@ def quantity(parameter: str, unit: str) -> Quantity:
     kind, _, axes = parameter.partition("_")
     if axes in ("xx", "yy", "zz") and unit in ("1", ""):
         return _RATIO
+    if kind in _NUMBERS and unit == "1":
+        return _NUMBER
     if kind in _DIMENSIONLESS and unit in ("1", "rad", ""):
         return _DIMENSIONLESS[kind]
     return _BY_UNIT.get(unit) or Quantity(Unit(unit, 1.0), Unit(unit, 1.0))

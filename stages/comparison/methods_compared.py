@@ -64,14 +64,18 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
 
     The two use the same data, so their errors are correlated. Of all unbiased estimates the joint
     one has the smallest variance; then the variance of the difference is the difference of the
-    variances, σ² = |σ₁² − σ₂²| (Hausman 1978).
+    variances, σ² = σ₁² − σ₂² (Hausman 1978). Where the joint estimate has the larger variance of
+    any parameter, it allows for more than the method does, such as a drift between the positions:
+    then how they are correlated is not known, and the variances are added.
     """
+    efficient = not _smaller_somewhere(results, method)
     for name in results.names(method):
         other, joint = results.of(method, name), results.determined("joint", name)
         if other is None or joint is None:
             continue
-        alike = abs(other["sigma"] / joint["sigma"] - 1) < MIN_SIGMA_DIFFERENCE
-        sigma = abs(other["sigma"] ** 2 - joint["sigma"] ** 2) ** 0.5
+        alike = efficient and other["sigma"] < (1 + MIN_SIGMA_DIFFERENCE) * joint["sigma"]
+        sign = -1 if efficient else 1
+        sigma = max(other["sigma"] ** 2 + sign * joint["sigma"] ** 2, 0.0) ** 0.5
         yield Difference(
             kind=METHOD_AGAINST_METHOD,
             mount=results.mount,
@@ -95,3 +99,16 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
                 else ""
             ),
         )
+
+
+def _smaller_somewhere(results: Results, method: str) -> bool:
+    """Whether a method has a clearly smaller sigma of any parameter than the joint estimate."""
+    pairs = (
+        (results.determined(method, name), results.determined("joint", name))
+        for name in results.names(method)
+    )
+    return any(
+        other["sigma"] < (1 - MIN_SIGMA_DIFFERENCE) * joint["sigma"]
+        for other, joint in pairs
+        if other is not None and joint is not None
+    )

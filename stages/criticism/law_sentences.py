@@ -7,6 +7,7 @@ import numpy as np
 from inertial.campaign.effect_sentences import Estimated
 from inertial.effects.law import ALL, Law
 from inertial.model_selection.cause import ONE_OF_CLASS, Cause
+from inertial.physics.laws import UNITS
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import STATES, in_words
 from inertial.text.messages import _
@@ -35,14 +36,6 @@ FORMS = {
     "pulse": _("another level from {first_time} s to {last_time} s"),
     "hysteresis": _("hysteresis of {state}, {first} {unit} wide to either side"),
     "product": _("in proportion to {state}"),
-}
-UNITS = {
-    "time": "h",
-    "run_time": "h",
-    "angle": "rad",
-    "rate": "× 10 °/s",
-    "temperature": "K",
-    "temperature_rate": "K/min",
 }
 MIN_SIGMAS = 3.0  # of a size that is written
 

@@ -94,7 +94,8 @@ COMPARISONS = outline.Section(
         "difference this large if the two are equal; among many comparisons some are "
         "large by chance, which the verdict takes into account. Two methods that use the same "
         "data are correlated: the variance of their difference is the difference of their "
-        "variances. Static against rotation is judged by the σ of noise, table and site alone. The "
+        "variances, where the joint estimate is the better one throughout, and else their sum. "
+        "Static against rotation is judged by the σ of noise, table and site alone. The "
         "σ of the methods in “Parameters” also contain the scatter between manoeuvres and are "
         "therefore larger."
     ),
