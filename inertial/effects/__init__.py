@@ -48,6 +48,7 @@ from inertial.effects.latitude_sign import LatitudeSign
 from inertial.effects.law import Law, every_law
 from inertial.effects.lever_arm import LeverArm
 from inertial.effects.mounting_shift import MountingShift
+from inertial.effects.mounting_slip import MountingSlip
 from inertial.effects.oscillation import Oscillation
 from inertial.effects.size_effect import SizeEffect
 from inertial.effects.table_angle_scale import TableAngleScale
@@ -108,6 +109,7 @@ CATALOGUE: dict[str, Effect] = {
         SizeEffect(),
         GyroAccelMisalignment(),
         MountingShift(),
+        MountingSlip(),
         # the table
         TableSpeedError(),
         TableTilt(),

@@ -55,6 +55,7 @@ NAMES = {
     "position_scatter": _("positions that scatter by more than is stated of the table"),
     "wrong_scale_of_turns": _("wrong scale of turns"),
     "mounting_shift": _("shift of the IMU in its fixture"),
+    "mounting_slip": _("slip of the IMU in its fixture in a turn"),
     "accel_bias_per_log": _("bias of the accelerometers after each switch-on"),
     "accel_bias_jump": _("accelerometer bias jump"),
     "accel_bias_ramp": _("accelerometer bias ramp"),

@@ -64,6 +64,7 @@ from laboratory.effects.latitude_error import LatitudeError
 from laboratory.effects.lever_arm import LeverArm
 from laboratory.effects.mounting_creep import MountingCreep
 from laboratory.effects.mounting_shift import MountingShift
+from laboratory.effects.mounting_slip import MountingSlip
 from laboratory.effects.oscillation import Oscillation
 from laboratory.effects.size_effect import SizeEffect
 from laboratory.effects.table_angle_scale import TableAngleScale
@@ -142,6 +143,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     # both
     "turn_on_bias": TurnOnBias.specified,
     "mounting_shift": MountingShift.specified,
+    "mounting_slip": MountingSlip.specified,
     "mounting_creep": MountingCreep.specified,
     "cyclic_drift": CyclicDrift.specified,
     "temperature_curves": TemperatureCurves.specified,

@@ -20,6 +20,7 @@ from inertial.text.parameters import JOINT
 UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
+SLIP = "mounting_slip"  # shown by one turn, it turns the axes of all that follows
 OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
 TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
@@ -147,7 +148,7 @@ def decided(
     if freed := _freed(own):
         manoeuvres = ", ".join(dict.fromkeys(freed.values()))
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
-        same = frozenset(one["method"] for one in alike)
+        same = frozenset(one["method"] for one in alike if not _turns(effects_of(one)))
         return Decision(best["method"], reason + others, freed, same)
     replaced = REPLACED if best["drop"] <= best["snr_squared"] else REPLACED_WALK
     reason = replaced.format(
@@ -210,6 +211,11 @@ def _freed(effects: Sequence[Row]) -> Mapping[str, str]:
     if not all(_of_one_manoeuvre(row["effect"]) for row in effects):
         return {}
     return _carriers(effects)
+
+
+def _turns(effects: Sequence[Row]) -> bool:
+    """Whether any turns the axes of all that follows, though one manoeuvre alone shows it."""
+    return any(row["effect"] == SLIP for row in effects)
 
 
 def _of_one_manoeuvre(effect: str) -> bool:

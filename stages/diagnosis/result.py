@@ -34,6 +34,26 @@ class Result:
         rows = [row | {"sigma": row["sigma"] and row["sigma"] * by} for row in self.rows]
         return replace(self, rows=rows, covariance=self.covariance * by**2)
 
+    def turned(self, rotation: Array, probability: float) -> "Result":
+        """The mixture with the mounting as it was before a rotation (3,), rad, of the case.
+
+        `probability`: of that rotation. These readings do not show it: M after it is
+        M before times I − [θ×], and either may be what the plan takes for the case.
+        """
+        values = np.array([_number(row["value"]) for row in self.rows[:UNKNOWNS]])
+        if not np.isfinite(values).all():
+            return self
+        before = values.copy()
+        before[:9] += np.cross(np.eye(3) + values[:9].reshape(3, 3), rotation).ravel()
+        within = self.covariance[:UNKNOWNS, :UNKNOWNS]
+        weights = np.array([1 - probability, probability])
+        mean, spread = mixture(np.array([values, before]), np.array([within, within]), weights)
+        whole = beside_effects(spread, self.covariance, 1.0)
+        sigma = np.sqrt(np.diagonal(whole))
+        rows = [_mixed(row, mean[i], sigma[i]) for i, row in enumerate(self.rows[:UNKNOWNS])]
+        rows = [row | {"method": MIXTURE} for row in (*rows, *self.rows[UNKNOWNS:])]
+        return Result(MIXTURE, rows, whole)
+
     def covariance_rows(self) -> pd.DataFrame:
         """The covariance as its table has it, of the parameters that are determined."""
         there = [i for i, row in enumerate(self.rows) if row["sigma"] is not None]

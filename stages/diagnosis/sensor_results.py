@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
+from inertial.arrays import Array
 from inertial.campaign.competition import ExplainedFindings
 from inertial.campaign.hypotheses import MODEL
 from inertial.campaign.records import Row, rows_of
@@ -17,9 +18,10 @@ from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
 from inertial.text.parameters import BIAS, CROSS, FREE, JOINT, SCALE
-from stages.diagnosis.decision import Decision, alarms_of, decided
+from stages.diagnosis.decision import SLIP, Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
+CLEAR = 3.0  # sigma of an angle
 MAX_CHANCE = 0.05  # p-value of an effect's size, with a larger one it moves nothing for certain
 TWELVE = frozenset(linear_names())
 BY_FREE_POSITIONS = _(
@@ -92,6 +94,13 @@ class SensorResult:
         rows = [] if method is None else self.candidates[method].rows
         own = [r for r in rows if r["effect"] == effect and r["unit"] == "rad"]
         return max((abs(row["value"]) for row in own), default=0.0)
+
+    def slip(self, method: str) -> tuple[Array, bool]:
+        """The rotation of a slip by a candidate, (3,), rad, and whether it is clear of noise."""
+        rows = [row for row in self.candidates[method].rows if row["effect"] == SLIP]
+        own = [row for row in rows if row["unit"] == "rad"]
+        clear = any(abs(row["value"]) > CLEAR * row["sigma"] for row in own if row["sigma"])
+        return np.array([row["value"] for row in own]), clear
 
     def _smallest(self, names: Collection[str]) -> float | None:
         rows = [row for row in self.chosen.rows if row["parameter"] in names and row["sigma"]]
@@ -202,6 +211,12 @@ class Estimated:
 
     def results(self, explained: Sequence[ExplainedFindings]) -> Iterator[SensorResult]:
         """Of every sensor and mount; `explained`: the causes, of which some are alarms."""
+        own = list(self._results_by_themselves(explained))
+        return (_with_slip(result, own) for result in own)
+
+    def _results_by_themselves(
+        self, explained: Sequence[ExplainedFindings]
+    ) -> Iterator[SensorResult]:
         roots = [each.cause.row for each in explained if each.cause.stage == MODEL]
         of_all = rows_of(self.candidates), rows_of(self.candidate_effects)
         keys = dict.fromkeys(_place(row) for row in of_all[0])
@@ -248,6 +263,22 @@ class Estimated:
                 {row["method"]: row for row in fits},
                 {row["method"]: row for row in candidates},
             )
+
+
+def _with_slip(result: SensorResult, every: Sequence[SensorResult]) -> SensorResult:
+    """With what the other sensor may show: that the case slipped in a turn.
+
+    Where the attitudes before and after do not show it to this sensor, its axes absorb it.
+    """
+    for other in every:
+        method = other.effects.get(SLIP)
+        if other is result or other.mount != result.mount or method is None:
+            continue
+        probability = float(other.held_out[method]["probability"])
+        rotation, known = other.slip(method)
+        if known and not result.models({SLIP}) and not other.models({SLIP}):
+            return replace(result, chosen=result.chosen.turned(rotation, probability))
+    return result
 
 
 def _competing(candidates: Sequence[Row], decision: Decision) -> dict[str, float]:

@@ -96,7 +96,7 @@ def test_what_is_scanned_has_candidates_of_its_own(motion):
         "gyro_dead_band_x", "gyro_dead_band_y", "gyro_dead_band_z",
         "accel_warm_up", "accel_bias_jump", "accel_scale_jump",
         "table_ripple", "table_position_error", "table_axis_error",
-        "turn_angle_error", "mounting_shift",
+        "turn_angle_error", "mounting_shift", "mounting_slip",
     }  # fmt: skip
     for effect in CATALOGUE.values():
         candidates = effect.candidates(motion)

@@ -138,6 +138,10 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"rotation_arcsec": ZERO, "at_s": 9},
         {"rotation_arcsec": [100] * 3, "at_s": 9},
     ),
+    "mounting_slip": (
+        {"rotation_arcsec": ZERO, "at_s": 9, "lasting_s": 1},
+        {"rotation_arcsec": [100] * 3, "at_s": 9, "lasting_s": 1},
+    ),
     "mounting_creep": (
         {"rotation_arcsec": ZERO, "time_constant_s": 50},
         {"rotation_arcsec": [100] * 3, "time_constant_s": 50},
