@@ -635,3 +635,9 @@ def test_what_a_table_swings_on_after_a_turn_is_one_block_and_no_rest():
     assert stop - 0.7 < phases["settling"][0] < stop
     assert stop + 4 < phases["rest-after"][0] < stop + 8
     assert phases["rest-before"][1] == pytest.approx(12, abs=0.6)
+    # Beside a soak neither rest reaches far into it.
+    beside = located.stretches, turn, located.matched, np.zeros(3), 0.4, (5.0, 6.0)
+    near = {part.phase: step * (part.after - part.first) for part in turn_parts(binned, *beside)}
+    assert near["rest-before"] == pytest.approx(5.0)
+    assert near["rest-after"] == pytest.approx(6.0)
+    assert phases["rest-after"][1] - phases["rest-after"][0] > 7

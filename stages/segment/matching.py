@@ -342,8 +342,12 @@ def turn_parts(
     matched: Mapping[str, int | None],
     level: Array,
     margin: float,
+    longest: tuple[float, float] = (np.inf, np.inf),
 ) -> Iterator[Part]:
-    """The phases of a turn, and the rests beside it that no other manoeuvre has."""
+    """The phases of a turn, and the rests beside it that no other manoeuvre has.
+
+    `longest`: of the rests before and after it, s.
+    """
     place = matched[m.name]
     assert place is not None  # only a turn that was found has phases
     first, after = motion(binned, stretches, place)
@@ -356,6 +360,8 @@ def turn_parts(
         before = _first_of(binned, stretches[place - 1], room, place - 2 in taken)
     if not binned.window.alone and place + 1 < len(stretches):
         behind = _after_of(binned, stretches[place + 1], room, place + 2 in taken)
+    nearest = [binned.bins_in(min(s, float(binned.seconds.sum()))) for s in longest]
+    before, behind = max(before, start - nearest[0]), min(behind, stop + nearest[1])
 
     phases: list[tuple[str, int, int]] = []
     if free[0] and first > 0:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -195,6 +196,9 @@ def _windows(samples: Stream, plan: Sequence[Manoeuvre], ends: Mapping[str, int]
     return windows(plan, ends, selection)
 
 
+BESIDE_SOAK = 10.0  # s, of the rest beside a turn that still has the temperature of the turn
+
+
 @dataclass(frozen=True)
 class _Places:
     """The phases of all manoeuvres; what was performed of those that do not turn; the turns."""
@@ -211,6 +215,7 @@ def _places(made: SetRight, margin: float) -> _Places:
     for located in made.explained.located:
         binned, stretches, matched = located.binned, located.stretches, located.matched
         first = len(parts)
+        beside = _beside_soaks(located.plan)
         for m in located.plan:
             place = matched.get(m.name)
             if m.name in performed:
@@ -225,11 +230,28 @@ def _places(made: SetRight, margin: float) -> _Places:
                 parts.append(rest_part(binned, stretches[place], m.name, margin))
                 performed[m.name] = completeness.rest(binned, m, stretches[place])
             else:
-                parts += turn_parts(binned, stretches, m, matched, made.level, margin)
+                longest = beside.get(m.name, (np.inf, np.inf))
+                parts += turn_parts(binned, stretches, m, matched, made.level, margin, longest)
                 turns.append((located, place, m))
         if any(m.do == "positions" for m in located.plan):
             parts += between_parts([p for p in parts[first:] if p.phase in STATIC_PHASES])
     return _Places(parts, performed, turns)
+
+
+def _beside_soaks(plan: Sequence[Manoeuvre]) -> dict[str, tuple[float, float]]:
+    """The longest rests before and after turns between which another temperature is stated, s.
+
+    Of the time between the two, in which the temperature changes, neither has more than is near it.
+    """
+    before = dict.fromkeys((m.name for m in plan), np.inf)
+    after = dict(before)
+    for one, other in pairwise(plan):
+        if (
+            None not in (one.temperature, other.temperature)
+            and one.temperature != other.temperature
+        ):
+            after[one.name] = before[other.name] = BESIDE_SOAK
+    return {name: (before[name], after[name]) for name in before}
 
 
 def _turned(
