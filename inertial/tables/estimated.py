@@ -57,7 +57,7 @@ SPECTRA = Table(
 )
 NOISE_TERMS = Table(
     "noise_terms",
-    1,
+    2,
     (
         Column("channel", TEXT, "", "one of the six channels"),
         Column(
@@ -68,6 +68,12 @@ NOISE_TERMS = Table(
         ),
         Column(
             "detected", TRUTH, "", "whether the data ask for the term; otherwise upper is given"
+        ),
+        Column(
+            "stepped",
+            TRUTH,
+            "",
+            "whether one static stretch alone changes by a step, which is no drift of the channel",
         ),
         Column("value", DOUBLE, "as unit", "coefficient", nullable=True),
         Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),

@@ -25,7 +25,7 @@ WALK = "gyro_random_walk"
 WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}
 # Effects by the beginning of their names that change the readings of a sensor though not its own.
 SHARED_EFFECTS = {"gyro": ("earth", "latitude", "heading"), "accel": ("lever", "size", "table")}
-NOT_TESTED = _("Not detected; section “Noise” states the upper limit (K).")
+NOT_TESTED = _("Not detected; section “Noise” states what the static positions show (K).")
 EXPLAINED = _("Section “Noise” states a K, which what is named explains better.")
 BESIDE_NAMED = _("Section “Noise” states K, for which the sigmas allow beside what is named.")
 NO_FLICKER = _("The noise at rest does not show it.")

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from inertial.arrays import Array, finite_or_none
+from inertial.arrays import Array, Booleans, finite_or_none
 from inertial.campaign.noise_levels import drift_of
 from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
@@ -22,6 +22,7 @@ from inertial.estimation.noise_terms import NoiseTerms, noise_terms
 from inertial.estimation.welch import Spectrum, WelchSums, segment_for
 from inertial.sensors import COLUMNS
 from inertial.tables import AXES
+from stages.noise.steps_at_rest import Course, of_one_stretch
 
 StaticStretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
 
@@ -51,6 +52,8 @@ class _Pool:
     welch: WelchSums
     stretch: StaticStretch | None = None
     samples: int = 0
+    course: Course = field(default_factory=Course)
+    steps: list[tuple[int, Array]] = field(default_factory=list)
 
     @classmethod
     def of(
@@ -77,7 +80,7 @@ class _Pool:
         if stretch != self.stretch:
             self.end()
             self.stretch = stretch
-        for sums in (self.sums, self.powers, self.welch):
+        for sums in (self.sums, self.powers, self.welch, self.course):
             sums.add(values)
         self.samples += len(values)
 
@@ -94,6 +97,8 @@ class _Pool:
     def end(self) -> None:
         for sums in (self.sums, self.powers, self.welch):
             sums.end()
+        self.steps.append(self.course.step())
+        self.course = Course()
 
     @property
     def channels(self) -> list[str]:
@@ -160,7 +165,8 @@ class StaticStretches:
 class SensorNoise:
     """The noise of the c recorded channels of a sensor.
 
-    `interval`: s, between samples; `seconds`: of the longest stretch.
+    `interval`: s, between samples; `seconds`: of the longest stretch; `stepped`: (c,), whether one
+    stretch alone changes by a step, so that what it shows as a drift is none.
     """
 
     sensor: str
@@ -170,14 +176,16 @@ class SensorNoise:
     spectrum: Spectrum
     interval: float
     seconds: float
+    stepped: Booleans
 
     def drifts(
         self, sheet: Mapping[str, Mapping[str, float | None]]
     ) -> Iterator[tuple[str, dict[str, float | None]]]:
         """What enters the covariance, by channel; `sheet`: see `term_rows`."""
-        for channel, terms in zip(self.channels, self.terms, strict=True):
+        for channel, terms, stepped in zip(self.channels, self.terms, self.stepped, strict=True):
             stated = sheet[channel].get("bias_instability")
-            yield channel, {**drift_of(terms, stated, self.seconds), "data_sheet": stated}
+            shown = None if stepped else terms
+            yield channel, {**drift_of(shown, stated, self.seconds), "data_sheet": stated}
 
     def allan_rows(self) -> Iterator[Row]:
         """Rows of the table."""
@@ -217,7 +225,7 @@ class SensorNoise:
 
     def term_rows(self, sheet: Mapping[str, Mapping[str, float | None]]) -> Iterator[Row]:
         """Rows of the table; `sheet`: figures of the data sheet by channel and term."""
-        for channel, terms in zip(self.channels, self.terms, strict=True):
+        for channel, terms, stepped in zip(self.channels, self.terms, self.stepped, strict=True):
             if terms is None:
                 continue
             for name, unit in zip(TERMS, UNITS[self.sensor], strict=True):
@@ -226,6 +234,7 @@ class SensorNoise:
                     "channel": channel,
                     "term": name,
                     "detected": term.detected,
+                    "stepped": bool(stepped),
                     "value": finite_or_none(term.value),
                     "sigma": finite_or_none(term.sigma),
                     "upper": finite_or_none(term.upper),
@@ -247,4 +256,5 @@ def _noise_of(pool: _Pool) -> SensorNoise:
         pool.welch.spectrum(),
         pool.interval,
         max(pool.powers.seconds),
+        of_one_stretch(pool.steps, len(pool.channels)),
     )

@@ -151,6 +151,7 @@ def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
         "allan": rows_as(tables.ALLAN, synthetic_noise.allan()),
         "spectra": rows_as(tables.SPECTRA, synthetic_noise.spectra()),
         "noise_terms": rows_as(tables.NOISE_TERMS, synthetic_noise.terms()),
+        "drifts_at_rest": tables.DRIFTS_AT_REST.empty(),
         "temperature_curves": rows_as(tables.TEMPERATURE_CURVES, curve("bias_x")),
         "warm_up": tables.WARM_UP.empty(),
     }

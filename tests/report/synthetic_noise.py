@@ -114,6 +114,7 @@ def terms() -> Rows:
                     "channel": channel,
                     "term": name,
                     "detected": found,
+                    "stepped": False,
                     "value": value if found else None,
                     "sigma": value * (0.002, 0.002, 0.06, 0.2, 0.2)[i] if found else None,
                     "upper": None if found else UPPER[sensor][i],

@@ -56,7 +56,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         sensors = [s for s in NAME if any(row["channel"].startswith(s) for row in terms)]
         for sensor in sensors:
             own = [row for row in terms if row["channel"].startswith(sensor)]
-            notes = [*_explained(tables, sensor)]
+            notes = [*_explained(tables, sensor), *_stepped(own)]
             if sensor == sensors[-1]:
                 notes.append(_note(terms, sheet))
             yield _terms_table(sensor, own, " ".join(filter(None, notes)))
@@ -102,6 +102,17 @@ def _nothing(segments: Iterable[Record]) -> str:
 
 
 # ---- terms
+
+
+def _stepped(terms: Sequence[Record]) -> Iterator[str]:
+    """Of which axes a single rest changes by a step."""
+    rows = [row["channel"][-1] for row in terms if row["stepped"]]
+    if axes := list(dict.fromkeys(rows)):
+        yield _(
+            "Within one static position alone {axes} changes by a step: B, K and R contain it, and "
+            "enter no σ.",
+            axes=listed(axes),
+        )
 
 
 def _explained(tables: Tables, sensor: str) -> Iterator[str]:
