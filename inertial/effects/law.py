@@ -38,6 +38,8 @@ class Law(Effect):
         self.shape = tuple(shape)
         self.name = law_name(sensor, axis, family, state)  # type: ignore[misc]
         unit, size = SIZES[sensor]
+        if (family, state) == ("hysteresis", "temperature"):
+            unit = f"{unit}/K"
         self.sizes = by_grade(size, 0.1, 1, 10, 100)  # type: ignore[misc]
         self.parameters = tuple(  # type: ignore[misc]
             Parameter(

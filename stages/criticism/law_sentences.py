@@ -101,7 +101,7 @@ def _per(law: Law) -> str:
         return f"/h{'' if power == 1 else '²³⁴⁵'[int(power) - 2]}" if power in (2, 3, 4, 5) else ""
     if law.family == "ramp":
         return "/h"
-    if law.family == "hysteresis":  # of what the play lets through, the state less its width
+    if law.family == "hysteresis" and law.state != "temperature":  # whose size is per K
         unit = UNITS.get(law.state, "g")
         return f"/({unit})" if "/" in unit else f"/{unit}"
     return ""

@@ -113,7 +113,7 @@ def further_terms(rows: Sequence[Record]) -> Table:
         _(
             "Further terms of the measurement model, estimated together with the parameters above. "
             "Use all of them together, but take off no reading what the table, the site or the "
-            "mounting causes: its finding says so."
+            "mounting causes, nor a law whose physical cause is not known: its finding says so."
         ),
         (
             Column("", "symbol"),

@@ -306,8 +306,8 @@ def worth(effects: Sequence[str], rows: Sequence[Record]) -> str:
     due = _(", due to {names}", names=names) if len(effects) > 1 else ""
     return _(
         "After {seconds} s of free inertial navigation from a known attitude, the error "
-        "with the joint result is up to {joint}{due}. With the extended result, an "
-        "uncertainty of at most {remaining} remains.",
+        "with the joint result is up to {joint}{due}. With the extended result, all its terms "
+        "taken off the readings, an uncertainty of at most {remaining} remains.",
         seconds=whole(rows[0]["seconds"]),
         joint=", ".join(joint),
         due=due,
