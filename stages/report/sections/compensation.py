@@ -87,8 +87,8 @@ SECTION = outline.Section(
     _(
         "In the tables before and after are differences from the known value; the figures show the "
         "readings before (grey) and after (in colour), and beside them the correction, before less "
-        "after. In σ is the remaining difference over its own σ; beyond 3 the result does not describe "
-        "all errors, and the causes in section 2 may say why."
+        "after. In σ is the remaining difference over its own σ; beyond 3 the result does not "
+        "describe all errors, and the causes in section 2 may say why."
     ),
     (
         *("checks", "traces", "compensated_traces", "compensation_findings"),
