@@ -42,7 +42,7 @@ def test_every_time_at_rest_that_is_not_tried_is_named() -> None:
     rest = rows["motion"] == "rest"
     rows.loc[rest, "seconds"], rows.loc[rest, "calibrated"] = 60.0, np.nan
     html = synthetic.section_on(tables, navigation.SECTION)
-    assert "No rest is 60 s long beside its alignment" in html
+    assert "The errors after 60 s at rest are predicted" in html
 
 
 def test_a_session_of_positions_has_no_time_of_the_plan() -> None:

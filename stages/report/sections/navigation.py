@@ -56,8 +56,8 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     if untried := _untried(groups):
         yield outline.Paragraph(
             _(
-                "No rest is {seconds} s long beside its alignment: the errors after that time are "
-                "predicted from the covariance and the noise, and not tried.",
+                "The errors after {seconds} s at rest are predicted from the covariance and the "
+                "noise, and not tried: no rest is so long beside its alignment.",
                 seconds=listed(untried),
             )
         )
