@@ -17,7 +17,13 @@ from inertial.estimation.input_output import (
     resolution,
     threshold,
 )
-from stages.compensation.characteristics import OF_FORCE, OF_INPUT, least_changes
+from stages.compensation.characteristics import (
+    OF_FORCE,
+    OF_INPUT,
+    Point,
+    least_changes,
+    of_axis,
+)
 
 pytestmark = pytest.mark.slow
 
@@ -83,6 +89,24 @@ def test_a_change_that_is_lost_is_below_the_resolution():
         np.array([1.0, 50.0, 51.0, 54.0]), np.array([1.0, 50.0, 50.0, 54.0]), np.full(4, 0.1)
     )
     assert found == Limits(1.0, 3.0)
+
+
+def test_a_turn_with_longer_rests_in_it_is_no_other_input():
+    """Twice 30 °/s, by chance recorded with other rests: the means of 26.3 and 26.5 say nothing."""
+    applied, sigma = np.array([0.003, 26.3, 26.5, 28.0]), np.full(4, 1e-3)
+    stated = np.array([0.003, 30.0, 30.0, 32.0])
+    assert resolution(applied, applied, sigma, stated) == Limits(None, 1.5)
+    assert resolution(applied, applied, sigma).upper == pytest.approx(0.2)
+
+
+def test_an_input_that_is_sensed_here_and_lost_there_limits_no_threshold():
+    """Twice 11 °/h up: once read as such, once as −10 °/h, by a hysteresis of the bias."""
+    points = [Point(1, *each, each[0]) for each in [(11, 11, 11, 0.5), (11, -10, -10, 0.5)]]
+    points.append(Point(1, 1e6, 1e6, 1e6, 0.5, 1e6))
+    rows = {row["quantity"]: row for row in of_axis("gyro", 1, points, "", "", None)}
+    assert rows["threshold"]["value"] is None
+    assert rows["threshold"]["lower"] is None
+    assert "sensed in one place and lost in another" in rows["threshold"]["reason"]
 
 
 @pytest.mark.parametrize(("noise", "least"), [(0.0, 1.0), (0.3, 0.0)])

@@ -6,6 +6,7 @@ import chain
 import numpy as np
 import pandas as pd
 import pytest
+from in_memory import MemoryStream
 from ruamel.yaml import YAML
 
 from inertial.campaign.measurement import measurement_of
@@ -13,7 +14,7 @@ from inertial.effects import CATALOGUE
 from inertial.physics.forward import Triad, force_of, rate_of
 from inertial.physics.motion import Motion, stretches
 from inertial.physics.site import EARTH_RATE
-from inertial.tables import CHANNELS, parquet
+from inertial.tables import CHANNELS, SIMULATED, parquet
 from inertial.tables.errors import Refusal
 from stages.compensation.correction import ALL, held, mounted
 
@@ -151,6 +152,33 @@ def test_the_result_leaves_the_noise_over_in_every_channel(clean):
         assert turn[ACCEL].isna().all(axis=None)  # they are not fitted while the table turns
         assert np.sqrt((turn[GYRO] ** 2).mean()).between(0.75, 1.25).all()
         assert (rest.abs() > 3).mean().max() < 0.02
+
+
+def test_residuals_of_turns_and_rests_are_on_one_time(clean):
+    """Logs that count from their own first sample, half a minute after the end of the one before.
+
+    The temperature and whatever changes with time are those of that time.
+    """
+    clocks = clean[0]["decode/clocks"]
+    length = clocks["to_s"] - clocks["from_s"]
+    began = (length + 30).cumsum().shift(fill_value=0.0)
+    own = clocks.assign(clock="own", began=began, from_s=0.0, to_s=length)
+    blocks, simulated = (
+        table.assign(time=table["time"] - table["log"].map(clocks.set_index("log")["from_s"]))
+        for table in (clean[0]["segment/blocks"], clean[0]["simulation/simulated"])
+    )
+    changed = {"blocks": blocks, "simulated": MemoryStream(SIMULATED.arrow(simulated))}
+    moved = chain.again(clean[0], "compensation", clocks=own, **changed)["residuals"]
+    before = clean[0]["compensation/residuals"]
+    log = blocks.drop_duplicates("manoeuvre").set_index("manoeuvre")["log"]
+    zero = pd.Series(began.to_numpy(), index=clocks["log"])
+    for table, start in ((moved, zero), (before, clocks.set_index("log")["from_s"])):
+        table["since"] = table["time"] - table["manoeuvre"].map(log).map(start)
+    for phase in ("rest", "steady"):
+        own = (table[table["phase"] == phase] for table in (moved, before))
+        middles = [table.groupby("manoeuvre")["since"].mean() for table in own]
+        assert len(middles[0]) >= 6
+        np.testing.assert_allclose(*middles, atol=1.0)  # s
 
 
 @pytest.mark.slow

@@ -41,6 +41,30 @@ def test_noise_free_logs_are_met_to_a_count(quiet):
         assert sums.abs().max() < 3, channel  # nor is a sum off by more, but for the tilts
 
 
+def test_every_sample_of_a_turn_is_there_once_with_the_time_of_its_log(quiet):
+    simulated = quiet["simulation/simulated"]
+    turns = simulated[simulated["manoeuvre"].str.endswith("ward")]
+    assert turns["manoeuvre"].nunique() == 6
+    assert not turns.duplicated(["log", "record"]).any()  # the rests beside them are in these
+    samples = quiet["decode/samples"].set_index(["log", "record"])["time"]
+    at = pd.MultiIndex.from_frame(turns[["log", "record"]])
+    np.testing.assert_allclose(turns["time"], samples.loc[at], atol=1e-9)
+
+
+def test_the_blocks_of_a_rest_have_the_time_of_their_log(quiet):
+    """Each log counts from its own first sample, half a minute after the end of the one before."""
+    clocks = quiet["decode/clocks"]
+    began = 90.0 * np.arange(len(clocks))
+    own = clocks.assign(clock="own", began=began, from_s=0.0, to_s=60.0)
+    simulated = chain.again(quiet, "simulation", clocks=own)["simulated"]
+    rests, blocks = (
+        table[table["manoeuvre"] == "y-up"].set_index("record" if i else "from_record")["time"]
+        for i, table in enumerate((quiet["segment/blocks"], simulated))
+    )
+    assert len(rests) >= 2
+    np.testing.assert_allclose(blocks.loc[rests.index], rests, atol=1e-9)
+
+
 def test_a_counter_that_begins_again_in_a_turn_moves_no_table(quiet):
     """The rates before and after are what they were: only the stamps go back, by 2³² µs."""
     samples = quiet["decode/samples"].copy()

@@ -16,6 +16,7 @@ from inertial.estimation.least_squares import pseudo_inverse
 
 MIN_APART = 1e-3  # of the largest input: inputs that are closer count as one
 CONFIDENCE = 0.95
+SAME = 1e-3  # of an input, within which another is none
 MAX_CHANGE = 0.1  # of the largest input: a change that says something of the resolution
 SENSED_SHARE = 0.5  # of the expected output, which an input above the threshold gives at least
 
@@ -101,11 +102,14 @@ def threshold(applied: Array, read: Array, sigma: Array) -> Limits:
     return _limits(np.abs(applied), np.sign(applied) * read, sigma)
 
 
-def resolution(applied: Array, read: Array, sigma: Array) -> Limits:
+def resolution(applied: Array, read: Array, sigma: Array, stated: Array | None = None) -> Limits:
     """Limits of 'resolution': the least change of input that gives half of its output.
 
     Between inputs on one side of zero, above the threshold, that are not far apart; as `threshold`.
+    `stated`: the inputs that were set, (n,), where `applied` are means over time with other inputs
+    in them. Two means that differ by how long those lasted are no change of the input.
     """
+    stated = applied if stated is None else stated
     least = threshold(applied, read, sigma).upper
     if least is None:
         return Limits(None, None)
@@ -114,6 +118,7 @@ def resolution(applied: Array, read: Array, sigma: Array) -> Limits:
         applied[i] * applied[j] > 0
     )
     above &= np.abs(applied[i] - applied[j]) <= MAX_CHANGE * np.abs(applied).max()
+    above &= np.abs(stated[i] - stated[j]) > SAME * np.abs(stated[i])
     change = (applied[i] - applied[j])[above]
     output = np.sign(change) * (read[i] - read[j])[above]
     return _limits(np.abs(change), output, np.hypot(sigma[i], sigma[j])[above])

@@ -14,7 +14,7 @@ SIMULATED = Table(
         Column("phase", TEXT, "", PHASES),
         LOG,
         Column("record", INTEGER, "1", "record of the log; of a block the first"),
-        Column("time", DOUBLE, "s", "time of the record, or middle of the block", nullable=True),
+        Column("time", DOUBLE, "s", "as in samples; of a block its middle", nullable=True),
         *channels("what the IMU should have read"),
         *channels("read less simulated", prefix="residual_"),
     ),

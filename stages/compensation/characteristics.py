@@ -22,6 +22,7 @@ from inertial.campaign.records import Manoeuvre, Row, rows_of, with_mount
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_observations import Position
 from inertial.estimation.input_output import (
+    SAME,
     Limits,
     asymmetry,
     at_no_force,
@@ -71,6 +72,10 @@ ONE_LINE = _("fewer than three different inputs were applied along the axis")
 NOT_SENSED = _("no input along the axis is so large that noise shows it to be sensed")
 NO_SMALL_INPUT = _("no small input along the axis was applied")
 NO_CHANGE = _("no small change of the input along the axis was applied that noise does not hide")
+BOTH = _(
+    "the same input is sensed in one place and lost in another, by errors that are none of a "
+    "threshold or a resolution"
+)
 NOT_BOTH = _("the inputs along the axis do not tell the bias from an asymmetry")
 NO_FORCES = _("the static positions do not tell it from the sensitivity to force")
 
@@ -79,7 +84,8 @@ NO_FORCES = _("the static positions do not tell it from the sensitivity to force
 class Point:
     """An input along an axis of the case, 0, 1, 2, the output, and the sigma of their difference.
 
-    `whole`: the output with all effects of the result taken out.
+    `whole`: the output with all effects of the result taken out. `stated`: the input that the plan
+    states; the mean rate of a whole turn is less, by the rests that are in it.
     """
 
     axis: int
@@ -87,6 +93,7 @@ class Point:
     read: float
     whole: float
     sigma: float
+    stated: float
 
 
 def characteristics(
@@ -104,7 +111,7 @@ def characteristics(
         for axis in range(3):
             along = [p for p in there if p.axis == axis and np.isfinite(p.read + p.sigma)]
             least = by_counts.get((sensor, AXES[axis]))
-            yield from _of_axis(sensor, axis, along, reason, data.mount, least)
+            yield from of_axis(sensor, axis, along, reason, data.mount, least)
     yield from _drifts(data, measurement, reason)
 
 
@@ -112,7 +119,7 @@ def _without(result: SensorResult, names: set[str]) -> SensorResult:
     return replace(result, effects=[one for one in result.effects if one.effect.name not in names])
 
 
-def _of_axis(
+def of_axis(
     sensor: str,
     axis: int,
     points: Sequence[Point],
@@ -121,9 +128,9 @@ def _of_axis(
     by_counts: float | None,
 ) -> Iterator[Row]:
     """The figures of input and output along one axis."""
-    applied, read, whole, sigma = (
+    applied, read, whole, sigma, stated = (
         np.array([getattr(point, name) for point in points])
-        for name in ("applied", "read", "whole", "sigma")
+        for name in ("applied", "read", "whole", "sigma", "stated")
     )
     largest = float(np.abs(applied).max(initial=0.0))
     figures: dict[str, dict[str, Any]]
@@ -138,7 +145,7 @@ def _of_axis(
             "linearity_error": asdict(line) if line else {"reason": ONE_LINE},
             "asymmetry": {"value": both[0], "sigma": both[1]} if both else {"reason": NOT_BOTH},
             "threshold": _threshold(threshold(applied, read, sigma), largest, by_counts),
-            "resolution": _limit(resolution(applied, read, sigma), by_counts, NO_CHANGE),
+            "resolution": _limit(resolution(applied, read, sigma, stated), by_counts, NO_CHANGE),
         }
     shared: dict[str, Any] = {
         "largest_input": largest or None,
@@ -163,6 +170,8 @@ def _threshold(limits: Limits, largest: float, by_counts: float | None) -> dict[
 def _limit(limits: Limits, by_counts: float | None, reason: str) -> dict[str, Any]:
     """Limits by the inputs; where these show less than the counts, what was sensed counts."""
     upper = limits.upper
+    if limits.lower is not None and upper is not None and limits.lower >= upper * (1 - SAME):
+        return {"value": None, "lower": by_counts, "reason": BOTH}
     lower = max(filter(None, (limits.lower, by_counts)), default=None)
     if lower is not None and upper is not None and lower > upper:
         lower = limits.lower
@@ -221,7 +230,8 @@ def _accelerometers(data: CampaignData, whole: Measurement, own: Measurement) ->
             level = np.sqrt(max(1 - up[axis] ** 2, 0.0))
             tilted = gravity * max(data.position_sigma * level, data.position_sigma**2)
             sigma = float(np.hypot(noise_along(unit, triad, noise), tilted))
-            yield Point(axis, gravity * up[axis], read[axis], all_out[axis], sigma)
+            applied = gravity * up[axis]
+            yield Point(axis, applied, read[axis], all_out[axis], sigma, applied)
 
 
 def _gyros(data: CampaignData, whole: Measurement, own: Measurement) -> Iterator[Point]:
@@ -247,13 +257,16 @@ def _gyros(data: CampaignData, whole: Measurement, own: Measurement) -> Iterator
         if len(checked) == 2:
             axis, sign = along
             read, all_out = (sign * check.after for check in checked)
-            yield Point(axis, sign * checked[0].expected, read, all_out, checked[0].sigma)
+            applied = sign * checked[0].expected
+            yield Point(axis, applied, read, all_out, checked[0].sigma, applied)
     for rotation in data.gyro_inputs.usable:
         if (along := _axis(rotation.plan.axis)) is not None:
             axis, sign = along
+            rate = rotation.plan.rate
+            stated = np.nan if rate is None else sign * rate
             turn = _whole_turn if rotation.plan.recorded == "whole" else _steady_turn
             for applied, read, all_out, sigma in turn(rotation, data, whole, own):
-                yield Point(axis, sign * applied, sign * read, sign * all_out, sigma)
+                yield Point(axis, sign * applied, sign * read, sign * all_out, sigma, stated)
 
 
 def _forces(data: CampaignData, measurement: Measurement) -> dict[str, Array]:

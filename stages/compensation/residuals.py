@@ -129,6 +129,7 @@ def _in_rotation(
     """The gyros in a steady rotation, in means of a second."""
     (m,) = (m for m in data.plan if m.name == name)
     predicted, left, time = (means[n].to_numpy(np.float64) for n in (GYRO, LEFT, "time"))
+    time = time + data.clocks[m.log].offset  # as that of the blocks and of the effects
     seconds = means["rows"].to_numpy(np.float64) * data.clocks[m.log].step
     blocks = data.blocks[data.blocks["manoeuvre"] == name]
     temperature = np.interp(time, *blocks[["time", "temperature"]].to_numpy(np.float64).T)

@@ -58,6 +58,8 @@ class NamedOscillation:
     @property
     def statistic(self) -> float:
         """Reduction of chi-squared by it in all turns."""
+        if step := self.oscillation.step:  # of the size that is stated, the whole of it
+            return (step.size / step.sigma) ** 2
         if self.ripple:
             return self.ripple.drop + (0.0 if self.ripple.common else self.ripple.apart)
         return sum(line.drop for line in self.oscillation.lines)
@@ -172,7 +174,7 @@ class OscillationResults:
 
     def _parameters(self, name: str) -> Iterator[TableRow]:
         """The parameters of each oscillation that is this effect; or their detection limits."""
-        effect, limit = CATALOGUE[name], limit_of(self.result, name)
+        effect, limit = CATALOGUE[name], self._limit_of(name)
         scan = effect.scan
         own: list[NamedOscillation | None] = [named for named in self.named if named.effect == name]
         for named in own or [None]:
@@ -180,6 +182,8 @@ class OscillationResults:
             described = [(p.name, p.unit, p.meaning) for p in effect.parameters]
             if scan and named:
                 described.append((scan.name, scan.unit, scan.meaning))
+            if named and named.oscillation.step:  # of which its ripples are parts
+                described.insert(0, ("step", "rad", sentences.STEP_MEANING))
             finding = named.finding if named else None
             for parameter, unit, meaning in described:
                 value, sigma = values.get(parameter, (None, None))
@@ -191,7 +195,7 @@ class OscillationResults:
 
     def _limits(self, name: str) -> Iterator[TableRow]:
         """A row for each parameter that is a size; any frequency and any order is detectable."""
-        limit = limit_of(self.result, name)
+        limit = self._limit_of(name)
         for parameter in CATALOGUE[name].parameters:
             if parameter.name not in SIZES[name]:
                 continue
@@ -217,6 +221,12 @@ class OscillationResults:
                     + (f" {remark}" if remark else ""),
                 },
             )
+
+    def _limit_of(self, name: str) -> "Limit | None":
+        """From which size on it is detected; None too of what the search did not come to."""
+        if self.result.truncated and not self._first(name):
+            return None
+        return limit_of(self.result, name)
 
     def _why_no_limit(self, name: str) -> str:
         """Why no size of it is detected, without its name where no turn shows any."""
@@ -310,6 +320,8 @@ def _estimates(name: str, oscillation: Oscillation) -> dict[str, tuple[float, fl
         for part, value, sigma in zip("ab", ripple.values, sigmas, strict=True)
         if ripple.common
     }
+    if oscillation.step:
+        estimates["step"] = (oscillation.step.size, oscillation.step.sigma)
     if name == RIPPLE:
         estimates["n"] = (ripple.order, ripple.order_sigma)
     return estimates
@@ -364,6 +376,8 @@ def unobservable(result: SearchResult, name: str) -> str:
 
 def not_named(result: SearchResult, name: str) -> str:
     """Why an effect is not named, in a sentence."""
+    if result.truncated and any(one.step for one in result.oscillations):
+        return sentences.in_step(name)
     if result.truncated:
         return sentences.not_searched(name, len(result.oscillations))
     if reason := unobservable(result, name):

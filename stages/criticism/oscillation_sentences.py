@@ -69,10 +69,15 @@ NOT_IN_ANGLE = _(
     "is less likely by a factor of {odds}."
 )
 STEP = _(
-    "The table's angle jumps by {size}° at {at}° of each turn, "
-    "within about {width}°, and runs back evenly over the rest of it, {turns}. This one step has "
-    "ripples of the rate of all whole orders; {orders} per revolution were found, and it explains "
-    "more than these."
+    "The table's angle jumps by {size}° at {at}° of its angle since the start of each turn "
+    "(right-hand rule), within about {width}°, and runs back evenly over the rest of it, {turns}. "
+    "This one step has ripples of the rate of all whole orders; {orders} per revolution were "
+    "found, and it explains more than these."
+)
+STEP_MEANING = _("by how much the angle of the table jumps in each turn")
+IN_STEP = _(
+    "{effect}: not told from the step of the table's angle that is named, for its lines of further "
+    "orders remain in the turns."
 )
 MULTIPLES = _(" Lines at {each} have the same cause.")
 VERY_LARGE_ODDS = _("more than 10¹⁷")
@@ -91,7 +96,10 @@ COUPLED_MORE_EACH = _(
 )
 
 CONSEQUENCE = _("{turn} Angles over part of a turn are in error by up to {swing}″.")
-CLOSED = _("A whole turn is free of it, and so are bias, scale factors and cross-axis terms.")
+CLOSED = _(
+    "A whole turn is free of it, so that bias, scale factors and cross-axis terms are hardly "
+    "affected."
+)
 NOT_CLOSED = _(
     "As its order is no whole number it does not close over a turn, but blocks of "
     "turns take their angle from the gyros, so that bias, scale factors and cross-axis terms are "
@@ -227,6 +235,11 @@ def action(oscillation: Oscillation) -> str:
 def not_searched(effect: str, count: int) -> str:
     """The search ended with other oscillations."""
     return NOT_SEARCHED.format(effect=capital(in_words(effect)), count=count)
+
+
+def in_step(effect: str) -> str:
+    """The search ended with a step in each turn, which has lines of all whole orders."""
+    return IN_STEP.format(effect=capital(in_words(effect)))
 
 
 def not_observable(effect: str, reason: str) -> str:

@@ -34,17 +34,21 @@ def simulation(
     channel_repairs: pd.DataFrame,
     segments: pd.DataFrame,
 ) -> Pieces:
-    """Rotations sample by sample, static positions block by block, with their residuals."""
+    """Rotations sample by sample, static positions block by block, with their residuals.
+
+    Those beside a rotation that is there sample by sample are in its samples.
+    """
     repairs = Repairs(channel_repairs)
     for data in mounts:
+        known = data.result.gyro is not None
+        whole = {m.name: m for m in data.plan if known and _whole(m, data.performed[m.name])}
         rests = list(_rests(data))
+        alone = [part for part, _ in rests if part.manoeuvre not in whole]
+        if alone:
+            yield "simulated", _frame(alone)
         if rests:
-            yield "simulated", _frame([part for part, _ in rests])
             rows = [row for part, s in rests for row in _fidelity(part, data, "at rest", s)]
             yield "fidelity", rows
-        if data.result.gyro is None:
-            continue
-        whole = {m.name: m for m in data.plan if _whole(m, data.performed[m.name])}
         stretches = {name: records_of(m, segments) for name, m in whole.items()}
         for name, read in columns_in(samples, stretches, ["time", *tables.CHANNELS], repairs):
             m = whole[name]
@@ -82,7 +86,10 @@ class Simulated:
 
 
 def _rests(data: CampaignData) -> Iterator[tuple[Simulated, float]]:
-    """Every static position in its blocks, with the median duration of a block, s."""
+    """Every static position in its blocks, with the median duration of a block, s.
+
+    Their times are those of its log, as the samples of a rotation have them.
+    """
     gyros = data.gyro_inputs.of_known_attitude.static_positions
     both = [*gyros, *data.accelerometer_positions[0]]
     positions = {static.part: static for static in both}
@@ -103,7 +110,7 @@ def _rests(data: CampaignData) -> Iterator[tuple[Simulated, float]]:
             log[indices[0]],
             phase[indices],
             record[indices],
-            time[indices],
+            time[indices] - data.clocks[static.manoeuvre.log].offset,
             repeated,
             readings[indices],
         )

@@ -5,9 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from residuals_of_turns import ARC_SECOND, STEP, rippling, turns
-from test_time_or_angle import SNR_15, found
+from test_time_or_angle import LEVEL, LOWEST, SNR_15, found
 
+from stages.criticism.oscillation_results import OscillationResults
+from stages.criticism.oscillation_search import find_oscillations
 from stages.criticism.step_per_turn import step_per_turn
+from stages.diagnosis.sizes_of_causes import sizes
 
 
 def jumping(seed, arcsec, at, width, rates=(20, -20)):
@@ -41,8 +44,36 @@ def test_one_step_per_turn_is_one_cause():
     (one,) = found(jumping(3, 40, 115, 2.0))
     assert one["cause"] == "table_ripple" and one["verdict"] == "found"
     assert one["size"] == pytest.approx(40 * ARC_SECOND, rel=0.03)
-    assert "at 115° of each turn" in one["sentence"]
+    assert "at 115° of its angle since the start of each turn" in one["sentence"]
     assert "up to 40″" in one["consequence"]
+
+
+def tables_of(made):
+    """The rows of the search by their table."""
+    tables = {}
+    for table, row in OscillationResults(find_oscillations(made, LEVEL, LOWEST), "").rows():
+        tables.setdefault(table, []).append(row)
+    return tables
+
+
+def test_the_size_that_is_shown_is_that_of_the_jump():
+    """And not that of the ripple of its lowest order, 1/(πn) of it."""
+    tables = tables_of(jumping(3, 400, 115, 2.0))
+    [finding] = tables["findings"]
+    size = sizes(tables["effects"])[finding["id"]]
+    assert abs(size.value) == pytest.approx(400 * ARC_SECOND, rel=0.03)
+    assert finding["snr"] == pytest.approx(abs(size.value) / size.sigma, rel=0.1)
+
+
+def test_what_only_the_step_leaves_over_is_not_called_not_detected():
+    """Of a large step more lines remain than are searched for: nothing is known beside them."""
+    tables = tables_of(jumping(3, 400, 115, 2.0))
+    (score,) = (row for row in tables["scores"] if row["effect"] == "oscillation")
+    assert score["p_value"] < 1e-3 and not score["named"]
+    assert "not told from the step" in score["sentence"]
+    (limit,) = (row for row in tables["detection_limits"] if row["effect"] == "oscillation")
+    assert limit["limit"] is None
+    assert "not told from the step" in limit["explanation"]
 
 
 def test_a_step_does_not_take_the_teeth_of_gears_with_it():

@@ -16,6 +16,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from inertial.tables import CERTIFICATE
+from inertial.text.units import DEGREES_PER_HOUR
 from stages.report import origins
 from stages.report.outline import Heading, Paragraph, Part, Section, Table
 from stages.report.sections import certificate, characteristics, ideal_triad, uncertainty_budget
@@ -399,6 +400,18 @@ def test_the_figures_of_the_standards_stand_beside_what_noise_explains() -> None
     cells = page.rows["compensation/gyro/linearity_error_x"]
     assert cells == ["x", "30.0", "±\u202f4.0", "11", "ppm", "10.0 °/s", "8"]
     assert "y gyro, linearity error: not determined, for nothing was applied." in page.text
+
+
+def test_a_difference_says_which_two_methods_it_is_of() -> None:
+    page = Page(synthetic.documents()["html"])
+    compared = page.rows["comparison/method_against_method/gyroscope/bias_y"][0]
+    assert compared == ("Turn and stop, S3: M, and the bias by turns; joint fit of all manoeuvres")
+
+
+def test_an_upper_and_a_lower_limit_have_digits_that_tell_them_apart() -> None:
+    """10.8 and 11.3 °/h; to two digits both are 11."""
+    row = {"lower": np.radians(10.8 / 3600), "value": np.radians(11.3 / 3600)}
+    assert characteristics.between(row, DEGREES_PER_HOUR) == "10.8 – 11.3"
 
 
 def test_earlier_calibrations_and_the_archive_are_named() -> None:

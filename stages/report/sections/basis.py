@@ -58,7 +58,8 @@ RECORDED = Section(
     _("Recorded manoeuvres"),
     _("Every manoeuvre of the plan, and what its log contains of it."),
     _(
-        "✓ recorded from rest to rest as planned; ◐ incomplete; ✗ not found. Angle and "
+        "✓ recorded from rest to rest as planned, or its rests found where their attitudes are "
+        "unknown, of which the plan states no time; ◐ incomplete; ✗ not found. Angle and "
         "rate are about the axis of the turn, right-hand rule; the angle is a sum of "
         "increments."
     ),
@@ -71,6 +72,8 @@ def _manoeuvre(plan: Record, done: Record | None) -> Row:
     mark, tone = _mark(done)
     done = done or dict.fromkeys(("angle", "missing_angle", "rate", "seconds", "sentence"))
     turn = done if plan["do"] == "turn" else dict.fromkeys(done)
+    # Of a session of positions the plan states the least length of a rest: no time of it all.
+    whole = plan["do"] != "positions"
     return table_row(
         mark,
         numbers.shortened(plan["manoeuvre"], 28),
@@ -80,8 +83,8 @@ def _manoeuvre(plan: Record, done: Record | None) -> Row:
         _number(units.DEGREES.of(turn["missing_angle"]) or None, 2),
         _number(units.DEGREES_PER_SECOND.of(plan["rate"]), 1),
         _number(units.DEGREES_PER_SECOND.of(turn["rate"]), 4),
-        _number(plan["seconds"], 1),
-        _number(done["seconds"], 1),
+        _number(plan["seconds"] if whole else None, 1),
+        _number(done["seconds"] if whole else None, 1),
         numbers.shortened(done["sentence"] or _("not found"), 300),
         tone=tone,
     )

@@ -172,7 +172,7 @@ def _table_rows(rows: Sequence[Record]) -> Iterator[Row]:
 
 def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
     if row["sigma"] is None:
-        value, sigma = _between(row, unit), ""
+        value, sigma = between(row, unit), ""
     else:
         value, sigma = numbers.with_sigma(unit.of(row["value"]), unit.of(row["sigma"]), decimals)
     largest = ""
@@ -192,12 +192,15 @@ def _table_row(row: Record, unit: Unit, decimals: int | None) -> Row:
     )
 
 
-def _between(row: Record, unit: Unit) -> str:
+def between(row: Record, unit: Unit) -> str:
     """The limits of a threshold or a resolution."""
-    lower, upper = (
-        None if row[key] is None else numbers.significant(unit.of(row[key]), 2)
-        for key in ("lower", "value")
-    )
+    for digits in (2, 3, 4):  # as many as tell them apart
+        lower, upper = (
+            None if row[key] is None else numbers.significant(unit.of(row[key]), digits)
+            for key in ("lower", "value")
+        )
+        if lower != upper:
+            break
     if lower is None:
         return f"≤ {upper}"
     return f"≥ {lower}" if upper is None else f"{lower} – {upper}"

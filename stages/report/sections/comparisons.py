@@ -19,14 +19,13 @@ from inertial.text.typography import capital
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
-from stages.report.results import KIND, RESULT_TABLES, final_results, kind_of
+from stages.report.results import KIND, METHOD, RESULT_TABLES, final_results, kind_of
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, parameter, with_mount
 
 KINDS = {
     "static_against_turns": _("Static, rotation"),
     "forward_against_backward": _("Forward, backward"),
-    "method_against_method": _("Two methods"),
     "straight_line": _("Rates, straight line"),
     "published": _("Published, this one"),
     "fencepost": _("Published, this one"),
@@ -158,18 +157,30 @@ def _not_compared(rows: Sequence[Record]) -> str:
 
 
 def _difference(row: Record) -> outline.Row:
-    kind = str(row["kind"])
     unit = units.quantity(row["quantity"], row["unit"]).shown
     decimals = numbers.decimals_of(unit.of(row["sigma"]))
     first, second = (_value(unit.of(row[key]), decimals) for key in ("first_value", "second_value"))
     return outline.table_row(
-        with_mount(KINDS.get(kind, numbers.shortened(kind, 60)), row["mount"]),
+        with_mount(_compared(row), row["mount"]),
         capital(numbers.shortened(str(row["sentence"]).partition(": ")[0], 600)),
         *(first, second, unit.name, numbers.fixed(row["in_sigmas"], 1)),
         numbers.probability(row["p_value"]),
         anchor=row["id"],
         tone="fair" if _beyond(row) else "",
     )
+
+
+def _compared(row: Record) -> str:
+    """Which two values a difference is of, the first named first."""
+    kind, both = str(row["kind"]), [str(row[which]) for which in ("first", "second")]
+    if kind == "method_against_method":  # stage, method with its mount, parameter
+        methods = [[*name.split("/"), ""][1].partition("@")[0] for name in both]
+        both = [METHOD.get(name, name) for name in methods]
+    elif kind != "forward_against_backward":
+        return KINDS.get(kind, numbers.shortened(kind, 60))
+    first, second = (numbers.shortened(name, 60) for name in both)
+    named = _("{first}; {second}", first=first, second=second)
+    return f"{KINDS[kind]}: {named}" if kind in KINDS else capital(named)
 
 
 def _value(value: float | None, decimals: int | None) -> str:

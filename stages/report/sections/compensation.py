@@ -85,9 +85,10 @@ SECTION = outline.Section(
         "angle of every turn."
     ),
     _(
-        "Before (grey in the figures) and after (in colour) are differences from the known value. "
-        "In σ is the remaining difference over its own σ; beyond 3 the result does not describe "
-        "all errors, and the causes in section 2 may say why."
+        "In the tables before and after are differences from the known value; the figures show the "
+        "readings before (grey) and after (in colour), and beside them the correction, before less "
+        "after. In σ is the remaining difference over its own σ; beyond 3 the result does not "
+        "describe all errors, and the causes in section 2 may say why."
     ),
     (
         *("checks", "traces", "compensated_traces", "compensation_findings"),
@@ -230,7 +231,7 @@ def _figures(tables: Tables) -> list[outline.Figure]:
 def _drawn(tables: Tables) -> Iterator[outline.Figure]:
     number = 0
     for view, plan in _chosen(tables).items():
-        compensated = _compensated(tables, plan)
+        compensated = curves_of(tables, plan)
         if compensated is None:
             continue
         number += 1
@@ -246,7 +247,7 @@ def _drawn(tables: Tables) -> Iterator[outline.Figure]:
             ),
             _draw(compensated, f"compensated-{number}"),
             _(
-                "Six channels of {name} before and after compensation, and their difference.",
+                "Six channels of {name} before and after compensation, and the correction.",
                 name=name,
             ),
         )
@@ -278,7 +279,8 @@ def _view(plan: Record, axis: str) -> str:
     return ""
 
 
-def _compensated(tables: Tables, plan: Record) -> Compensated | None:
+def curves_of(tables: Tables, plan: Record) -> Compensated | None:
+    """The six channels of a manoeuvre before and after; None where no trace shows it."""
     own = [row for row in tables.rows("segments") if row["manoeuvre"] == plan["manoeuvre"]]
     first = min(row["from_record"] for row in own)
     last = max(row["to_record"] for row in own)
@@ -286,6 +288,8 @@ def _compensated(tables: Tables, plan: Record) -> Compensated | None:
         "log == @log and to_record > @first and from_record < @last",
         local_dict={"log": own[0]["log"], "first": first, "last": last},
     )
+    if plan["do"] == "rest":  # one that goes on into the next manoeuvre has its extremes too
+        before = before.query("from_record >= @first and to_record <= @last")
     both = before.merge(
         tables.frame("compensated_traces"),
         on=["log", "from_record", "to_record"],
@@ -347,7 +351,7 @@ def _draw(compensated: Compensated, key: str) -> str:
                 _draw_both(panel, compensated, sensor, axis, unit)
                 _draw_correction(beside, compensated, sensor, axis, fine)
             both[0].set_title(f"{capital(SINGULAR[sensor])}, {unit.name}", loc="left", pad=2)
-            corrections[0].set_title(_("difference, {name}", name=fine.name), loc="left", pad=2)
+            corrections[0].set_title(_("correction, {name}", name=fine.name), loc="left", pad=2)
         for panel in axes[-1]:
             panel.set_xlabel(_("Time, s") if compensated.timed else _("Record"))
         if len(compensated.x) > 1:

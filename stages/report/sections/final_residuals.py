@@ -35,7 +35,8 @@ from stages.report.tables import Tables, once
 
 STEADY = "steady"
 MAX_SIGMAS = 3.0
-REACH, BIN = 4.5, 0.25  # σ, of the histogram
+REACH, BINS = 4.5, 36  # σ, of the histogram where nothing is beyond
+FEW = 0.001  # of the values on either side that may be beyond a wider one
 NO_ATTITUDE = _(
     "None: no attitude is known to predict readings by. In positions of unknown attitude "
     "“Compensation” compares |f| with gravity."
@@ -94,9 +95,9 @@ SECTION = Section(
         "Effects of the table, the site or the mounting are not taken off a reading, and appear "
         "here. Left, fifths of each static position and whole steady rotations, with ±3 σ of white "
         "noise; right, the residuals of blocks and of seconds of rotation over their σ, of which "
-        "noise alone leaves 0.3 % beyond 3. Where the table's heading is not known, the azimuth of "
-        "each static position is estimated with the result, so one direction of the gyros' "
-        "residuals at rest is fitted away."
+        "noise alone leaves 0.3 % beyond 3; the outermost bins hold what is further out. Where the "
+        "table's heading is not known, the azimuth of each static position is estimated with the "
+        "result, so one direction of the gyros' residuals at rest is fitted away."
     ),
     ("residuals", "manoeuvres", "result"),
     parts,
@@ -130,22 +131,32 @@ def _ratios(tables: Tables, sensor: str, axis: str) -> tuple[Array, Array]:
     return rest[np.isfinite(rest)], turn[np.isfinite(turn)]
 
 
+def reach_of(values: Array) -> float:
+    """How far the histogram goes to either side, σ: as far as the values, but for a few."""
+    if not len(values):
+        return REACH
+    return max(REACH, float(np.ceil(np.quantile(np.abs(values), 1 - FEW))))
+
+
 def _histogram(panel: Axes, tables: Tables, sensor: str) -> None:
-    edges = np.arange(-REACH, REACH + BIN / 2, BIN)
-    for axis in AXES:
-        values = np.concatenate(_ratios(tables, sensor, axis))
+    each = {axis: np.concatenate(_ratios(tables, sensor, axis)) for axis in AXES}
+    reach = reach_of(np.concatenate(list(each.values())))
+    edges = np.linspace(-reach, reach, BINS + 1)
+    width = edges[1] - edges[0]
+    for axis, values in each.items():
         if len(values):  # what is beyond the ends is in the outermost bins
             counts, _edges = np.histogram(np.clip(values, edges[0], edges[-1]), edges)
-            density = counts / len(values) / BIN
+            density = counts / len(values) / width
             panel.stairs(density, edges, color=drawing.AXIS_COLOUR[axis], linewidth=0.9)
-    x = np.linspace(-REACH, REACH, 121)
+    x = np.linspace(-reach, reach, 241)
     panel.plot(x, np.exp(-(x**2) / 2) / np.sqrt(2 * np.pi), color=drawing.INK, linewidth=0.7)
     for limit in (-MAX_SIGMAS, MAX_SIGMAS):
         panel.axvline(limit, color=drawing.QUIET, linewidth=0.6, dashes=(3, 2))
-    panel.set_xlim(-REACH, REACH)
+    panel.set_xlim(-reach, reach)
     panel.set_ylim(bottom=0.0)
     panel.set_yticks([])
-    panel.set_xticks([-3, 0, 3])
+    far = [] if reach == REACH else [round(0.9 * reach)]
+    panel.set_xticks([*(-at for at in far), -3, 0, 3, *far])
     panel.set_title(_("Distribution, in σ"), pad=4)
 
 

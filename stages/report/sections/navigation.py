@@ -12,6 +12,7 @@ from inertial.campaign.records import grouped
 from inertial.sensors import SENSORS, SINGULAR
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.units import DEGREES, Unit
 from stages.report import drawing, outline
@@ -52,11 +53,12 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         yield from (outline.Paragraph(f"{row['reason']}.") for row in rows[:1] if row["reason"])
         return
     yield _errors(groups)
-    if not any(row["calibrated"] is not None for row in rows if row["seconds"] == 600.0):
+    if untried := _untried(groups):
         yield outline.Paragraph(
             _(
-                "No rest is ten minutes long beside its alignment: the errors after ten minutes "
-                "are predicted from the covariance and the noise, and not tried."
+                "The errors after {seconds} s at rest are predicted from the covariance and the "
+                "noise, and not tried: no rest is so long beside its alignment.",
+                seconds=listed(untried),
             )
         )
     yield from _courses(tables)
@@ -84,6 +86,16 @@ SECTION = outline.Section(
     ("navigation_errors", "navigation_courses", "navigation_shares"),
     parts,
 )
+
+
+def _untried(groups: Mapping[Key, Sequence[Record]]) -> list[str]:
+    """The times at rest, s, over which no rest of the campaign is tried on any mount."""
+    tried: dict[float, bool] = {}
+    for (_mount, _motion, seconds), rows in groups.items():
+        if seconds is not None:
+            found = any(row["calibrated"] is not None for row in rows)
+            tried[seconds] = tried.get(seconds, False) or found
+    return [numbers.whole(round(seconds)) for seconds in sorted(tried) if not tried[seconds]]
 
 
 def _errors(groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
@@ -205,7 +217,10 @@ def _shares(tables: Tables, groups: Mapping[Key, Sequence[Record]]) -> outline.T
     listed = [n for n in largest if max(map(abs, total[n].values())) >= MIN_SHARE][:MOST_SOURCES]
     columns = [(key, quantity) for key in keys for quantity in QUANTITIES]
     return outline.Table(
-        _("Shares of the predicted variance, per cent, over the same manoeuvres as above."),
+        _(
+            "Shares of the predicted variance, per cent, over the manoeuvres of which the errors "
+            "are predicted."
+        ),
         (
             outline.Column(_("Source")),
             *(

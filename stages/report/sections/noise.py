@@ -131,7 +131,13 @@ def _note(terms: Sequence[Record], sheet: Sequence[Record]) -> str:
     """What < means, and whence the data sheet."""
     limit = _("<: upper limit, 95 %; the term is not significant.")
     limits = any(not row["detected"] for row in terms)
-    return " ".join(filter(None, [limit if limits else "", of_data_sheets(sheet)]))
+    floor = _(
+        "The bias instability of a data sheet is taken as the floor of its Allan deviation, so B "
+        "beside it is that floor over 0.664 (√(2 ln 2/π)); the figure shows the floor."
+    )
+    stated = any(row["term"] == "bias_instability" and row["data_sheet"] for row in terms)
+    notes = [limit if limits else "", floor if stated else "", of_data_sheets(sheet)]
+    return " ".join(filter(None, notes))
 
 
 def _terms_table(sensor: str, rows: Sequence[Record], note: str) -> outline.Table:

@@ -19,6 +19,8 @@ from stages.report.words import term
 NAME = {"gyro": _("Angle random walk"), "accel": _("Velocity random walk")}
 SENSOR = {"gyro": _("gyroscope"), "accel": _("accelerometer")}
 MOST_ROWS = 48
+MARK = "▲"
+MIN_RATIO, MIN_SIGMAS = 1.25, 4.0  # beyond the median at rest, from which a level is marked
 MOST_NAMES = 30
 MOST_LEVEL_NAMES = 6  # that have room beside each other
 Place = tuple[str, str]  # manoeuvre and phase
@@ -42,8 +44,11 @@ SECTION = outline.Section(
     _("The white noise of each channel, estimated from the data of each manoeuvre alone."),
     _(
         "A channel that is noisier in one attitude than in another responds to vibration of table "
-        "or building. The white noise of the data sheet is shown for comparison only and is used "
-        "nowhere."
+        "or building; {mark} marks what is above the median of its channel at rest by more than "
+        "4 σ and by a quarter. An axis that turns also reads how unevenly the table turns, a "
+        "ripple or a step of its angle, which counts as noise here. The white noise of the data "
+        "sheet is shown for comparison only and is used nowhere.",
+        mark=MARK,
     ),
     ("noise", "sensors"),
     parts,
@@ -160,6 +165,14 @@ def _channel(channel: str) -> str:
     return _("{sensor} {axis}", sensor=SENSOR[sensor], axis=axis)
 
 
+def is_high(row: Record, at_rest: float | None) -> bool:
+    """Whether a level is above that of its channel at rest by more than it scatters."""
+    value, sigma = row["white_noise"], row["sigma"]
+    if value is None or sigma is None or at_rest is None:
+        return False
+    return bool(value > MIN_RATIO * at_rest and value - at_rest > MIN_SIGMAS * sigma)
+
+
 def _by_manoeuvre(rows: Sequence[Record], sensor: str) -> outline.Table:
     unit = RANDOM_WALK[sensor]
     by_place = {(row["manoeuvre"], row["phase"], row["channel"]): row for row in rows}
@@ -167,11 +180,24 @@ def _by_manoeuvre(rows: Sequence[Record], sensor: str) -> outline.Table:
     own = [row for row in rows if CHANNEL_PARTS[row["channel"]][0] == sensor]
     decimals = common_decimals(row["sigma"] / unit.size for row in own)
     gap = {"white_noise": None, "sigma": None}
+    at_rest = {
+        axis: median(levels)
+        for axis in AXES
+        if (
+            levels := [
+                row["white_noise"]
+                for row in own
+                if row["channel"] == f"{sensor}_{axis}" and row["phase"] != "steady"
+            ]
+        )
+    }
 
     def cells(place: Place) -> Iterator[str]:
         for axis in AXES:
             row = by_place.get((*place, f"{sensor}_{axis}"), gap)
-            yield from with_sigma(unit.of(row["white_noise"]), unit.of(row["sigma"]), decimals)
+            value, sigma = with_sigma(unit.of(row["white_noise"]), unit.of(row["sigma"]), decimals)
+            yield f"{MARK} {value}" if is_high(row, at_rest.get(axis)) else value
+            yield sigma
 
     return outline.Table(
         _("{name} by manoeuvre, {name_2}.", name=NAME[sensor], name_2=unit.name),

@@ -260,6 +260,12 @@ def over_angle(tables: Tables, order: float, key: str) -> Figure | None:
     )
 
 
+def spun_up(plan: Sequence[Record], turn: str) -> float:
+    """The angle in which a turn reaches its rate, rad; 0 where its acceleration is not stated."""
+    (row,) = (row for row in plan if row["manoeuvre"] == turn)
+    return float(row["rate"] ** 2 / (2 * row["acceleration"])) if row["acceleration"] else 0.0
+
+
 def _binned(tables: Tables, span: float) -> Iterator[tuple[str, str, Array, Array]]:
     """Of each axis a turn: its name, the axis, the angle turned, °, and the residual, °/h."""
     plan = tables.rows("manoeuvres")
@@ -274,6 +280,7 @@ def _binned(tables: Tables, span: float) -> Iterator[tuple[str, str, Array, Arra
         rows = pd.concat(pieces[axis])
         time = rows["time"].to_numpy(np.float64)
         turned = abs(rates[chosen[axis]]) / DEGREE * (time - time.min())
+        turned += spun_up(plan, chosen[axis]) / DEGREE  # since the start, not of the steady part
         inside = np.isfinite(turned) & (turned < span)
         place = (turned[inside] / span * BINS).astype(np.int64)
         if len(place):
