@@ -154,7 +154,6 @@ def _campaign(logs: tuple[str, ...] | None) -> dict[str, Any]:
         "drifts_at_rest": tables.DRIFTS_AT_REST.empty(),
         "temperature_curves": rows_as(tables.TEMPERATURE_CURVES, curve("bias_x")),
         "warm_up": tables.WARM_UP.empty(),
-        "drifts_at_rest": tables.DRIFTS_AT_REST.empty(),
     }
     for stage, other in (("accelerometer", "six_position"), ("gyroscope", "turns")):
         parameters = estimates.parameters(stage, "joint") + estimates.parameters(stage, other)
