@@ -116,7 +116,7 @@ def crate(of: tuple[Path, int], campaign: str) -> int:
 @click.argument("campaign", type=Campaign())
 @click.pass_obj
 def check(of: tuple[Path, int], campaign: str) -> int:
-    """Find what is wrong with a recording, within a minute."""
+    """Find what is wrong with a recording, in a minute or, in a chamber, a few."""
     folder, cores = of
     if status := snakemake(folder, cores, [f"data/derived/{campaign}/diagnosis/verdict.parquet"]):
         return status
