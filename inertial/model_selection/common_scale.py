@@ -309,7 +309,7 @@ def _chances(left: Sequence[float], degrees: int) -> Array:
     up_to = chi2_sf(np.maximum(left, 0.0), degrees)
     up_to[-1] = 1.0
     between = np.diff(up_to) / 2  # half of it at either end
-    return np.append(up_to[0], between) + np.append(between, 0.0)
+    return np.asarray(np.append(up_to[0], between) + np.append(between, 0.0))
 
 
 def _law(table: int, off: Sequence[int], weights: Array, tried: Sequence[_Sums]) -> Mixture:
