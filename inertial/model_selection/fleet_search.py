@@ -29,6 +29,7 @@ from inertial.estimation.probability import chi2_isf, chi2_sf
 from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Given, Shared, whitened
 
 Key = TypeVar("Key")
+ArrayOrFloat = TypeVar("ArrayOrFloat", Array, float)
 
 DRAWS = 2000
 BATCH_VALUES = 4_000_000  # of scores that are drawn at once
@@ -47,6 +48,10 @@ class FleetLaw:
     level: float
     share: float
     hypotheses: int
+
+    def of_any(self, p_value: float) -> float:
+        """The p-value of any of the hypotheses."""
+        return min(p_value * self.level / self.share, 1.0)
 
 
 @dataclass(frozen=True)
@@ -179,7 +184,7 @@ class FleetSearch:
             own,
             drop,
             degrees,
-            min(float(chi2_sf(drop, degrees)) * self.law.level / self.law.share, 1.0),
+            self.law.of_any(float(chi2_sf(drop, degrees))),
             _largest_first({level: weight / total for level, weight in of_effect.items()}),
             _largest_first(
                 {e: w for e, w in members.items() if w >= MIN_WEIGHT or e == own.effect}
@@ -198,7 +203,7 @@ class FleetSearch:
             if len(shown) == 1:
                 prior = np.array([1.0, 0.0])
             kept = prior > 0
-            terms = _log_evidence(drops[kept], degrees[kept]) + np.log(prior[kept])
+            terms = log_evidence(drops[kept], degrees[kept]) + np.log(prior[kept])
             logs[effect, level] = float(np.logaddexp.reduce(terms))
         top = max(logs.values())
         weights = {key: float(np.exp(value - top)) for key, value in logs.items()}
@@ -206,7 +211,8 @@ class FleetSearch:
         return {key: weight / total for key, weight in weights.items()}
 
 
-def _log_evidence(drops: Array, degrees: Integers) -> Array:
+def log_evidence(drops: Array, degrees: Integers) -> Array:
+    """Of drops of chi-squared, the variance of the sizes being the likeliest (Liang et al.)."""
     r = np.maximum(degrees, 1)
     excess = np.maximum(drops / r, 1.0)
     return np.asarray(0.5 * r * (excess - 1 - np.log(excess)))
@@ -251,13 +257,14 @@ def _shown(evidence: FleetEvidence, effect: int, level: str, group: int) -> bool
     return bool(shown.sum() > 1 if group == EVERY else shown.any())
 
 
-def fleet_law(evidence: FleetEvidence, level: float) -> FleetLaw:
+def fleet_law(evidence: FleetEvidence, level: float, further: int = 0) -> FleetLaw:
     """The null distribution of the search.
 
     Parameters
     ----------
     level : accepted probability of any finding where there is no effect, and share of false ones
         among all findings
+    further : how many independent hypotheses are searched besides, elsewhere
     """
     every = hypotheses(evidence)
     random = np.random.default_rng(0)
@@ -269,8 +276,15 @@ def fleet_law(evidence: FleetEvidence, level: float) -> FleetLaw:
         count = min(batch, DRAWS - start)
         noise = random.standard_normal((*evidence.right.shape, count))
         smallest.append(_smallest(evidence, roots @ noise, every, pairs))
-    share = float(np.quantile(np.concatenate(smallest), level)) if every else level
-    return FleetLaw(level, share, len(every))
+    least = np.concatenate(smallest)
+    least = np.minimum(least, smallest_of(further, np.random.default_rng(1).random(len(least))))
+    share = float(np.quantile(least, level)) if every or further else level
+    return FleetLaw(level, share, len(every) + further)
+
+
+def smallest_of(count: int, chance: ArrayOrFloat) -> ArrayOrFloat:
+    """The p-value that the smallest of so many independent ones falls below with a chance."""
+    return -np.expm1(np.log1p(-chance) / count) if count else 1.0 + 0.0 * chance
 
 
 def _smallest(

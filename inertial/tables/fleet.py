@@ -1,7 +1,7 @@
 """What several campaigns show together: effects and what shares them, populations of types."""
 
 from inertial.tables.shared import SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
 
 FINDING = Column("finding", TEXT, "", "id of the finding")
 LEVELS = "type, table, imu or campaign; with + what the campaigns do not tell apart"
@@ -26,7 +26,7 @@ FLEET = {
         ),
         Table(
             "findings",
-            1,
+            2,
             (
                 FINDING,
                 Column("effect", TEXT, "", "name in the catalogue"),
@@ -35,7 +35,8 @@ FLEET = {
                     "group",
                     TEXT,
                     "",
-                    "the type, table, IMU or campaign; none: each has a size of its own",
+                    "the type, table, IMU or campaign; none: each has a size of its own, or tables"
+                    " differ, see table_differences",
                     nullable=True,
                 ),
                 Column("statistic", DOUBLE, "1", "reduction of chi-squared beside the others"),
@@ -82,6 +83,28 @@ FLEET = {
                 Column("value", DOUBLE, "as unit", "estimate, all findings fitted together"),
                 Column("sigma", DOUBLE, "as unit", "its standard deviation"),
                 Column("unit", TEXT, "", "unit of value and sigma, SI"),
+            ),
+        ),
+        Table(
+            "table_differences",
+            1,
+            (
+                FINDING,
+                SENSOR,
+                Column("more", SENTENCE, "", "tables on which all axes of all IMUs read more"),
+                Column("less", SENTENCE, "", "tables on which they read less"),
+                Column("value", DOUBLE, "1", "by how much, of all scale factors alike"),
+                Column("sigma", DOUBLE, "1", "its standard deviation, turn-on to turn-on in it"),
+                Column(
+                    "stated",
+                    DOUBLE,
+                    "1",
+                    "standard deviation of a difference of two such tables by what the campaigns"
+                    " state; none: not stated",
+                    nullable=True,
+                ),
+                Column("imus", INTEGER, "1", "IMUs that were on both sides"),
+                Column("axes", INTEGER, "1", "axes that show it"),
             ),
         ),
         Table(

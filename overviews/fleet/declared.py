@@ -7,6 +7,7 @@ READ = {
     "campaign": From("plan", tables.CAMPAIGN),
     "inputs": From("plan", tables.INPUTS),
     "known": From("plan", tables.KNOWN),
+    "manoeuvres": From("plan", tables.MANOEUVRES),
     "score": From("criticism", tables.SCORE_VECTOR),
     "information": From("criticism", tables.INFORMATION_MATRIX),
     "result": From("diagnosis", tables.PARAMETERS, "result"),

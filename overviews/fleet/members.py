@@ -14,6 +14,7 @@ from inertial.arrays import Array
 from inertial.campaign.references import NAMELESS
 from inertial.estimation.triad import linear_names
 from inertial.estimation.type_population import Campaigns
+from inertial.model_selection.common_scale import ScaleFactors
 from inertial.model_selection.fleet_evidence import FleetEvidence
 from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal
@@ -33,12 +34,27 @@ MAX_GRAVITY_SHARE = 0.9999  # of the variance of a scale factor
 
 
 @dataclass(frozen=True)
+class References:
+    """What the scale factors of a campaign rest on.
+
+    `named`: whether the table has a name, by which it is known again; `turns`: whole (the angle is
+    the reference) and steady (the rate is); `sigmas`: relative, as stated, of the angles and rates
+    of the table and of gravity, those that are.
+    """
+
+    named: bool
+    turns: frozenset[str]
+    sigmas: Mapping[str, float]
+
+
+@dataclass(frozen=True)
 class Member:
     """One mount of one campaign.
 
     `score` by effect and parameter, `information` rows of the table; `values`: (24,) in the order
     of PARAMETERS, NaN where not determined, with `covariance`; `gravity`: as the campaign takes it
-    as known, m/s², with sigma; `reason`: why it is not pooled.
+    as known, m/s², with sigma; `references`: what its scale factors rest on; `reason`: why it is
+    not pooled.
     """
 
     campaign: str
@@ -54,6 +70,7 @@ class Member:
     values: Array
     covariance: Array
     gravity: tuple[float, float]
+    references: References
     reason: str = ""
 
     @property
@@ -102,7 +119,8 @@ def _members(name: str, folder: Path) -> Iterator[Member]:
         f"{kind} {about['serial']}" if about["serial"] != UNKNOWN else _("IMU of {name}", name=name)
     )
     table = about["table"]
-    if table in NAMELESS:
+    references = _references(frames, named=table not in NAMELESS)
+    if not references.named:
         table = _("table of {name}", name=name)
     inputs = frames["inputs"]
     logs = frozenset(inputs.loc[inputs["file"] != "campaign.yaml", "sha256"])
@@ -132,6 +150,7 @@ def _members(name: str, folder: Path) -> Iterator[Member]:
             information,
             *_parameters(own, covariance),
             _gravity(frames["known"]),
+            references,
         )
 
 
@@ -151,6 +170,25 @@ def _parameters(rows: pd.DataFrame, known: Mapping[tuple[str, str], float]) -> t
 def _gravity(known: pd.DataFrame) -> tuple[float, float]:
     row = known[known["quantity"] == "gravity"].iloc[0]
     return float(row["value"]), float(np.nan_to_num(row["sigma"]))
+
+
+def _references(frames: Mapping[str, pd.DataFrame], *, named: bool) -> References:
+    manoeuvres, known = frames["manoeuvres"], frames["known"]
+    turns = manoeuvres[manoeuvres["do"] == "turn"]
+    stated = known[~known["assumed"] & known["sigma"].gt(0)].set_index("quantity")["sigma"]
+    angle = float(turns["angle"].abs().median())
+    sigmas = {
+        "rate": stated.get("turn_rate"),
+        "angle": stated["turn_angle"] / angle if angle > 0 and "turn_angle" in stated else None,
+        "gravity": stated["gravity"] / known.set_index("quantity")["value"]["gravity"]
+        if "gravity" in stated
+        else None,
+    }
+    return References(
+        named,
+        frozenset(turns["recorded"]),
+        {key: float(sigma) for key, sigma in sigmas.items() if sigma is not None},
+    )
 
 
 def labels_of(members: Sequence[Member]) -> dict[str, list[str]]:
@@ -185,6 +223,31 @@ def evidence_of(members: Sequence[Member]) -> tuple[FleetEvidence, dict[str, lis
     of_effect = {name: [column[place] for place in own] for name, own in effects.items()}
     places = {name: list(own) for name, own in effects.items()}
     return FleetEvidence(of_effect, information, right, labels_of(members)), places
+
+
+def scale_factors_of(members: Sequence[Member], sensor: str) -> ScaleFactors:
+    """The scale factors of a sensor, without the error of gravity that campaigns have alike.
+
+    Along each input axis: the lengths of the rows of M, which another mounting does not change.
+    """
+    kept = [m for m in members if m.references.named]
+    first = PARAMETERS.index((sensor, linear_names()[0]))
+    of_matrix = slice(first, first + 9)
+    values, covariances = np.full((len(kept), 3), np.nan), np.zeros((len(kept), 3, 3))
+    for number, member in enumerate(kept):
+        moved = _by_gravity(member)
+        covariance = member.covariance - np.outer(moved, moved)
+        found = member.values[of_matrix].reshape(3, 3)
+        rows = np.eye(3) + np.nan_to_num(found)
+        length = np.linalg.norm(rows, axis=1)
+        slope = np.zeros((3, 9))
+        for axis in range(3):
+            slope[axis, 3 * axis : 3 * axis + 3] = rows[axis] / length[axis]
+        slope *= np.isfinite(found).ravel()
+        values[number] = np.where(np.isfinite(np.diag(found)), length - 1, np.nan)
+        covariances[number] = slope @ covariance[of_matrix, of_matrix] @ slope.T
+    imus = tuple(m.imu for m in kept)
+    return ScaleFactors(values, covariances, imus, tuple(m.table for m in kept))
 
 
 # ---- The error of gravity: campaigns that take the same value as known contain it alike.

@@ -13,6 +13,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _, plural
 from inertial.text.typography import capital
+from overviews.fleet.differences import compared, difference_sentences
 from overviews.tables_of import made_from
 from stages.report import outline
 from stages.report.page import page
@@ -116,8 +117,10 @@ def _effects(rows: Rows, searched: int, false_discoveries: float) -> outline.Sec
             ),
             "fair" if found else "good",
         )
+        yield from difference_sentences(rows)
         if found:
             yield _found(rows)
+        if rows["sizes"]:
             yield _shares(rows)
             yield _sizes(rows)
 
@@ -144,7 +147,7 @@ def _found(rows: Rows) -> outline.Table:
         lines.append(
             outline.table_row(
                 _with_chances((in_words(m["effect"]), m["probability"]) for m in members),
-                row["group"] or EACH[row["level"]],
+                row["group"] or compared(rows, row["finding"]) or EACH[row["level"]],
                 _with_chances(
                     (LEVEL[s["level"]], s["probability"]) for s in sharings if s["possible"]
                 ),

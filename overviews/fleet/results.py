@@ -13,9 +13,16 @@ from inertial.estimation.consistency import normal_p_value
 from inertial.estimation.fleet_components import LEVELS, shares
 from inertial.estimation.type_population import of_new_imu, type_population
 from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
-from inertial.model_selection.fleet_search import FleetEffect, FleetSearch, fleet_law
+from inertial.model_selection.fleet_search import (
+    FleetEffect,
+    FleetLaw,
+    FleetSearch,
+    fleet_law,
+    smallest_of,
+)
 from inertial.sensors import unit_of
 from inertial.tables.fleet import FLEET
+from overviews.fleet.between_tables import between_tables, difference_rows
 from overviews.fleet.members import (
     PARAMETERS,
     Member,
@@ -55,19 +62,23 @@ def results_of(
     ]
     pooled = [member for member in members if not member.reason]
     showing = [member for member in pooled if member.score]
-    searched = 0
+    compared = between_tables(pooled)
+    further, already = sum(search.hypotheses for search in compared), 0
+    law = FleetLaw(false_discoveries, smallest_of(further, false_discoveries), further)
     if len(showing) > 1:
         evidence, places = evidence_of(showing)
-        law = fleet_law(evidence, false_discoveries)
-        searched = law.hypotheses
+        law = fleet_law(evidence, false_discoveries, further)
         found = FleetSearch(evidence, law).found()
+        already = len(found)
         units = {place: unit for member in showing for place, unit in member.units.items()}
         for name, row in _effects(evidence, found, places, units):
             rows[name].append(row)
+    for name, row in difference_rows(compared, pooled, law, already):
+        rows[name].append(row)
     for kind in dict.fromkeys(member.type for member in pooled):
         for name, row in _population([m for m in pooled if m.type == kind], outliers):
             rows[name].append(row)
-    return rows, searched
+    return rows, law.hypotheses
 
 
 # ---- Effects.
