@@ -70,17 +70,14 @@ def without_steps(turns: Sequence[SteadyTurn]) -> tuple[list[SteadyTurn], list[S
 
     What the table does at one angle it does in every turn, and is a ripple of it.
     """
-    quiet = {turn.name: _quiet(turn) for turn in turns}
-    stepping = [turn for turn in turns if quiet[turn.name][1]]
-    if len(stepping) > max(1.0, MAX_TURNS_SHARE * len(turns)):
+    every = [(turn, *_quiet(turn)) for turn in turns]
+    if sum(bool(own) for _turn, _quieted, own in every) > max(1.0, MAX_TURNS_SHARE * len(turns)):
         return list(turns), []
-    alone = {
-        turn.name
-        for turn in stepping
-        if not any(_of_table(step, turn, turns) for step in quiet[turn.name][1])
-    }
-    steps = [step for name in alone for step in quiet[name][1]]
-    kept = [quiet[turn.name][0] if turn.name in alone else turn for turn in turns]
+    kept, steps = list[SteadyTurn](), list[StepInTurn]()
+    for turn, quiet, own in every:
+        alone = not any(_of_table(step, turn, turns) for step in own)
+        kept.append(quiet if alone else turn)
+        steps += own if alone else []
     return kept, sorted(steps, key=lambda step: -step.sigmas)
 
 

@@ -82,7 +82,7 @@ def test_a_jump_of_the_table_at_one_place_of_every_turn_is_none_of_one_turn():
 
 def test_nor_where_one_turn_alone_shows_it_clearly():
     """The others have it at a ratio of 4 to their noise."""
-    made = jumping(4, 10, 115, 2.0, rates=(20, -20, 20, -20))
+    made = jumping(4, 10, 115, 2.0)
     rng = np.random.default_rng(4)
     for i, turn in enumerate(made):
         if i != SLIPPED:
