@@ -106,9 +106,9 @@ def recording_of(derived: Path) -> Recording:
     }
     diagnosed = _diagnosed(derived / "diagnosis/causes.parquet")
     severities = _severities(diagnosed)
-    sentences = {row["id"]: row["sentence"] for row in diagnosed}
+    told = {row["id"]: row for row in diagnosed}
     competed = compete(list(hypotheses(findings)))
-    explained = [_as_diagnosed(each, severities, sentences) for each in competed]
+    explained = [_as_diagnosed(each, severities, told) for each in competed]
     causes = sorted(explained, key=_worst_first)
     remarks = [row["sentence"] for row in circumstances(rows_of(findings.segment_findings))]
     return Recording(list(no_results(derived)), causes, list(performed.values()), refused, remarks)
@@ -144,7 +144,7 @@ def _severity(row: Row) -> int | None:
 def _as_diagnosed(
     each: ExplainedFindings,
     severities: Mapping[tuple[str, str], int],
-    sentences: Mapping[str, str],
+    diagnosed: Mapping[str, Row],
 ) -> ExplainedFindings:
     """The same, as grave as it is by the diagnosis, which tells the sizes of the result."""
     row = each.cause.row
@@ -153,7 +153,8 @@ def _as_diagnosed(
         severity = row["severity"]
     told = {**row, "severity": severity}
     if each.cause.stage == MODEL:
-        told["sentence"] = sentences.get(f"diagnosis/{row['id']}", row["sentence"])
+        own = diagnosed.get(f"diagnosis/{row['id']}", row)
+        told |= {name: own[name] for name in ("sentence", "consequence")}
     return replace(each, cause=replace(each.cause, row=told))
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from inertial.campaign.explanations import explains, rank
+from inertial.campaign.explanations import JUMPS, explains, rank
 from inertial.campaign.hypotheses import MAX_CARRYING, MODEL, Hypothesis
 from inertial.campaign.records import Row
 
@@ -45,7 +45,16 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[ExplainedFindings]:
     for root in (h for h in hypotheses if h.id not in owner):
         own = tuple(h for h in hypotheses if _root(h.id, owner) == root.id)
         if len(own) > 1 or not _is_noise(root):
-            yield ExplainedFindings(root, own)
+            yield ExplainedFindings(_of_all_sensors(root, own), own)
+
+
+def _of_all_sensors(root: Hypothesis, own: Sequence[Hypothesis]) -> Hypothesis:
+    """A cause that changes the biases of both sensors at once concerns both."""
+    others = [one for one in own if {root.cause, one.cause} == JUMPS and one is not root]
+    if not others:
+        return root
+    members = (root.cause, *(one.cause for one in others))
+    return replace(root, row={**root.row, "sensor": None, "axis": None}, members=members)
 
 
 def _group(fault: Hypothesis) -> object:

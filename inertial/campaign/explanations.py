@@ -7,13 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import hypot, inf
 
 from inertial.campaign.hypotheses import (
+    FOUND,
     JUMP_NOT_TESTABLE,
     LAW,
     MODEL,
+    MOUNTINGS,
     POSITIONS,
     RECORDING,
+    STEP_IN_TURN,
+    TABLE_MOVING,
     Hypothesis,
 )
 from inertial.sensors import SENSORS
@@ -54,6 +59,14 @@ def same_log(cause: Hypothesis, other: Hypothesis) -> bool:
     """In the log that the other finding is about, or in one of its manoeuvres."""
     log = cause.row["log"]
     return (log is not None and log == other.row["log"]) or same_manoeuvre(cause, other)
+
+
+def same_time(cause: Hypothesis, other: Hypothesis) -> bool:
+    """At the same moment, within the sigmas of both."""
+    if cause.time is None or other.time is None:
+        return False
+    apart = abs(cause.time[0] - other.time[0])
+    return apart < MAX_APART_SIGMAS * hypot(cause.time[1], other.time[1])
 
 
 def by_single_readings(cause: Hypothesis, other: Hypothesis) -> bool:
@@ -158,6 +171,10 @@ IN_PROPORTION = frozenset(
 )
 POSITION_OFF = ("table_position_error", "table_axis_error")
 MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
+JUMPS = frozenset({"gyro_bias_jump", "accel_bias_jump"})
+MAX_APART_SIGMAS = 3.0  # of two times of one event
+MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with any other
+MAX_ANGLE_RATIO = 2.0  # of one rotation as two stages have it: a rest shows two components of three
 LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
 
 
@@ -262,6 +279,13 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         return True
     if ANOTHER_IMU in (cause.cause, other.cause):  # whatever the model says is of two instruments
         return cause.cause == ANOTHER_IMU and other.stage == MODEL
+    if STEP_IN_TURN in (cause.cause, other.cause) or is_same_event(cause, other):
+        return _explains_event(cause, other)
+    return _explains(cause, other)
+
+
+def _explains(cause: Hypothesis, other: Hypothesis) -> bool:
+    """The same of what is no event by itself."""
     if other.stage == POSITIONS:
         return _explains_position(cause, other)
     if other.cause == "bias_jump" and _without_law(cause):
@@ -277,6 +301,44 @@ def explains(cause: Hypothesis, other: Hypothesis) -> bool:
         cause.cause in rule.causes and other.cause in rule.findings and rule.where(cause, other)
         for rule in EXPLANATIONS
     )
+
+
+def is_same_event(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Whether one event is both: what tilts in a rest and stays, or biases that one knock changes.
+
+    A shift of the IMU in its fixture stands for the rest in which it
+    tilts; of two sensors the one whose time is known better stands for both.
+    """
+    if not same_time(cause, other) or not cause.named:
+        return False
+    if cause.cause in MOUNTINGS and other.cause == TABLE_MOVING:
+        return _same_angle(cause, other)
+    if {cause.cause, other.cause} != JUMPS or {cause.verdict, other.verdict} != {FOUND}:
+        return False
+    vague = [one.time[1] for one in (cause, other) if one.time]
+    return max(vague) < MAX_VAGUE_S and (vague[0], cause.id) < (vague[1], other.id)
+
+
+def _same_angle(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Whether both turn the case by about as much."""
+    ratio = (other.angle or 0.0) / (cause.angle or inf)
+    return 1 / MAX_ANGLE_RATIO < ratio < MAX_ANGLE_RATIO
+
+
+def _explains_event(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Whether an event is what an effect says of it, or leaves what no effect explains."""
+    if other.cause == STEP_IN_TURN:
+        return _is_of_step(cause, other)
+    if cause.cause == STEP_IN_TURN:
+        return other.cause in MISFITS and same_readings(cause, other)
+    return True
+
+
+def _is_of_step(cause: Hypothesis, step: Hypothesis) -> bool:
+    """Whether an effect that is named says what the step of one turn means."""
+    if not cause.named or cause.causes.isdisjoint((*MOUNTINGS, "turn_angle_error")):
+        return False
+    return same_manoeuvre(cause, step) or (same_time(cause, step) and _same_angle(cause, step))
 
 
 def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:

@@ -9,17 +9,23 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from inertial.campaign.records import Row, rows_of
+from inertial.campaign.records import Row, clocks_of, rows_of
+from inertial.text.units import ARC_SECOND
 
 FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE = "found", "one_of_class", "unknown_structure"
 LAW = "law"  # of no effect of the catalogue
 SENSE_OF_TURNS = "sense_of_turns"  # an asymmetry of the gyros that may be the table's
 JUMP_NOT_TESTABLE = "jump_not_testable"  # a jump that only the other sensor can show
+STEP_IN_TURN = "step_in_turn"  # of the angle, in one turn alone: what it means an effect tells
 RECORDING, PLAN, POSITIONS, MODEL = "quality", "segment", "accelerometer", "criticism"
 NOISE = "noise"
 COUNTS = "gyroscope"  # the stage that finds counts of another size than stated
 RIVAL = "rival"  # state of a repair that others explain as well
 PLANNED = "plan"  # the stage that repairs what the campaign file states
+TABLE_MOVING = "table_moving"
+MOUNTINGS = ("mounting_shift", "mounting_slip")  # effects that turn the axes of all that follows
+TIME = "t0"  # the parameter of effects that set in at a moment
+CLEAR_SIGMAS = 3.0  # of an angle
 MAX_CARRYING = 3  # manoeuvres that carry a structure of the residuals; it is elsewhere with more
 
 
@@ -31,7 +37,9 @@ class Hypothesis:
     it is not there, none where that is not known or they are many; `verdict`: of
     criticism, else empty; `members`: effects that it may be, the most probable first;
     `repair`: the row of the repair that undoes it, if any; `rivals`: of repairs of which each
-    would, so that none is applied; `masked`: whether its records are.
+    would, so that none is applied; `masked`: whether its records are; `time`: s since the first
+    sample of all logs, with its sigma, where it is one moment; `angle`: rad, by which it turns the
+    case, where it does.
     """
 
     id: str
@@ -44,6 +52,8 @@ class Hypothesis:
     repair: Row | None = None
     rivals: tuple[Row, ...] = ()
     masked: bool = False
+    time: tuple[float, float] | None = None
+    angle: float | None = None
 
     @property
     def sensor(self) -> str | None:
@@ -95,6 +105,8 @@ class Findings:
     masks: pd.DataFrame
     gaps: pd.DataFrame
     segments: pd.DataFrame
+    effects: pd.DataFrame
+    clocks: pd.DataFrame
 
     @cached_property
     def by_stage(self) -> dict[str, list[Row]]:
@@ -122,6 +134,7 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
     repair_of, without = _repairs(findings)
     positions = rows_of(findings.cause_positions)
     place = {row["finding"]: row["position"] for row in positions if row["rank"] == 1}
+    times, angles = _moments(findings), _angles(findings)
     touched, carrying = _touched(findings), dict[str, set[str]]()
     for row in rows_of(findings.structure_manoeuvres):
         carrying.setdefault(row["finding"], set()).add(row["manoeuvre"])
@@ -142,10 +155,42 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
                 repair=next(iter(repair_of.get(row["id"], ())), None),
                 rivals=tuple(r for r in repair_of.get(row["id"], ()) if r["state"] == RIVAL),
                 masked=row["id"] in touched,
+                time=times.get(row["id"]),
+                angle=angles.get(row["id"]),
             )
     for row in without:
         cause = _CAUSE_OF_REPAIR[row["repair"]]
         yield Hypothesis(row["id"], PLANNED, cause, _as_finding(row), repair=row)
+
+
+def _moments(findings: Findings) -> dict[str, tuple[float, float]]:
+    """By finding its time, s since the first sample of all logs, and sigma, if it is a moment."""
+    moments = {
+        row["finding"]: (row["value"], row["sigma"])
+        for row in rows_of(findings.effects)
+        if row["finding"] and row["parameter"] == TIME and row["value"] is not None and row["sigma"]
+    }
+    clocks = clocks_of(findings.clocks)
+    for row in (row for rows in findings.by_stage.values() for row in rows):
+        if row["log"] in clocks and row["from_s"] is not None and row["to_s"] is not None:
+            middle = (row["from_s"] + row["to_s"]) / 2 + clocks[row["log"]].offset
+            moments.setdefault(row["id"], (middle, (row["to_s"] - row["from_s"]) / 2))
+    return moments
+
+
+def _angles(findings: Findings) -> dict[str, float]:
+    """By finding the angle by which the case turns, rad, about the axes that show it clearly."""
+    squares: dict[str, float] = {}
+    for row in rows_of(findings.effects):
+        if row["finding"] and row["effect"] in MOUNTINGS and row["unit"] == "rad" and row["sigma"]:
+            clear = abs(row["value"]) > CLEAR_SIGMAS * row["sigma"]
+            squares.setdefault(row["finding"], 0.0)
+            squares[row["finding"]] += row["value"] ** 2 if clear else 0.0
+    angles = {finding: square**0.5 for finding, square in squares.items() if square}
+    for row in (row for rows in findings.by_stage.values() for row in rows):
+        if row["cause"] in (TABLE_MOVING, STEP_IN_TURN) and row["size"] is not None:
+            angles[row["id"]] = row["size"] * (ARC_SECOND if row["unit"] == "″" else 1.0)
+    return angles
 
 
 def _repairs(findings: Findings) -> tuple[dict[str, list[Row]], list[Row]]:

@@ -20,6 +20,7 @@ from inertial.tables import ACCEL, GYRO
 from stages.criticism.oscillation_fits import direction
 from stages.criticism.oscillation_hypotheses import IN_TIME
 from stages.criticism.oscillation_search import Oscillation
+from stages.criticism.step_in_turn import StepInTurn
 
 MIN_BLOCKS = 8  # of a rest, in which a line is fitted
 MAX_CHANCE = 1e-3  # of noise that looks like a line at rest
@@ -252,6 +253,25 @@ def shifts(
         made = campaign_of(replace(data, blocks=blocks))
         present = _estimate(replace(made, solution=quiet.solution, drifts=quiet.drifts))
         largest.append(None if present is None else _largest(without, present))
+    return largest
+
+
+def shifts_by_steps(
+    data: CampaignData, steps: Sequence[StepInTurn], campaign: Campaign, blocks: pd.DataFrame
+) -> list[float | None]:
+    """The largest shift of a parameter by the angle of each step of one turn, in its sigma.
+
+    `campaign`: of these blocks.
+    """
+    present, largest = _estimate(campaign) if steps else None, []
+    for step in steps:
+        quiet = blocks.copy()
+        own = (blocks["manoeuvre"] == step.manoeuvre) & (blocks["phase"] == "steady")
+        faster = step.angle / float(blocks.loc[own, "seconds"].sum())
+        quiet.loc[own, GYRO] -= faster @ step.matrix.T
+        made = campaign_of(replace(data, blocks=quiet))
+        without = _estimate(replace(made, solution=campaign.solution, drifts=campaign.drifts))
+        largest.append(_largest(without, present) if without and present else None)
     return largest
 
 

@@ -37,6 +37,7 @@ from stages.criticism.oscillation_hypotheses import (
     folded,
     hypotheses_of,
 )
+from stages.criticism.step_in_turn import StepInTurn, without_steps
 from stages.criticism.step_per_turn import MIN_ORDERS, StepPerTurn, step_per_turn
 
 MAX_MULTIPLE = 10  # of a frequency or an order, that is still the same cause
@@ -191,12 +192,14 @@ SEARCHES = 5  # with equal shares of the level
 class SearchResult:
     """The oscillations of the turns of one mount.
 
+    turns : without the steps that one of them alone carries
     oscillations : in the order of their detection
     strongest : the strongest line in time of each axis and turn before any was removed
     orders : those of the last search; None without a turn whose angle is known
     remaining : of the last search, the most significant in time, the order 1, and the best other
     sigmas : (m,), multiples of sigma from which an order is detected
     truncated : whether the last search detected another beyond the largest number
+    steps : that one turn alone carries, the clearest first
     """
 
     turns: Sequence[SteadyTurn]
@@ -206,6 +209,7 @@ class SearchResult:
     remaining: Sequence[Detection]
     sigmas: Array
     truncated: bool
+    steps: Sequence[StepInTurn] = ()
 
 
 def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) -> SearchResult:
@@ -214,16 +218,19 @@ def find_oscillations(turns: Sequence[SteadyTurn], level: float, lowest: float) 
     Where several lines are found each one taken alone may be bound to the wrong one: turns at one
     rate and at twice it have the harmonics of a ripple at one frequency. So what is bound to time,
     and what is bound to the angle, is tried first too, where it explains a line half as well.
+    A step of one turn has power at all frequencies, and is left out before.
 
     level : accepted probability of a false detection; lowest : Hz, of lines in time
     """
+    turns, steps = without_steps(turns)
     searches: dict[Removed, Search] = {}
     searches[()] = Search(turns, {turn.name: () for turn in turns}, lowest, level / SEARCHES)
-    plain = _searched(searches, "")
+    plain = replace(_searched(searches, ""), steps=steps)
     if len(plain.oscillations) < 2:
         return plain
     tried = [plain, *(_searched(searches, favoured) for favoured in (ANGLE, TIME))]
-    return min(tried, key=lambda result: (result.truncated, len(result.oscillations)))
+    best = min(tried, key=lambda result: (result.truncated, len(result.oscillations)))
+    return replace(best, steps=steps)
 
 
 @dataclass(frozen=True)

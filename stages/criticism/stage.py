@@ -21,7 +21,12 @@ from stages.criticism.declared import DECLARED
 from stages.criticism.drift_at_rest import select_beside_drift
 from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.law_selection import with_laws
-from stages.criticism.oscillation_removal import shifts, with_rests, without_lines
+from stages.criticism.oscillation_removal import (
+    shifts,
+    shifts_by_steps,
+    with_rests,
+    without_lines,
+)
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations
 from stages.criticism.pooled_evidence import pooled_evidence_rows
@@ -29,6 +34,7 @@ from stages.criticism.random_walk_results import other_scores, random_walk_rows,
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
 from stages.criticism.selection import Selection
 from stages.criticism.set_position_scatter import select_beside_scatter
+from stages.criticism.step_results import step_rows
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_selection import select_with_temperature
 from stages.criticism.unsteady_rests import unsteady_rests
@@ -68,8 +74,9 @@ def _of_mount(
 ) -> Iterator[TableRow]:
     """Oscillations are removed first: in block means they would be taken for other effects."""
     mount, degrees = data.mount, data.noise.degrees
-    turns = steady_turns(data, simulated)
-    spectrum = find_oscillations(turns, level * SPECTRUM_SHARE, lowest_hz)
+    recorded = steady_turns(data, simulated)
+    spectrum = find_oscillations(recorded, level * SPECTRUM_SHARE, lowest_hz)
+    turns = spectrum.turns
     spectrum = replace(spectrum, oscillations=with_rests(turns, spectrum.oscillations))
     quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
     measured = campaign_of(replace(data, blocks=quiet))
@@ -120,6 +127,8 @@ def _of_mount(
     ).rows()
     moves = shifts(data, turns, spectrum.oscillations, campaign)
     yield from OscillationResults(spectrum, mount, moves).rows()
+    moved = shifts_by_steps(data, spectrum.steps, campaign, quiet)
+    yield from step_rows(spectrum, moved, {m.name: m.log for m in data.plan}, mount)
     at_rest_of_gyros = measured.drifts["gyro"]
     yield from other_scores(
         random_walks.get("gyro"),

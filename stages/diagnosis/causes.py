@@ -186,8 +186,12 @@ class Cause:
         names = [in_words(name) for name in self.main.members] or list(
             dict.fromkeys(_of_rival(row) for row in self.main.rivals)
         )
-        names = names[:MOST_MEMBERS] if self.verdict == ONE_OF_CLASS else []
-        words = _(" or ").join(names or [in_words(self.main.cause)])
+        of_both = self.verdict == FOUND and self.main.stage == MODEL and len(names) > 1
+        if of_both and self.main.sensor is None:
+            words = _(" and ").join(names)
+        else:
+            names = names[:MOST_MEMBERS] if self.verdict == ONE_OF_CLASS else []
+            words = _(" or ").join(names or [in_words(self.main.cause)])
         axis = self.main.axis
         place = self.manoeuvre
         words += _(" of the {axis} axis", axis=axis) if axis and self._one_axis() else ""

@@ -23,6 +23,7 @@ DECLARED = Declared(
         "masks": From("quality", tables.MASKS),
         "gaps": From("quality", tables.GAPS),
         "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
+        "clocks": From("decode", tables.CLOCKS),
         "segments": From("segment", tables.SEGMENTS),
         "manoeuvres": From("segment", tables.MANOEUVRES),
         "tolerances": From("plan", tables.TOLERANCES),

@@ -35,11 +35,13 @@ def sentences(
 ) -> Iterator[tuple[str, str]]:
     """By finding the sentence of an effect of the catalogue, with its sizes `now`.
 
+    Of causes, and of effects that are consequences of these.
+
     before : the rows from which criticism made its sentence
     """
     positions = sorted(rows_of(findings.cause_positions), key=lambda row: int(row["rank"]))
-    for each in explained:
-        cause, effect = each.cause, KNOWN.get(each.cause.cause)
+    for cause in (one for each in explained for one in each.consequences):
+        effect = KNOWN.get(cause.cause)
         if effect is None or not cause.named:
             continue
         at = [row["position"] for row in positions if row["finding"] == cause.id]

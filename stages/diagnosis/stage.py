@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
 import pandas as pd
 
 from inertial.campaign.competition import compete
-from inertial.campaign.hypotheses import Findings, hypotheses
+from inertial.campaign.hypotheses import CLEAR_SIGMAS, Findings, hypotheses
 from inertial.campaign.noise_levels import only_noise
 from inertial.campaign.records import Row, performed_of, rows_of
+from inertial.tables import AXES
 from inertial.tables.stage import Stage, Tables
 from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.conformity import conformity_rows
@@ -16,6 +18,7 @@ from stages.diagnosis.result import covariance_by_ids
 from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.sizes_of_causes import by_result, sentences, sizes
 from stages.diagnosis.temperature_curves import curve_rows
+from stages.diagnosis.told_together import mountings_of, rotations, with_consequences
 from stages.diagnosis.verdict import NOT_USABLE, Verdict, not_recorded, verdict
 
 
@@ -29,6 +32,7 @@ def diagnosis(
     noise_alone: bool,
     tolerances: pd.DataFrame,
     channel_statistics: pd.DataFrame,
+    manoeuvres: pd.DataFrame,
 ) -> Tables:
     """Causes, consequences, members of classes, the result with its covariance, the verdict.
 
@@ -41,6 +45,7 @@ def diagnosis(
     swept : of criticism: changes with temperature of what one attitude shows
     noise_alone : whether the campaign is a recording of the noise
     channel_statistics : of the logs, by which it is known what is recorded
+    manoeuvres : of the plan, to tell which are before a shift of the mounting
     """
     explained = list(compete(list(hypotheses(findings))))
     results = list(estimated.results(explained))
@@ -64,6 +69,8 @@ def diagnosis(
     modelled = by_result(by_criticism, results)
     own_sizes = sizes(modelled)
     own_sentences = dict(sentences(explained, findings, by_criticism, modelled))
+    mountings = mountings_of(results, manoeuvres, findings.segments, findings.clocks)
+    turned = rotations(by_criticism, CLEAR_SIGMAS)
     written = _result_rows(results, verdicts)
     unusable = {
         (result.sensor, result.mount)
@@ -72,7 +79,14 @@ def diagnosis(
     }
     covariance = covariance_by_ids(*(result.chosen.covariance_rows() for result in results))
     return {
-        "causes": [cause.row(own_sizes, own_sentences) for cause in causes],
+        "causes": [
+            mountings.told(
+                with_consequences(cause.row(own_sizes, own_sentences), cause, own_sentences),
+                cause,
+                turned.get(cause.main.id, np.zeros(len(AXES))),
+            )
+            for cause in causes
+        ],
         "members": [row for cause in causes for row in _members(cause, findings)],
         "consequences": [row for cause in causes for row in _consequences(cause)],
         "result": written,

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from inertial.campaign.competition import compete
@@ -240,3 +241,79 @@ def test_single_readings_explain_no_turn_of_which_most_is_missing(missing, expla
     turn = finding("segment", "incomplete_turn", "gyro", 2, **of("x+360"))
     turn = replace(turn, row=turn.row | {"size": missing})
     assert ("incomplete_turn" not in causes(glitch, turn)) == explained
+
+
+def at(one: Hypothesis, seconds: float, sigma: float, arcsec: float | None = None) -> Hypothesis:
+    """The same finding at a time, and with an angle by which the case turns."""
+    angle = None if arcsec is None else arcsec * np.radians(1 / 3600)
+    return replace(one, time=(seconds, sigma), angle=angle)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "arcsec", "one"),
+    [(192.8, 379, True), (320.0, 379, False), (192.8, 30, False)],
+)
+def test_a_rest_in_which_the_imu_tilts_is_the_shift_that_begins_there(seconds, arcsec, one):
+    """360″ about z at 192.8 s: found as 338″ at 194 ± 13 s, and as a tilt of 379″ in the rest."""
+    shift = at(effect("mounting_shift", "accel"), 194.4, 13.2, 338)
+    tilt = at(finding("segment", "table_moving", **of("x-up")), seconds, 0.04, arcsec)
+    jump = finding("segment", "bias_jump", "gyro", **of("x-up"))
+    said = causes(shift, tilt, jump)
+    assert said == (
+        {"mounting_shift": {"table_moving", "bias_jump"}}
+        if one
+        else {"mounting_shift": set(), "table_moving": {"bias_jump"}}
+    )
+
+
+@pytest.mark.parametrize(
+    ("seconds", "sigma", "verdict", "one"),
+    [
+        (125.0, 2.5, "found", True),
+        (140.0, 2.5, "found", False),
+        (125.0, 60.0, "found", False),  # a time that is not known agrees with any
+        (125.0, 2.5, "one_of_class", False),
+    ],
+)
+def test_biases_of_both_sensors_that_jump_at_once_are_one_knock(seconds, sigma, verdict, one):
+    gyro = at(effect("gyro_bias_jump", "gyro"), 124.89, 0.16)
+    accel = at(effect("accel_bias_jump", "accel", verdict), seconds, sigma)
+    said = list(compete([accel, gyro]))
+    assert [each.cause.cause for each in said] == (
+        ["gyro_bias_jump"] if one else ["accel_bias_jump", "gyro_bias_jump"]
+    )
+    if one:  # it is a cause of both sensors, with the effects of both
+        assert said[0].cause.sensor is None
+        assert said[0].cause.causes == {"gyro_bias_jump", "accel_bias_jump"}
+
+
+@pytest.mark.parametrize(
+    ("name", "place", "one"),
+    [
+        ("turn_angle_error", "x-fwd", True),
+        ("turn_angle_error", "y-fwd", False),
+        ("gyro_scale_asymmetry", "x-fwd", False),
+    ],
+)
+def test_a_step_in_one_turn_is_what_an_effect_of_that_turn_says(name, place, one):
+    step = replace(effect("step_in_turn", "gyro"), **of("x-fwd"))
+    named = replace(effect(name, "gyro"), **of(place))
+    assert causes(step, named) == (
+        {name: {"step_in_turn"}} if one else {name: set(), step.cause: set()}
+    )
+
+
+def test_a_step_that_no_effect_names_explains_the_structure_that_its_turn_carries():
+    step = replace(effect("step_in_turn", "gyro"), **of("x-fwd"))
+    for turn, explained in (("x-fwd", {"unknown_structure"}), ("y-fwd", None)):
+        structure = replace(effect("unknown_structure", "gyro", "unknown_structure"), **of(turn))
+        assert causes(step, structure).get("step_in_turn") == (explained or set())
+        assert len(causes(step, structure)) == (1 if explained else 2)
+
+
+def test_a_shift_at_the_time_of_a_step_is_that_step():
+    step = at(replace(effect("step_in_turn", "gyro"), **of("x-fwd")), 227.15, 0.16, 431)
+    assert causes(step, at(effect("mounting_shift", "gyro"), 125, 69, 436)) == {
+        "mounting_shift": {"step_in_turn"}
+    }
+    assert len(causes(step, at(effect("mounting_shift", "gyro"), 25, 9, 436))) == 2
