@@ -6,8 +6,8 @@ from pathlib import Path
 import chain
 import numpy as np
 import pytest
-from drafting import Document, drafted, told, written
-from logs_by_hand import by_hand_log
+from drafting import Document, comments, drafted, told, written
+from logs_by_hand import EIGHTEEN, by_hand_log
 from moved_by_hand import GRAVITY, RATE
 
 from commands.draft.__main__ import draft, main
@@ -125,6 +125,25 @@ def test_columns_without_a_name_are_known_by_what_they_do(seed, tmp_path):
     (plan,) = campaign["plan"]
     assert plan["do"] == "positions" and 1 <= plan["seconds"] < 4
     assert f"# {log.positions} static positions" in (folder / "campaign.yaml").read_text()
+
+
+IN_XY = (EIGHTEEN[:, 0] != 0) & (EIGHTEEN[:, 1] != 0)
+
+
+@pytest.mark.parametrize(
+    ("ups", "said"),
+    [
+        (EIGHTEEN, "The attitudes of 18 positions determine all parameters of the accelerometers."),
+        (EIGHTEEN[~IN_XY], "static positions: no rest has both x and y far from level"),
+    ],
+)
+def test_a_draft_judges_by_the_attitudes_that_it_found(ups, said, tmp_path):
+    """Of 14 positions none is between x and y: a number of them says nothing of their angle."""
+    log = by_hand_log(3, ups=ups, degrees=0.02)
+    text = written([np.arange(len(log.force)) / RATE, log.force, log.rate])
+    found = comments(drafted({"log.txt": text}, tmp_path))
+    assert said in found and "Nothing is missing" not in found
+    assert ("What is missing" in found) == (len(ups) < len(EIGHTEEN))
 
 
 def test_a_draft_by_hand_is_calibrated_to_its_truth(tmp_path):
