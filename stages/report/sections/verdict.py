@@ -30,7 +30,7 @@ from stages.report.sections.findings import (
     spoils,
     title_of,
 )
-from stages.report.sizes import size_in_words
+from stages.report.sizes import how_large
 from stages.report.tables import Record, Tables, once
 
 SIMULATED = _(
@@ -140,7 +140,7 @@ def _grade(row: Record) -> str:
 def _answers(tables: Tables, row: Record) -> outline.Pairs:
     texts = {
         _("How sure"): _sure(tables, row),
-        _("How large"): size_in_words(row),
+        _("How large"): how_large(row),
         _("What it does"): _effect_on_result(row),
         _("What was done"): row["done"],
         _("Gain"): row["gain"],
