@@ -60,8 +60,8 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         "fair",
         _(
             "Departures from the ideal were found, each of which is corrected, modelled, excluded, "
-            "interpolated or too small to matter, as is stated; or a parameter is known "
-            "coarsely."
+            "interpolated, included in the sigmas or too small to matter; or it is not removed, "
+            "and the sentence of its sensor says so. Or a parameter is known coarsely."
         ),
     ),
     "usable": (
