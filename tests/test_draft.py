@@ -15,6 +15,7 @@ from commands.no_result import no_results
 from inertial.estimation.triad import linear_names
 from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal
+from inertial.text.statements import NO_POSITION_SET, NO_TABLE, NO_TURN_SET
 from laboratory.rawimu import Samples, log_bytes
 
 MAX_SIGMA = 4.5  # of some twenty parameters with Gaussian errors, in 1 of 6000 campaigns
@@ -161,6 +162,11 @@ def test_a_draft_by_hand_is_calibrated_to_its_truth(tmp_path):
     )
     gravity = results["plan/known"].set_index("quantity").loc["gravity"]
     assert gravity["assumed"] and gravity["origin"].startswith("guessed")
+    origins = results["plan/known"].set_index("quantity")["origin"]
+    assert origins["turn_angle"] == NO_TURN_SET and origins["position"] == NO_POSITION_SET
+    assert origins["turn_rate"] == origins["heading"] == NO_TABLE
+    # Of a direction anywhere on a sphere: √(2/3 − π²/16) of 15.04 °/h
+    assert "its sigma, 3.4 °/h, is neglected" in origins["earth_rate_level"]
     symmetric = [f"symmetric_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz")]
     found = accel.loc[[*symmetric, "bias_x", "bias_y", "bias_z"]]
     right = log.imu.free - np.array([1, 1, 1, 0, 0, 0, 0, 0, 0])

@@ -404,10 +404,10 @@ def _is_short_tilt(fault: Hypothesis) -> bool:
 
     A creep adds its rate to all of the rest, so that biases seem to differ from rest to rest.
     """
-    ends = fault.row.get("from_s"), fault.row.get("to_s")
-    if fault.cause != "table_moving" or None in ends:
+    first, last = fault.row.get("from_s"), fault.row.get("to_s")
+    if fault.cause != "table_moving" or first is None or last is None:
         return False
-    return float(ends[1]) - float(ends[0]) < MAX_TILT_S
+    return float(last) - float(first) < MAX_TILT_S
 
 
 def _unresolved(fault: Hypothesis) -> bool:

@@ -165,6 +165,7 @@ def test_of_what_held_out_manoeuvres_hardly_bear_out_the_share_is_said():
 def tilting(size: float) -> Cause:
     """A rest of unknown attitude that tilts by so many ″ while it is recorded."""
     row = {"size": size, "unit": "″", "severity": 2, "axis": None, "sensor": None}
+    row |= {"manoeuvre": None, "log": None, "mount": ""}
     tilts = Hypothesis("segment/tilt", "segment", "table_moving", row)
     both = ("gyro", "accel")
     return Cause((ExplainedFindings(tilts, ()),), both, NONE, "", None)
