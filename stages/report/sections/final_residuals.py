@@ -38,7 +38,7 @@ MAX_SIGMAS = 3.0
 REACH, BIN = 4.5, 0.25  # σ, of the histogram
 NO_ATTITUDE = _(
     "None: no attitude is known to predict readings by. In positions of unknown attitude "
-    "“Compensation” compares |f| with gravity."
+    "“Compensation” compares |f| with gravity where all accelerometers are determined."
 )
 
 
