@@ -14,7 +14,7 @@ import sys
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 
 from commands.no_result import SEE_REPORT, NoResult, no_results
@@ -26,7 +26,8 @@ from inertial.tables.declared import read_declared
 from inertial.tables.errors import Refusal
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.numbers import counted, shortened, visible
+from inertial.text.numbers import counted, shortened, significant, visible
+from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 from stages.diagnosis.causes import (
     APPLIED,
     INTERPOLATED,
@@ -49,13 +50,15 @@ GRADES = {
     WEAKENS: (_("weakens a result"), _("weaken a result")),
     GOOD_TO_KNOW: (_("is good to know"), _("are good to know")),
 }
+OF_FORCE = {"(rad/s)/(m/s²)": 1, "(rad/s)/(m/s²)²": 2}  # by unit the power of the force
 INDENT = " " * 4
 
 
 @dataclass(frozen=True)
 class Recording:
     """What gets no result; causes, the worst first; what was performed of each manoeuvre; refused
-    lines by log; what is said of the recording beside its causes, for it is no fault.
+    lines by log; what is said of the recording beside its causes, for it is no fault; by cause how
+    large it is beside the biases.
     """
 
     without: Sequence[NoResult]
@@ -63,6 +66,7 @@ class Recording:
     performed: Sequence[Performed]
     refused: dict[str, int]
     remarks: Sequence[str] = ()
+    beside_bias: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def spoiled(self) -> bool:
@@ -106,17 +110,47 @@ def recording_of(derived: Path) -> Recording:
     }
     diagnosed = _diagnosed(derived / "diagnosis/causes.parquet")
     severities = _severities(diagnosed)
-    told = {row["id"]: row for row in diagnosed}
+    by_id = {row["id"]: row for row in diagnosed}
+    beside = dict(_beside_bias(diagnosed, derived / "diagnosis/result.parquet"))
     competed = compete(list(hypotheses(findings)))
-    explained = [_as_diagnosed(each, severities, told) for each in competed]
+    explained = [_as_diagnosed(each, severities, by_id) for each in competed]
     causes = sorted(explained, key=_worst_first)
     remarks = [row["sentence"] for row in circumstances(rows_of(findings.segment_findings))]
-    return Recording(list(no_results(derived)), causes, list(performed.values()), refused, remarks)
+    done = list(performed.values())
+    return Recording(list(no_results(derived)), causes, done, refused, remarks, beside)
 
 
 def _diagnosed(path: Path) -> list[Row]:
     """The causes of the diagnosis; none where there is none."""
     return rows_of(tables.CAUSES.read(path)) if path.exists() else []
+
+
+def _beside_bias(diagnosed: Sequence[Row], result: Path) -> Iterator[tuple[str, str]]:
+    """By identifier of a cause what it changes a bias by at 1 g, where force changes a bias."""
+    if not result.exists():
+        return
+    rows = rows_of(tables.PARAMETERS.read(result))
+    for cause in diagnosed:
+        if cause["unit"] not in OF_FORCE or cause["size"] is None:
+            continue
+        biases = [
+            abs(row["value"])
+            for row in rows
+            if row["sensor"] == cause["sensor"]
+            and row["mount"] == cause["mount"]
+            and row["parameter"].startswith("bias_")
+            and row["value"] is not None
+        ]
+        if biases:
+            at_1_g = abs(cause["size"]) * STANDARD_GRAVITY ** OF_FORCE[cause["unit"]]
+            yield (
+                cause["id"].removeprefix("diagnosis/"),
+                _(
+                    "At 1 g it changes a bias by up to {size} °/h; the largest bias is {bias} °/h.",
+                    size=significant(at_1_g / DEGREE_PER_HOUR, 3),
+                    bias=significant(max(biases) / DEGREE_PER_HOUR, 3),
+                ),
+            )
 
 
 def _severities(diagnosed: Sequence[Row]) -> dict[tuple[str, str], int]:
@@ -177,7 +211,9 @@ def as_text(recording: Recording, campaign: str) -> str:
     """What was recorded, what gets no result, the causes, and their number at the end."""
     paragraphs = [_recorded(recording, campaign)]
     paragraphs += [_without(each, recording.causes) for each in recording.without]
-    paragraphs += [_cause(each) for each in recording.causes[:MAX_FULL_CAUSES]]
+    paragraphs += [
+        _cause(each, recording.beside_bias) for each in recording.causes[:MAX_FULL_CAUSES]
+    ]
     if others := recording.causes[MAX_FULL_CAUSES:]:
         named = Counter(in_words(each.cause.cause) for each in others)
         listed = ", ".join(f"{cause} ({count})" for cause, count in named.most_common())
@@ -201,6 +237,8 @@ def _recorded(recording: Recording, campaign: str) -> str:
             complete=complete,
         )
     ]
+    if len(recording.performed) == 1 and (said := recording.performed[0].sentence):
+        sentences = [f"{campaign}: {said}"]  # of one that says how many rests it holds
     sentences += [
         _(
             "{lines} of {log} cannot be read and {value} left out.",
@@ -232,7 +270,7 @@ def _without(each: NoResult, causes: Sequence[ExplainedFindings]) -> str:
     return "\n".join([title, *(_wrapped(shortened(text, 600), INDENT) for text in answers)])
 
 
-def _cause(each: ExplainedFindings) -> str:
+def _cause(each: ExplainedFindings, beside_bias: Mapping[str, str]) -> str:
     """Grade, cause and place, the sentence, and what page one of the report answers as well."""
     row = each.cause.row
     one, _many = GRADES[_grade(each)]
@@ -240,7 +278,8 @@ def _cause(each: ExplainedFindings) -> str:
     title = [one.upper(), in_words(row["cause"])]
     title += [shortened(place, 60)] if place else []
     paragraphs = [_wrapped(" · ".join(title)), _wrapped(shortened(row["sentence"], 600), INDENT)]
-    answers = [f"{name}: {shortened(text, 600)}" for name, text in _answers(each) if text]
+    told = [(_("How large"), beside_bias.get(row["id"], "")), *_answers(each)]
+    answers = [f"{name}: {shortened(text, 600)}" for name, text in told if text]
     return "\n".join([*paragraphs, *(_wrapped(answer, INDENT) for answer in answers)])
 
 

@@ -24,12 +24,23 @@ class ByHand:
     positions: int
 
 
-def by_hand_log(seed: int, bias: tuple[float, float] = (0.1, 0.01)) -> ByHand:
-    """Twelve edges and six faces, one after another, each for four seconds."""
+EIGHTEEN = np.vstack([EDGES, FACES])
+
+
+def by_hand_log(
+    seed: int,
+    bias: tuple[float, float] = (0.1, 0.01),
+    ups: np.ndarray = EIGHTEEN,
+    degrees: float = 3.0,
+) -> ByHand:
+    """Twelve edges and six faces, or other `ups`, one after another, each for four seconds.
+
+    `degrees`: the scatter of each attitude.
+    """
     rng = np.random.default_rng(seed)
     imu = Imu(rng, errors=0.01, bias=bias)
-    ups = np.vstack([EDGES, FACES])[rng.permutation(18)]
-    turned = attitudes(rng, ups, np.radians(3))
+    ups = ups[rng.permutation(len(ups))]
+    turned = attitudes(rng, ups, np.radians(degrees))
     pieces = []
     for i, here in enumerate(turned):
         pieces.append(Rotation.concatenate([here] * int(REST_S * RATE)))

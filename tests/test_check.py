@@ -8,14 +8,17 @@ import sys
 from pathlib import Path
 
 import chain
+import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
 import pytest
 from chain import ROOT, Results
 
-from commands.check import LINE_WIDTH, main
+from commands.check import LINE_WIDTH, Recording, _beside_bias, as_text, main
 from inertial import tables
+from inertial.campaign.records import Performed
 from inertial.tables.parquet import write_once
+from inertial.text.numbers import significant
 
 NAME = "demo"
 SENSORS = ("accelerometer", "gyroscope")
@@ -331,3 +334,25 @@ def test_a_campaign_that_names_no_log_is_refused_as_by_make_report(tmp_path: Pat
     assert "'x-up.asc'" in said
     assert "put the log there, or correct its name" in said
     assert check(tmp_path / "data") == 2
+
+
+def test_a_session_of_one_manoeuvre_says_what_it_holds() -> None:
+    """Of ten rests by hand "1 of 1 manoeuvre found" says nothing."""
+    sentence = "10 rests of at least 1 s were found; their attitudes are unknown."
+    said = as_text(Recording([], [], [Performed("positions", sentence)], {}), "cuyo")
+    assert said.startswith(f"cuyo: {sentence}\n")
+
+
+def test_what_a_force_does_to_a_bias_stands_beside_the_bias(data: Path) -> None:
+    """5.66 × 10⁻⁵ (rad/s)/(m/s²) are 114 °/h at 1 g."""
+    cause = {"id": "diagnosis/criticism/g", "unit": "(rad/s)/(m/s²)", "size": -5.66e-5}
+    cause |= {"sensor": "gyro", "mount": ""}
+    path = data / f"derived/{NAME}/gyroscope/parameters.parquet"
+    biases = pq.read_table(path).to_pandas().query("parameter.str.startswith('bias_')")["value"]
+    largest = significant(float(np.degrees(biases.abs().max()) * 3600), 3)
+    said = dict(_beside_bias([cause], path))
+    assert said == {
+        "criticism/g": "At 1 g it changes a bias by up to 114 °/h; "
+        f"the largest bias is {largest} °/h."
+    }
+    assert not dict(_beside_bias([cause | {"unit": "1"}], path))

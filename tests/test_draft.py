@@ -6,8 +6,8 @@ from pathlib import Path
 import chain
 import numpy as np
 import pytest
-from drafting import Document, drafted, told, written
-from logs_by_hand import by_hand_log
+from drafting import Document, comments, drafted, told, written
+from logs_by_hand import EIGHTEEN, by_hand_log
 from moved_by_hand import GRAVITY, RATE
 
 from commands.draft.__main__ import draft, main
@@ -15,6 +15,7 @@ from commands.no_result import no_results
 from inertial.estimation.triad import linear_names
 from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal
+from inertial.text.statements import NO_POSITION_SET, NO_TABLE, NO_TURN_SET
 from laboratory.rawimu import Samples, log_bytes
 
 MAX_SIGMA = 4.5  # of some twenty parameters with Gaussian errors, in 1 of 6000 campaigns
@@ -127,6 +128,25 @@ def test_columns_without_a_name_are_known_by_what_they_do(seed, tmp_path):
     assert f"# {log.positions} static positions" in (folder / "campaign.yaml").read_text()
 
 
+IN_XY = (EIGHTEEN[:, 0] != 0) & (EIGHTEEN[:, 1] != 0)
+
+
+@pytest.mark.parametrize(
+    ("ups", "said"),
+    [
+        (EIGHTEEN, "The attitudes of 18 positions determine all parameters of the accelerometers."),
+        (EIGHTEEN[~IN_XY], "static positions: no rest has both x and y far from level"),
+    ],
+)
+def test_a_draft_judges_by_the_attitudes_that_it_found(ups, said, tmp_path):
+    """Of 14 positions none is between x and y: a number of them says nothing of their angle."""
+    log = by_hand_log(3, ups=ups, degrees=0.02)
+    text = written([np.arange(len(log.force)) / RATE, log.force, log.rate])
+    found = comments(drafted({"log.txt": text}, tmp_path))
+    assert said in found and "Nothing is missing" not in found
+    assert ("What is missing" in found) == (len(ups) < len(EIGHTEEN))
+
+
 def test_a_draft_by_hand_is_calibrated_to_its_truth(tmp_path):
     log = by_hand_log(5)
     n = len(log.force)
@@ -142,6 +162,11 @@ def test_a_draft_by_hand_is_calibrated_to_its_truth(tmp_path):
     )
     gravity = results["plan/known"].set_index("quantity").loc["gravity"]
     assert gravity["assumed"] and gravity["origin"].startswith("guessed")
+    origins = results["plan/known"].set_index("quantity")["origin"]
+    assert origins["turn_angle"] == NO_TURN_SET and origins["position"] == NO_POSITION_SET
+    assert origins["turn_rate"] == origins["heading"] == NO_TABLE
+    # Of a direction anywhere on a sphere: √(2/3 − π²/16) of 15.04 °/h
+    assert "its sigma, 3.4 °/h, is neglected" in origins["earth_rate_level"]
     symmetric = [f"symmetric_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz")]
     found = accel.loc[[*symmetric, "bias_x", "bias_y", "bias_z"]]
     right = log.imu.free - np.array([1, 1, 1, 0, 0, 0, 0, 0, 0])

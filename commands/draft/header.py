@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+from commands.draft.attitudes import not_determined
 from commands.draft.manoeuvres import Manoeuvre
 from commands.draft.questions import names_of_logs, questions, without_clock
 from commands.draft.sensors import Kind
@@ -44,10 +45,24 @@ def header(
     yield from comment(
         _("What is missing for a calibration of both sensors:")
         if lacking
-        else _("Nothing is missing for a calibration of both sensors.")
+        else _nothing_missing(plan)
     )
     for text in lacking:
         yield from comment(text, "#   - ")
+
+
+def _nothing_missing(plan: Sequence[Manoeuvre]) -> str:
+    """No more than is known before an estimation: of gyros by hand the motions decide."""
+    count = sum(m.count for m in plan if m.do == "positions")
+    if not count:
+        return _("Nothing is missing for a calibration of both sensors.")
+    return plural(
+        "The attitude of {count} position determines all parameters of the accelerometers. Whether "
+        "the motions between positions determine those of the gyros, the check tells.",
+        "The attitudes of {count} positions determine all parameters of the accelerometers. "
+        "Whether the motions between them determine those of the gyros, the check tells.",
+        count,
+    )
 
 
 def _evidence(kind: Kind) -> Iterator[str]:
@@ -133,16 +148,7 @@ def _missing(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
     if not any(kind.columns.accel for kind in kinds):
         yield _("accelerometers: none are recorded")
     elif positions:
-        count = sum(m.count for m in positions)
-        if count < MIN_ATTITUDES:
-            yield plural(
-                "static positions: {count} is there, of which at least {needed} are needed, as "
-                "different as possible",
-                "static positions: {count} are there, of which at least {needed} are needed, as "
-                "different as possible",
-                count,
-                needed=MIN_ATTITUDES,
-            )
+        yield from _missing_positions(kinds, plan)
     else:
         there = {m.up for m in plan if len(m.part.series.accel)}
         if lacking := [face for face in FACES if face not in there]:
@@ -153,3 +159,20 @@ def _missing(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
         turned = {m.about[1] for m in with_gyros if m.do == "turn" and m.about}
         if lacking := [axis for axis in AXES if axis not in turned]:
             yield _("a turn about {axes}", axes=", ".join(lacking))
+
+
+def _missing_positions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
+    """What positions of unknown attitude do not determine of the accelerometers."""
+    count = sum(m.count for m in plan if m.do == "positions")
+    if count < MIN_ATTITUDES:
+        yield plural(
+            "static positions: {count} is there, of which at least {needed} are needed, as "
+            "different as possible",
+            "static positions: {count} are there, of which at least {needed} are needed, as "
+            "different as possible",
+            count,
+            needed=MIN_ATTITUDES,
+        )
+    else:
+        for reason in not_determined(kinds, plan):
+            yield _("static positions: {reason}", reason=reason)

@@ -170,6 +170,7 @@ IN_PROPORTION = frozenset(
     }
 )
 POSITION_OFF = ("table_position_error", "table_axis_error")
+MAX_TILT_S = 4.0  # s: what turns for longer in a rest creeps
 MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
 JUMPS = frozenset({"gyro_bias_jump", "accel_bias_jump"})
 MAX_APART_SIGMAS = 3.0  # of two times of one event
@@ -455,7 +456,20 @@ def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
         return cause.sensor == other.sensor and _generality(cause) < _generality(other)
     if cause.stage in (MODEL, POSITIONS):
         return False
+    if other.cause == "gyro_random_walk" and _is_short_tilt(cause):
+        return False
     return _unresolved(cause) and same_axis(cause, other)
+
+
+def _is_short_tilt(fault: Hypothesis) -> bool:
+    """Whether gravity turns for seconds in a rest: no bias of a gyro wanders by that.
+
+    A creep adds its rate to all of the rest, so that biases seem to differ from rest to rest.
+    """
+    first, last = fault.row.get("from_s"), fault.row.get("to_s")
+    if fault.cause != "table_moving" or first is None or last is None:
+        return False
+    return float(last) - float(first) < MAX_TILT_S
 
 
 def _unresolved(fault: Hypothesis) -> bool:

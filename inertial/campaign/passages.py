@@ -19,11 +19,11 @@ from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Clock, Part
 from inertial.campaign.unknown_attitude import FreeStaticPosition
 from inertial.estimation.attitude import Passage
+from inertial.signal.runs import MAX_LOST_RUN
 from inertial.tables import GYRO
 from inertial.text.messages import _
 
 BETWEEN = "between"  # phase of the blocks from one rest to the next
-MAX_LOST_RUN = 3  # samples in a row that are interpolated: a hand changes its rate in 50 ms
 MAX_LOST_SHARE = 0.1  # of a motion
 LONG_PATH, TIMES_USUAL = 6 * np.pi, 5  # rad, and times the usual path, of what is no move by hand
 

@@ -21,6 +21,16 @@ MAX_ABSENT_SHARE = 0.2  # of its amplitude elsewhere: where it has less it is ab
 MAX_EQUAL_SHARE = 0.8  # the same: where it has more it is as large there
 MIN_PRESENT_SIGMAS = 3.0  # of its square, by noise
 
+WHILE_TURNING = _(
+    "Nothing is changed: over many periods it averages out. On a table look for a loose screw, and "
+    "for a drive, fan or pump nearby, and switch that off to see whether it is that; where a hand "
+    "turns the IMU, it may be the hand that shakes."
+)
+AT_REST_TOO = _(
+    "Nothing is changed: over many periods it averages out. Look for a loose screw, and for a "
+    "drive, fan or pump nearby, and switch that off to see whether it is that."
+)
+
 
 @dataclass(frozen=True)
 class Ringing:
@@ -131,11 +141,7 @@ class Oscillation(Detector):
                 rate_3=rate + tone.frequency,
             ),
             _consequence(tone, ringing.not_at_rest and ringing.turning > MIN_MAJORITY),
-            _(
-                "Nothing is changed: over many periods it averages out. Look for a loose screw, "
-                "and for a drive, fan or pump nearby, and switch that off to see whether it is "
-                "that."
-            ),
+            WHILE_TURNING if ringing.turning > MIN_MAJORITY else AT_REST_TOO,
         )
 
 

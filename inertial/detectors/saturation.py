@@ -22,7 +22,7 @@ from inertial.signal.piled_readings import (
     pile_at_top,
     standing_at,
 )
-from inertial.signal.runs import joined
+from inertial.signal.runs import MAX_LOST_RUN, joined
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 
@@ -174,7 +174,10 @@ class Saturation(Detector):
             (
                 _(
                     "The readings are masked, and no mean of a turn or a static position in which "
-                    "the channel is cut off is used. Turn more slowly, or choose a wider range."
+                    "the channel is cut off is used; up to {most} in a row in a motion between "
+                    "positions are interpolated from those beside them. Turn more slowly, or "
+                    "choose a wider range.",
+                    most=MAX_LOST_RUN,
                 )
                 if censored
                 else _("The readings are masked. Look for what spoils them.")

@@ -6,6 +6,9 @@ import numpy as np
 
 from inertial.arrays import Booleans, Integers
 
+# Samples in a row that are interpolated in a motion by hand, which changes its rate in 50 ms
+MAX_LOST_RUN = 3
+
 
 def runs(there: Booleans) -> Iterator[tuple[int, int]]:
     """The runs of consecutive True in (n,): first place, and place after the last."""

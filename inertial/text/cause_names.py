@@ -38,7 +38,7 @@ NAMES = {
     "short_rest": _("short rest"),
     "slower_sensor": _("sensor slower than its log"),
     "spike": _("spike"),
-    "table_moving": _("table moving"),
+    "table_moving": _("motion during a rest"),
     "moved_while_read": _("position that was moved while it was read"),
     "temperature_drift": _("temperature drift"),
     "wrong_temperature_unit": _("temperature in another unit than is stated"),

@@ -5,6 +5,11 @@ from inertial.text.messages import _
 NOT_STATED = _("not stated")
 STATED = _("stated in the campaign file")
 GUESSED = _("guessed in the campaign file, and not confirmed")
+# Quantities that a plan does not use
+NO_POSITION_SET = _("not used, for no position is set")
+NO_TURN_SET = _("not used, for no turn is planned")
+NO_TABLE = _("not used, for there is no table")
+NOT_USED = frozenset({NO_POSITION_SET, NO_TURN_SET, NO_TABLE})
 REALISES = {
     "angle": _("angle"),
     "rate": _("rotation rate"),

@@ -371,7 +371,9 @@ def unobservable(result: SearchResult, name: str) -> str:
     """Why no turn shows any size of an effect; empty where one does."""
     if result.truncated or (result.strongest if name == IN_TIME else result.orders is not None):
         return ""
-    return sentences.NO_ANGLE if name != IN_TIME and result.turns else sentences.NO_TURN
+    if name == IN_TIME:
+        return sentences.NO_TURN_IN_TIME
+    return sentences.NO_ANGLE if result.turns else sentences.NO_TURN
 
 
 def not_named(result: SearchResult, name: str) -> str:

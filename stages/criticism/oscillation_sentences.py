@@ -28,6 +28,10 @@ MAX_RATES = 3  # of the table that a sentence lists
 MIN_CLOCK_SHARE = 1e-6  # of a frequency: no clock of a log is known to less
 
 NO_TURN = _("no whole turn at a steady rate was recorded")
+NO_TURN_IN_TIME = _(
+    "no whole turn at a steady rate was recorded; an oscillation of the readings themselves is "
+    "sought in the recording, and would stand in “What is wrong, and what was done”"
+)
 NO_ANGLE = _("of no whole turn at a steady rate both rate and acceleration are stated")
 SPLIT = _("record the same turns at twice the rate")
 SINGLE_TURN = _(

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import degrees
 
 from inertial.campaign.hypotheses import MODEL
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed, significant
 from inertial.text.parameters import CROSS, SCALE, sign_of
-from inertial.text.units import ICE_POINT
+from inertial.text.units import ICE_POINT, quantity
 from stages.diagnosis.causes import (
     CURVE,
     INTERPOLATED,
@@ -22,6 +23,7 @@ from stages.diagnosis.causes import (
     REPAIRED,
     Cause,
 )
+from stages.diagnosis.rests_that_move import bounded
 from stages.diagnosis.sensor_results import TWELVE, SensorResult
 
 USABLE, WITHIN_LIMITS, ON_CONDITION, NOT_USABLE = (
@@ -75,7 +77,11 @@ def verdict(
     `swept`: the range of temperatures, K, over which its changes in one attitude are known;
     `only_noise`: whether the campaign is a recording of the noise in one attitude.
     """
-    own = [cause.of(result.sensor) for cause in causes if result.sensor in cause.sensors]
+    own = [
+        bounded(cause.of(result.sensor), result)
+        for cause in causes
+        if result.sensor in cause.sensors
+    ]
     sensors = HEADINGS[result.sensor]
     spoiling = [cause for cause in own if cause.spoils]
     if spoiling:
@@ -110,7 +116,7 @@ def verdict(
         sentence = _(
             "{sensors}: {causes}. Usable within these limits.",
             sensors=sensors,
-            causes=_names(own, _limit),
+            causes=_names(own, partial(_limit, result=result)),
         )
         return Verdict(WITHIN_LIMITS, sentence + _coarse(result))
     if coarse := _coarse(result):
@@ -160,16 +166,36 @@ def _harmless(cause: Cause) -> bool:
     return cause.cure == NONE and cause.moves is not None and cause.moves < MAX_HARMLESS_MOVE
 
 
-def _limit(cause: Cause) -> str:
-    """What became of a cause, in a few words."""
+def _limit(cause: Cause, result: SensorResult | None = None) -> str:
+    """What became of a cause, in a few words; `result`: the one that it is in, where there is one.
+
+    Of a fault of the recording that is not removed it says how large it is, and whether the sigmas
+    hold it: they do where they are as large as the manoeuvres differ.
+    """
     if cause.cure != NONE:
         return LIMITS[cause.cure]
     if cause.moves is None:  # of an effect, its scatter is; a fault of the recording is in nothing
-        model = cause.main.stage == MODEL
-        return _("included in the sigmas") if model else _("not removed, its influence not known")
+        if cause.main.stage == MODEL:
+            return _("included in the sigmas")
+        if result is not None and result.covers_misfit:
+            covered = _("not removed; the sigmas include by how much the manoeuvres differ")
+            return f"{size}, {covered}" if (size := _size(cause)) else covered
+        unknown = _("not removed, its influence not known")
+        return f"{size}, {unknown}" if (size := _size(cause)) else unknown
     if _harmless(cause):
         return _("harmless")
     return _("shifts a parameter by up to {moves:.1f} σ", moves=cause.moves)
+
+
+def _size(cause: Cause) -> str:
+    """How large the largest of equal faults is, where it is an angle or in the unit of a sensor."""
+    size, unit = cause.main.row["size"], cause.main.row["unit"] or ""
+    if size is None or unit not in ("″", "rad", "rad/s", "m/s²"):
+        return ""
+    if unit == "″":
+        return f"{significant(size, 3)}″"
+    shown = quantity(cause.main.cause, unit).shown
+    return f"{significant(shown.of(abs(size)), 2)} {shown.name}"
 
 
 def _why(causes: Sequence[Cause]) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from math import cos, radians, sin
+from math import cos, pi, radians, sin
 from typing import Any
 
 from inertial.campaign.records import Row
@@ -18,7 +18,13 @@ from inertial.physics.site import (
 from inertial.tables.yaml_file import YamlFile
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.statements import GUESSED, STATED
+from inertial.text.statements import (
+    GUESSED,
+    NO_POSITION_SET,
+    NO_TABLE,
+    NO_TURN_SET,
+    STATED,
+)
 from inertial.text.units import ARC_SECOND, DEGREE_PER_HOUR
 
 # Where a campaign states no sigma, these are assumed, and the report states that.
@@ -49,8 +55,9 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
     """
     site, table = file.content["site"], file.content.get("table", {})
     guessed = file.content.get("guessed", [])
-    sets_positions = _sets_positions(file)
-    if by_hand(file.content) and sets_positions and "position_sigma_arcsec" not in table:
+    sets_positions, handled = _sets_positions(file), by_hand(file.content)
+    turns = any(item["do"] == "turn" for item in file.content["plan"])
+    if handled and sets_positions and "position_sigma_arcsec" not in table:
         raise file.refuse_text(
             ["table"],
             _("no position_sigma_arcsec"),
@@ -68,21 +75,27 @@ def known(file: YamlFile, repairs: Sequence[Row] = ()) -> Iterator[Row]:
     yield from _earth_rate(site["latitude_deg"])
     heading = table.get("heading_deg")
     if heading is None:
-        yield _row("heading", None, None, "rad", _("not known"))
+        of_none = NO_TABLE if handled and not sets_positions else _("not known")
+        yield _row("heading", None, None, "rad", of_none)
     else:
         yield _row("heading", radians(heading), None, "rad", STATED)
     of_table = partial(_of_table, table, GUESSED if "table" in guessed else STATED)
     if sets_positions or "position_sigma_arcsec" in table:
         yield of_table("position", "position_sigma_arcsec", ARC_SECOND, ASSUMED_POSITION, "rad")
     else:
-        yield _row("position", 0.0, ASSUMED_POSITION, "rad", _("not used, for no position is set"))
+        yield _row("position", 0.0, ASSUMED_POSITION, "rad", NO_POSITION_SET)
     if "angle_sigma_arcsec" not in table and (sigmas := _sigmas_of_turns(file.content["plan"])):
         by_plan = GUESSED if "plan" in guessed else _("stated in the plan, the largest of a turn")
         sigma = radians(max(sigmas))
         yield _row("turn_angle", 0.0, sigma, "rad", by_plan, assumed=by_plan == GUESSED)
+    elif handled and not turns and "angle_sigma_arcsec" not in table:
+        yield _row("turn_angle", 0.0, ASSUMED_ANGLE, "rad", NO_TURN_SET)
     else:
         yield of_table("turn_angle", "angle_sigma_arcsec", ARC_SECOND, ASSUMED_ANGLE, "rad")
-    yield of_table("turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
+    if handled and not turns and "rate_sigma_ppm" not in table:
+        yield _row("turn_rate", 0.0, ASSUMED_RATE, "1", NO_TABLE)
+    else:
+        yield of_table("turn_rate", "rate_sigma_ppm", 1e-6, ASSUMED_RATE, "1")
 
 
 def _sigmas_of_turns(plan: Sequence[Mapping[str, Any]]) -> list[float]:
@@ -133,8 +146,13 @@ def _earth_rate(latitude_deg: float | None) -> Iterator[Row]:
         # A direction of which nothing is known: each part has a third of the squared rate.
         unknown = _("assumed, for the latitude is not known")
         yield _row("earth_rate_up", 0.0, EARTH_RATE / 3**0.5, "rad/s", unknown, assumed=True)
-        level = EARTH_RATE * (2 / 3) ** 0.5
-        yield _row("earth_rate_level", level, None, "rad/s", unknown, assumed=True)
+        # Its square is two thirds of the whole on the average, itself π/4.
+        level, level_sigma = (EARTH_RATE * part**0.5 for part in (2 / 3, 2 / 3 - (pi / 4) ** 2))
+        rough = _(
+            "assumed, for the latitude is not known; its sigma, {sigma} °/h, is neglected",
+            sigma=significant(level_sigma / DEGREE_PER_HOUR, 2),
+        )
+        yield _row("earth_rate_level", level, None, "rad/s", rough, assumed=True)
         return
     latitude = radians(latitude_deg)
     up, level = earth_rate(latitude)

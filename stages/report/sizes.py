@@ -5,10 +5,12 @@ from __future__ import annotations
 from math import pi
 
 from inertial.text import units
+from inertial.text.messages import _
 from inertial.text.numbers import counted, plus_minus, significant
 from stages.report.tables import Record
 
 COUNTS = frozenset({"samples", "records", "readings", "days", "manoeuvres", "positions"})
+RUNS = frozenset({"saturation", "gap"})  # of which the size is that of the longest
 RATIO = units.Unit("(ratio)", 1.0)
 # Faults whose size is a factor; other sizes without a dimension are small, in ppm.
 FACTORS = frozenset(
@@ -46,6 +48,14 @@ def size_in_words(row: Record) -> str | None:
     if sigma is not None:
         number = plus_minus(value, sigma)
     return number + (shown.name if shown.name in ("°", "″") else f" {shown.name}".rstrip())
+
+
+def how_large(row: Record) -> str | None:
+    """The same of a cause; of readings lost at several places it is the longest run of them."""
+    size = size_in_words(row)
+    if size is None or row["cause"] not in RUNS or (row["count"] or 1) < 2:
+        return size
+    return _("{size} in the longest of {count} places", size=size, count=row["count"])
 
 
 def _unit(cause: str, unit: str, size: float) -> units.Unit:

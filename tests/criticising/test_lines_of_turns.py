@@ -234,6 +234,7 @@ def test_without_a_turn_it_says_so():
         assert not row["named"]
         assert row["degrees"] is row["statistic"] is row["p_value"] is None
         assert "no whole turn at a steady rate" in row["sentence"]
+        assert ("sought in the recording" in row["sentence"]) == (row["effect"] == "oscillation")
 
 
 @pytest.mark.slow

@@ -1,5 +1,7 @@
 """An oscillation is found with frequency, amplitude and edges; noise, ramps and hands are none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from on_a_table import carried, profile, recorded, rest, tumble, turn
@@ -102,7 +104,10 @@ def test_other_axes_in_step_are_named_with_their_part():
     assert set(others) == {0, 4}
     assert others[4] == pytest.approx(2.4e-4, rel=0.03)
     assert others[0] == pytest.approx(8e-3, rel=0.03)
-    assert ", at rest." in Oscillation().describe(event, "log").sentence
+    words = Oscillation().describe(event, "log")
+    assert ", at rest." in words.sentence and "hand" not in words.action
+    turning = replace(event, facts=replace(event.facts, turning=1.0))
+    assert "it may be the hand that shakes" in Oscillation().describe(turning, "log").action
 
 
 def test_an_oscillation_through_a_gap_and_lost_samples_keeps_its_phase():

@@ -7,6 +7,7 @@ from recorded_by_hand import COUNT, GRAVITY, INTERVAL, NOISE, assert_told
 
 from inertial.detectors.saturation import Saturation
 from inertial.signal.piled_readings import _by_the_other_side, pile_at_top
+from inertial.signal.runs import MAX_LOST_RUN
 
 
 def found(values, **of_log):
@@ -53,6 +54,7 @@ def test_what_is_lost_of_a_smooth_crest_is_told():
     assert event.facts.lost == pytest.approx(lost, rel=0.15)
     words = Saturation().describe(event, "log")
     assert "the end of the range" in words.sentence
+    assert f"up to {MAX_LOST_RUN} in a row in a motion between positions" in words.action
     assert f"about {np.degrees(event.facts.lost):.1f} °" in words.consequence
 
 

@@ -6,6 +6,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from inertial.campaign.competition import ExplainedFindings
+from inertial.campaign.hypotheses import Hypothesis
+from stages.diagnosis.causes import NONE, Cause
 from stages.diagnosis.decision import alarms_of, decided
 from stages.diagnosis.verdict import verdict
 
@@ -157,6 +160,38 @@ def test_of_what_held_out_manoeuvres_hardly_bear_out_the_share_is_said():
     assert little.method == "extended" and "That is 1.9 % of what it should be" in little.reason
     much = decided([JOINT, candidate(drop=9000.0, snr_squared=12030.0)], [effect()])
     assert "hardly bear it out" not in much.reason
+
+
+def tilting(size: float) -> Cause:
+    """A rest of unknown attitude that tilts by so many ″ while it is recorded."""
+    row = {"size": size, "unit": "″", "severity": 2, "axis": None, "sensor": None}
+    row |= {"manoeuvre": None, "log": None, "mount": ""}
+    tilts = Hypothesis("segment/tilt", "segment", "table_moving", row)
+    both = ("gyro", "accel")
+    return Cause((ExplainedFindings(tilts, ()),), both, NONE, "", None)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "size", "covers", "said"),
+    [
+        ("accel", 1069.0, True, "(harmless)"),  # g θ²/2 is 1.3 × 10⁻⁴ m/s², 0.38 σ
+        ("accel", 4000.0, False, "(4000″, not removed, its influence not known)"),
+        ("gyro", 1069.0, True, "(1070″, not removed; the sigmas include by how much the man"),
+        ("gyro", 1069.0, False, "(1070″, not removed, its influence not known)"),
+    ],
+)
+def test_a_verdict_says_how_large_what_is_not_removed_is(sensor, size, covers, said):
+    """`imu_tk_xsens`: the bias of the accelerometers is known to 3.5 × 10⁻⁴ m/s²."""
+    result = SimpleNamespace(
+        sensor=sensor,
+        undetermined=[],
+        matrix_sigmas={},
+        chosen=SimpleNamespace(method="free_positions"),
+        bias_sigma=3.5e-4,
+        covers_misfit=covers,
+    )
+    told = verdict(result, [tilting(size)])
+    assert told.verdict == "usable_within_limits" and said in told.sentence
 
 
 def test_what_of_the_matrix_is_hardly_known_is_said_of_a_usable_result():

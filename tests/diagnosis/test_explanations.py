@@ -87,6 +87,15 @@ def test_a_fault_explains_only_the_structure_that_its_manoeuvres_carry(carrying,
     assert ("unknown_structure" not in causes(*each, structure)) == explained
 
 
+@pytest.mark.parametrize(("seconds", "explained"), [(3.2, False), (30.0, True)])
+def test_no_bias_of_a_gyro_walks_by_a_tilt_of_seconds(seconds, explained):
+    """`imu_tk_xsens`: 1070″ in 3.2 s of one rest are no walk of 970 °/h/√h over 512 s."""
+    tilts = finding("segment", "table_moving", **of("positions-14"))
+    tilts.row.update(from_s=207.88, to_s=207.88 + seconds, size=1069.0)
+    walk = effect("gyro_random_walk", "gyro", "unknown_structure")
+    assert ("gyro_random_walk" not in causes(tilts, walk)) == explained
+
+
 def test_a_jump_within_a_rest_may_be_a_shift_of_the_case():
     jump = finding("segment", "bias_jump", "accel", **of("y-up"))
     assert causes(jump, effect("mounting_shift", "accel")) == {"mounting_shift": {"bias_jump"}}

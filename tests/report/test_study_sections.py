@@ -1,6 +1,7 @@
 """The page of studies: what it says in numbers, and what of it is left where there is little."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -8,11 +9,20 @@ import pytest
 
 from inertial import tables
 from stages.report.outline import Figure, Paragraph, Part, Section, Sentences, Table
-from stages.report.sections import comparisons, studies
+from stages.report.sections import (
+    averaging,
+    characteristics,
+    comparisons,
+    ideal_triad,
+    residuals,
+    studies,
+)
 from stages.studies.declared import DECLARED
 from tests.report import synthetic
 from tests.report.synthetic_studies import studies as synthetic_studies
 from tests.report.synthetic_values import rows_as
+
+STAGES = ("accelerometer", "gyroscope")
 
 
 @pytest.fixture
@@ -91,6 +101,43 @@ def test_chance_holds_what_the_noise_level_is_uncertain_by(made):
     for alone, both in zip(*chance, strict=True):
         assert both == pytest.approx(np.hypot(alone, 0.03), abs=0.01)
     assert chance[0] != chance[1]
+
+
+def test_where_nothing_could_be_studied_one_sentence_says_so():
+    """By hand: no use and limits of the table's speed where nothing turned."""
+    some = synthetic.campaign(())
+
+    def without(section, *names):
+        return built(section, some | {name: some[name].iloc[:0] for name in names})
+
+    (said,) = without(studies.SECTION, *studies.STUDIES, "not_studied")
+    assert said.text.startswith("None: there are no static positions of known attitude")
+    followed = [f"{stage}_{name}" for stage in STAGES for name in ("averaging", "wanted")]
+    (said,) = without(averaging.SECTION, *followed)
+    assert said.text == "None: the parameters were not followed over the averaging time."
+    assert not without(ideal_triad.SECTION, "ideal_readings")
+
+
+def test_what_is_missing_for_one_reason_is_one_sentence():
+    row = {"sensor": "gyro", "value": None, "lower": None, "reason": "no attitude is known"}
+    rows = [
+        row | {"axis": axis, "quantity": quantity}
+        for quantity in ("threshold", "resolution")
+        for axis in "xyz"
+    ]
+    made = SimpleNamespace(rows=lambda name: rows if name == "characteristics" else [])
+    said, *_others = characteristics.parts(made)
+    assert said.items == (
+        "x, y, z gyro, threshold and resolution: not determined, for no attitude is known.",
+    )
+
+
+def test_rests_of_unknown_attitude_have_no_residual_of_a_simulation():
+    """They are named after their manoeuvre, whose attitude the plan does not state."""
+    some = synthetic.campaign()
+    rests = some["fidelity"].iloc[:6].assign(manoeuvre="positions-01", profile=residuals.AT_REST)
+    (said,) = built(residuals.SECTION, some | {"fidelity": rests})
+    assert said.text == "None: no attitude is known to simulate readings by."
 
 
 def test_a_fencepost_stands_on_top_of_the_published_values():

@@ -15,6 +15,7 @@ from inertial.effects import CATALOGUE
 from stages.report.sections import unmodelled_effects
 from stages.report.sections.effect_sentences import Tested
 from stages.report.sections.effect_tables import THERE_OR_NOT, detection_limits
+from stages.report.sections.possible_sizes import TOO_LARGE, observable, possible
 from tests.report import synthetic, synthetic_unmodelled
 from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import Held, rows_as
@@ -257,6 +258,31 @@ def test_a_limit_is_no_number_beyond_what_is_possible(effect, unit, limit, shown
     row |= {"moves": 2.0, "moved_sensor": "gyro", "moved_parameter": "bias_x"}
     table, *_others = detection_limits([row], [Tested(score, (), "")])
     assert table.rows[0].cells[1:5] == shown
+
+
+def test_an_effect_beyond_gravity_is_not_observable_and_not_undetected() -> None:
+    """The jump of `mpu6050_cuyo`, 10 rests by hand: 5.1 g, a shift of 10000 σ, of ±2 g sensors."""
+    score = {"effect": "accel_bias_jump", "p_value": 1.0, "sentence": "", "finding": None}
+    row = {"effect": "accel_bias_jump", "mount": "", "unit": "m/s²", "reason": "visible"}
+    row |= {"remark": None, "explanation": None, "moved_sensor": "accel"}
+    rows = [
+        row
+        | {"parameter": f"b_{axis}", "limit": limit, "smallest": least, "largest": 49.9}
+        | {"moves": moves, "moved_parameter": f"bias_{axis}"}
+        for axis, limit, least, moves in (("x", 3.1, 0.41, 128.0), ("y", 36.1, 10.6, 10161.0))
+    ]
+    seen, not_seen = detection_limits(rows, [Tested(score, (), "")])
+    name, worst, parameter, best, unit, moves, *_others = seen.rows[0].cells
+    assert name == "Accelerometer bias jump (b_x)"
+    assert [worst, parameter, best, unit] == ["not detectable here", "b_x", "42000", "µg"]
+    assert moves == "130"
+    assert not_seen.rows[0].cells == (f"{TOO_LARGE}", "Accelerometer bias jump (b_y).")
+    assert observable(rows, "visible") and not observable(rows[1:], "visible")
+    square = row | {"parameter": "k", "unit": "(m/s²)/(m/s²)²", "smallest": None}
+    assert not possible(square | {"limit": 0.0601})  # 0.59 g/g²
+    assert possible(square | {"limit": 0.0034})
+    gyro = row | {"parameter": "b", "unit": "rad/s", "smallest": None, "limit": 5.0}
+    assert possible(gyro) and not possible(gyro | {"full_scale": 4.4})
 
 
 def test_what_an_undetected_effect_moves_stands_beside_its_limit() -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from inertial import tables
 from stages.report.sections import certificate, verdict
-from stages.report.sizes import size_in_words
+from stages.report.sizes import how_large, size_in_words
 from tests.report import synthetic, synthetic_faults, synthetic_unmodelled
 from tests.report.synthetic_diagnosis import SENTENCES
 from tests.report.synthetic_values import GAP_FINDING, rows_as
@@ -194,6 +194,14 @@ def test_sizes_are_in_the_units_of_the_laboratory(
 ) -> None:
     row = {"cause": cause, "size": size, "sigma": sigma, "unit": unit}
     assert size_in_words(row) == words
+
+
+def test_of_several_runs_the_size_is_that_of_the_longest() -> None:
+    """`mpu6050_cuyo`: 18 readings in 3 places, and the size of the finding is 10."""
+    row = {"cause": "saturation", "size": 10.0, "sigma": None, "unit": "samples", "count": 3}
+    assert how_large(row) == "10 samples in the longest of 3 places"
+    assert how_large(row | {"count": 1}) == "10 samples"
+    assert how_large(row | {"cause": "dead_axis"}) == "10 samples"
 
 
 def test_a_storm_of_equal_causes_of_one_card_stands_at_no_single_place() -> None:

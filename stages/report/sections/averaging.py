@@ -29,6 +29,12 @@ MIN_FALL = 1.002  # of a σ from the shortest to the longest time, with less it 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
     """One figure per sensor and method, one panel per parameter; the time for a wanted sigma."""
+    names = [f"{stage}_{name}" for stage in SENSOR_OF_STAGE for name in ("averaging", "wanted")]
+    if not any(tables.rows(name) for name in names):
+        yield outline.Paragraph(
+            _("None: the parameters were not followed over the averaging time.")
+        )
+        return
     for stage, name in SENSOR_OF_STAGE.items():
         yield outline.Heading(name)
         groups = _curves(tables.rows(f"{stage}_averaging"))

@@ -11,6 +11,7 @@ from inertial.formats.account import KINDS, OTHER_MESSAGE
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.messages import _
+from inertial.text.statements import NOT_USED
 from stages.report.declared import DECLARED
 from stages.report.outline import (
     Column,
@@ -256,7 +257,7 @@ ERRORS = ("position", "turn_angle", "turn_rate")
 
 
 def known_parts(tables: Tables) -> Iterator[Part]:
-    """One row per quantity."""
+    """One row per quantity that the plan uses."""
     yield Table(
         _("Known quantities."),
         (
@@ -286,6 +287,8 @@ KNOWN = Section(
 
 def _quantities(known: list[Record]) -> Iterator[Row]:
     for row in known:
+        if row["origin"] in NOT_USED:
+            continue
         yield table_row(
             NAME.get(row["quantity"]) or numbers.shortened(row["quantity"], 60),
             *_cells(row),

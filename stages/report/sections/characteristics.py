@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from inertial.sensors import SINGULAR
 from inertial.text import numbers
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, PPM, Unit
 from stages.report.outline import Column, Part, Row, Section, Sentences, Table, head, table_row
@@ -29,7 +30,7 @@ def parts(tables: Tables) -> Iterator[Part]:
     known = [row for row in rows if row["value"] is not None or row["lower"] is not None]
     if known:
         yield _figures(known)
-    if missing := [_missing(axes, row) for axes, row in _by_reason(rows)]:
+    if missing := list(_missing(rows)):
         yield Sentences(tuple(missing))
     yield from _bandwidths(tables.rows("bandwidths"))
 
@@ -206,11 +207,17 @@ def between(row: Record, unit: Unit) -> str:
     return f"≥ {lower}" if upper is None else f"{lower} – {upper}"
 
 
-def _missing(axes: str, row: Record) -> str:
-    return _(
-        "{axis} {sensor}, {quantity}: not determined, for {reason}.",
-        axis=axes,
-        sensor=SINGULAR[row["sensor"]],
-        quantity=NAMES[row["quantity"]].partition(",")[0].lower(),
-        reason=row["reason"],
-    )
+def _missing(rows: Sequence[Record]) -> Iterator[str]:
+    """What is not determined, all that is missing for the same reason in one sentence."""
+    alike: dict[tuple[str, str, str], list[str]] = {}
+    for axes, row in _by_reason(rows):
+        name = NAMES[row["quantity"]].partition(",")[0].lower()
+        alike.setdefault((axes, row["sensor"], row["reason"]), []).append(name)
+    for (axes, sensor, reason), names in alike.items():
+        yield _(
+            "{axis} {sensor}, {quantity}: not determined, for {reason}.",
+            axis=axes,
+            sensor=SINGULAR[sensor],
+            quantity=listed(names),
+            reason=reason,
+        )

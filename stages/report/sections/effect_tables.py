@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
-from math import inf, pi
 
 from inertial.sensors import SINGULAR
 from inertial.text import numbers
@@ -12,7 +11,6 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.typography import capital
-from inertial.text.units import PER_CENT
 from stages.report import outline
 from stages.report.results import (
     KIND,
@@ -25,6 +23,7 @@ from stages.report.results import (
     written,
 )
 from stages.report.sections.effect_sentences import Tested
+from stages.report.sections.possible_sizes import LARGEST_SHARE, TOO_LARGE, largest, possible
 from stages.report.tables import Record, Tables
 from stages.report.words import count_in_words, with_mount
 
@@ -36,7 +35,6 @@ Effect = tuple[str, str]  # its name in the catalogue, and the mount
 THERE_OR_NOT = frozenset({"latitude_sign", "earth_rate_omitted"})
 NOTICED, NOT_NOTICED = _("would be noticed"), _("would not be noticed")
 NOT_DETECTABLE = _("not detectable here")
-LARGEST_ANGLE, LARGEST_SHARE = pi, 1.0  # rad; no error is larger
 MIN_CLOCK_SHARE = 1e-6  # of a frequency: no clock of a log is known to less
 LEAST_MOVE = 0.1  # sigma; how much less does not matter
 TESTS = {
@@ -168,7 +166,13 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
     by_name = {(effect.effect, effect.mount): effect for effect in tested}
     own = [row for row in rows if _effect(row) in by_name]
     seen = visible_limits(rows, tested)
-    hidden = [row for row in own if row not in seen]
+    hidden = [
+        row
+        if row["reason"] != VISIBLE or row["limit"] is None
+        else row | {"explanation": TOO_LARGE}
+        for row in own
+        if row not in seen
+    ]
     # An effect that is not sought in equations and turns: its score says how.
     hidden += [
         {
@@ -198,7 +202,7 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             outline.Column("p", "number"),
         ),
         [
-            _limit(by_name[name], list(group))
+            _limit(by_name[name], list(group), own)
             for (name, _), group in groupby(seen, lambda row: (_effect(row), row["unit"]))
         ],
         _("None: every effect that this campaign makes observable was detected."),
@@ -221,7 +225,8 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         yield outline.Table(
             _(
                 "Effects that this campaign does not make observable, or that are "
-                "reported elsewhere."
+                "reported elsewhere. Parameters in brackets: of these alone it is said; of the "
+                "others of the same effect the table above states the limit."
             ),
             outline.columns("text", _("Reason"), _("Effects")),
             list(_hidden(hidden, [*seen, *hidden])),
@@ -234,7 +239,10 @@ def visible_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> list[Rec
     return [
         row
         for row in rows
-        if _effect(row) in names and row["reason"] == VISIBLE and row["limit"] is not None
+        if _effect(row) in names
+        and row["reason"] == VISIBLE
+        and row["limit"] is not None
+        and possible(row)
     ]
 
 
@@ -266,11 +274,13 @@ def _effect(row: Record) -> Effect:
     return row["effect"], row["mount"]
 
 
-def _limit(tested: Tested, rows: Sequence[Record]) -> outline.Row:
+def _limit(tested: Tested, rows: Sequence[Record], every: Sequence[Record]) -> outline.Row:
+    """Of one effect, with its parameters where it is not observable by all of them."""
+    name = _named(_effect(rows[0]), [row["parameter"] for row in rows], every)
     rows = sorted(rows, key=lambda row: -(row["largest"] or row["limit"]))
     first = rows[0]
     return outline.table_row(
-        capital(tested.name),
+        capital(name),
         *(_noticed(first) if tested.effect in THERE_OR_NOT else _sizes(rows)),
         *_moves(rows),
         numbers.probability(tested.score["p_value"]),
@@ -282,7 +292,7 @@ def moves_most(rows: Sequence[Record]) -> Record | None:
     """The limit of these rows of one effect at which it moves a parameter most, where known."""
     if rows[0]["effect"] in THERE_OR_NOT:
         return None
-    known = [row for row in rows if row["moves"] is not None and row["limit"] <= _largest(row)]
+    known = [row for row in rows if row["moves"] is not None and row["limit"] <= largest(row)]
     return max(known, key=lambda row: float(row["moves"]), default=None)
 
 
@@ -305,20 +315,13 @@ def _sizes(rows: Sequence[Record]) -> tuple[str, str, str, str]:
     """The limit of the worst axis, which is first, its parameter, that of the best, the unit."""
     first, unit = rows[0], quantity_of(rows[0]).shown
     best = min(min(row["limit"], row["smallest"] or row["limit"]) for row in rows)
-    if best > _largest(first):
+    if best > largest(first):
         return NOT_DETECTABLE, "", "", ""
     worst = max(first["limit"], first["largest"] or 0.0)
     least, most = (numbers.significant(unit.of(size), 2) for size in (best, worst))
-    if worst > _largest(first):
+    if worst > largest(first):
         most = NOT_DETECTABLE
     return most, symbol(first["parameter"]), least if least != most else "", unit.name
-
-
-def _largest(row: Record) -> float:
-    """The largest size that is possible of a share or an angle, in the unit of the row."""
-    if quantity_of(row).shown == PER_CENT:
-        return LARGEST_SHARE
-    return LARGEST_ANGLE if row["unit"] == "rad" else inf
 
 
 def _hidden(rows: Sequence[Record], every: Sequence[Record]) -> Iterator[outline.Row]:

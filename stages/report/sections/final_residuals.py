@@ -39,7 +39,7 @@ REACH, BINS = 4.5, 36  # σ, of the histogram where nothing is beyond
 FEW = 0.001  # of the values on either side that may be beyond a wider one
 NO_ATTITUDE = _(
     "None: no attitude is known to predict readings by. In positions of unknown attitude "
-    "“Compensation” compares |f| with gravity."
+    "“Compensation” compares |f| with gravity where all accelerometers are determined."
 )
 
 

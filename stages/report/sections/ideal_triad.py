@@ -28,7 +28,6 @@ def parts(tables: Tables) -> Iterator[Part]:
     """One table in both frames, and how gravity of the site compares."""
     readings = tables.rows("ideal_readings")
     if not readings:
-        yield Paragraph(_("The latitude is not known, so nothing can be computed for the site."))
         return
     site = readings[0]
     yield Table(

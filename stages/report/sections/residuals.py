@@ -71,10 +71,18 @@ Ratios = Mapping[tuple[str, str], dict[str, Ratio]]  # by profile and manoeuvre,
 
 def parts(tables: Tables) -> Iterator[Part]:
     """One figure per turn that is drawn, and the residuals over the noise as a table."""
+    stated = {row["manoeuvre"] for row in tables.rows("manoeuvres")}
+    fidelity = [
+        row
+        for row in tables.rows("fidelity")
+        if row["profile"] != AT_REST or row["manoeuvre"] in stated
+    ]
+    if not fidelity and tables.rows("fidelity"):  # of the rests that the plan does not name
+        yield Paragraph(_("None: no attitude is known to simulate readings by."))
+        return
     drawn = envelopes(tables.stream("simulated"), drawn_turns(tables))
     for number, envelope in enumerate(drawn, 1):
         yield _figure(envelope, f"simulated-{number}")
-    fidelity = tables.rows("fidelity")
     every = {row["manoeuvre"] for row in fidelity if row["profile"] != AT_REST}
     if drawn and len(every) > len(drawn):
         others = counted(len(every) - len(drawn), _("further turn"))

@@ -50,11 +50,21 @@ BY = {
 }
 SIGMA = {"scale": "cut_sigma", "bias": "bias_sigma"}
 UNIT = {"scale": PPM, "bias": DEGREES_PER_HOUR}
+STUDIES = ("epochs", "spreads", "windows", "growing", "middles", "time_angle", "encoder")
 MARGINS = drawing.Margins(left=0.5, across=0.52, down=0.42, top=0.26)
 
 
 def parts(tables: Tables) -> Iterator[Part]:
     """Rests by epochs, turns by windows, and the table's time and angle."""
+    if not any(tables.rows(name) for name in STUDIES):
+        yield Paragraph(
+            _(
+                "None: there are no static positions of known attitude and no turns that could be "
+                "studied."
+            )
+        )
+        yield from _not_studied(tables)
+        return
     yield Heading(_("Static positions, epoch by epoch"))
     yield from list(epoch_parts(tables)) or [_none(tables, "rests")]
     yield Heading(_("Turns, window by window"))
@@ -63,7 +73,13 @@ def parts(tables: Tables) -> Iterator[Part]:
     yield Heading(_("Angle of the table against time"))
     yield from list(time_and_angle(tables)) or [_none(tables, "turns")]
     yield _middles(tables)
-    yield from map(Paragraph, LIMITS)
+    if tables.rows("time_angle"):
+        yield from map(Paragraph, LIMITS)
+    yield from _not_studied(tables)
+
+
+def _not_studied(tables: Tables) -> Iterator[Part]:
+    """What is in no study, with the reason."""
     if left_out := tables.rows("not_studied"):
         yield Heading(_("Not in these studies"))
         yield Sentences(
@@ -84,10 +100,7 @@ SECTION = Section(
         "its angle by time is N · interval · set rate. These studies change no result; "
         "they show how static positions, windows and the table limit it."
     ),
-    (
-        *("epochs", "spreads", "windows", "growing", "middles"),
-        *("time_angle", "motions", "encoder", "not_studied", "levels"),
-    ),
+    (*STUDIES, "motions", "not_studied", "levels"),
     parts,
 )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from inertial.campaign.effect_sizes import sizes_of_result
+from inertial.campaign.records import grouped
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened, significant
@@ -33,6 +34,8 @@ from stages.report.sections.effect_sentences import (
     worth,
 )
 from stages.report.sections.findings import FINDING_TABLES, cause_of_finding, title_of
+from stages.report.sections.possible_sizes import limits_of
+from stages.report.sections.possible_sizes import observable as is_observable
 from stages.report.tables import Record, Tables, once
 from stages.report.words import count_in_words
 
@@ -62,7 +65,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
     yield from effect_tables.structure_tests(tables.rows("structures"))
     if missed := list(not_detected(tables)):
         yield outline.Heading(_("Detection limits"))
-        yield from effect_tables.detection_limits(tables.rows("detection_limits"), missed)
+        yield from effect_tables.detection_limits(list(limits_of(tables)), missed)
 
 
 def shifts_beyond(tables: Tables, sigmas: float) -> tuple[int, int]:
@@ -70,12 +73,10 @@ def shifts_beyond(tables: Tables, sigmas: float) -> tuple[int, int]:
 
     The second number: of how many it is known.
     """
-    return effect_tables.shifts_beyond(
-        tables.rows("detection_limits"), list(not_detected(tables)), sigmas
-    )
+    return effect_tables.shifts_beyond(list(limits_of(tables)), list(not_detected(tables)), sigmas)
 
 
-LIMIT_TABLES = (*FINDING_TABLES, "scores", "detection_limits", *CAUSE_TABLES[1:])
+LIMIT_TABLES = (*FINDING_TABLES, "scores", "detection_limits", "sensors", *CAUSE_TABLES[1:])
 
 
 SECTION = outline.Section(
@@ -104,7 +105,15 @@ def _summary(tables: Tables) -> outline.Paragraph:
             _("No effect was tested: the joint fits determine no model."), "fair"
         )
     every = len({effect.effect for effect in tested})
-    observable = len({effect.effect for effect in tested if effect.score["degrees"]})
+    limits = grouped(limits_of(tables), lambda row: (row["mount"], row["effect"]))
+    observable = len(
+        {
+            effect.effect
+            for effect in tested
+            if effect.score["degrees"]
+            and is_observable(limits.get((effect.mount, effect.effect), []), effect_tables.VISIBLE)
+        }
+    )
     if not observable:
         return outline.Paragraph(
             _(

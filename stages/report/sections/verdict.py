@@ -30,7 +30,7 @@ from stages.report.sections.findings import (
     spoils,
     title_of,
 )
-from stages.report.sizes import size_in_words
+from stages.report.sizes import how_large
 from stages.report.tables import Record, Tables, once
 
 SIMULATED = _(
@@ -60,8 +60,8 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         "fair",
         _(
             "Departures from the ideal were found, each of which is corrected, modelled, excluded, "
-            "interpolated or too small to matter, as is stated; or a parameter is known "
-            "coarsely."
+            "interpolated, included in the sigmas or too small to matter; or it is not removed, "
+            "and the sentence of its sensor says so. Or a parameter is known coarsely."
         ),
     ),
     "usable": (
@@ -140,7 +140,7 @@ def _grade(row: Record) -> str:
 def _answers(tables: Tables, row: Record) -> outline.Pairs:
     texts = {
         _("How sure"): _sure(tables, row),
-        _("How large"): size_in_words(row),
+        _("How large"): how_large(row),
         _("What it does"): _effect_on_result(row),
         _("What was done"): row["done"],
         _("Gain"): row["gain"],
