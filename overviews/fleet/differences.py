@@ -59,8 +59,11 @@ def difference_sentences(rows: Mapping[str, Sequence[Row]]) -> Iterator[outline.
 
 def compared(rows: Mapping[str, Sequence[Row]], finding: str) -> str | None:
     """The tables of a difference; None where a finding is none."""
-    own = (row for row in rows["table_differences"] if row["finding"] == finding)
-    return next((_("{more} against {less}", **_names(row)) for row in own), None)
+    for row in rows["table_differences"]:
+        if row["finding"] == finding:
+            names = _names(row)
+            return _("{more} against {less}", more=names["more"], less=names["less"])
+    return None
 
 
 def _names(row: Row) -> dict[str, str]:
