@@ -27,7 +27,7 @@ READ = (
     *FINDINGS,
     *("plan/repairs", "segment/repairs", "segment/channel_repairs"),
     *("quality/masks", "quality/gaps", "segment/segments", "segment/performed"),
-    *("segment/blocks", "plan/manoeuvres", "decode/accounts"),
+    *("segment/blocks", "plan/manoeuvres", "decode/accounts", "decode/clocks"),
     *("accelerometer/parameters", "gyroscope/parameters"),
     *("accelerometer/findings", "gyroscope/findings", "noise/findings", "noise/terms"),
 )
@@ -35,7 +35,7 @@ READ = (
 
 CRITICISED = (
     *("criticism/findings", "criticism/members", "criticism/cause_positions"),
-    "criticism/structure_manoeuvres",
+    *("criticism/structure_manoeuvres", "criticism/effects"),
 )
 
 
