@@ -212,6 +212,18 @@ def test_what_is_not_corrected_stands_in_units_of_u():
     assert "Not corrected" not in section_on(made, SECTION)
 
 
+def test_undetected_effects_that_may_shift_a_parameter_by_more_than_u_are_counted():
+    """U is 2 σ: a shift of 1.9 σ is in it, one of 2.1 σ is not."""
+    made = campaign(logs=())
+    limits = made["detection_limits"]
+    visible = (limits["reason"] == "visible") & limits["limit"].notna()
+    limits["moves"] = np.where(visible, 1.9, np.nan)
+    assert "No component of U" not in section_on(made, SECTION)
+    one = limits["effect"] == limits.loc[visible, "effect"].iloc[-1]
+    limits.loc[visible & one, "moves"] = 2.1
+    assert "effects that were not detected. One of " in section_on(made, SECTION)
+
+
 @pytest.mark.parametrize(
     ("risk", "text"), [(1e-13, "< 0.01 %"), (9e-5, "< 0.01 %"), (0.0228, "2.3 %")]
 )
