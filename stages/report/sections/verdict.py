@@ -59,9 +59,8 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         _("usable within limits"),
         "fair",
         _(
-            "Departures from the ideal were found, each of which is corrected, modelled, excluded, "
-            "interpolated, included in the sigmas or too small to matter; or it is not removed, "
-            "and the sentence of its sensor says so. Or a parameter is known coarsely."
+            "Departures from the ideal were found, or a parameter is known coarsely. The sentence of "
+            "each sensor says what, and what became of it: its result holds within these limits."
         ),
     ),
     "usable": (
