@@ -180,16 +180,16 @@ def _as_diagnosed(
     severities: Mapping[tuple[str, str], int],
     diagnosed: Mapping[str, Row],
 ) -> ExplainedFindings:
-    """The same, as grave as it is by the diagnosis, which tells the sizes of the result."""
+    """The same, as grave as it is by the diagnosis, with the sizes of the result."""
     row = each.cause.row
     severity = severities.get((row["cause"], row["sensor"]))
     if severity is None or (severity == WEAKENING and row["severity"] < SPOILING):
         severity = row["severity"]
-    told = {**row, "severity": severity}
+    as_diagnosed = {**row, "severity": severity}
     if each.cause.stage == MODEL:
         own = diagnosed.get(f"diagnosis/{row['id']}", row)
-        told |= {name: own[name] for name in ("sentence", "consequence")}
-    return replace(each, cause=replace(each.cause, row=told))
+        as_diagnosed |= {name: own[name] for name in ("sentence", "consequence")}
+    return replace(each, cause=replace(each.cause, row=as_diagnosed))
 
 
 def _worst_first(each: ExplainedFindings) -> tuple[int, float, int, str]:
@@ -278,8 +278,8 @@ def _cause(each: ExplainedFindings, beside_bias: Mapping[str, str]) -> str:
     title = [one.upper(), in_words(row["cause"])]
     title += [shortened(place, 60)] if place else []
     paragraphs = [_wrapped(" · ".join(title)), _wrapped(shortened(row["sentence"], 600), INDENT)]
-    told = [(_("How large"), beside_bias.get(row["id"], "")), *_answers(each)]
-    answers = [f"{name}: {shortened(text, 600)}" for name, text in told if text]
+    pairs = [(_("How large"), beside_bias.get(row["id"], "")), *_answers(each)]
+    answers = [f"{name}: {shortened(text, 600)}" for name, text in pairs if text]
     return "\n".join([*paragraphs, *(_wrapped(answer, INDENT) for answer in answers)])
 
 

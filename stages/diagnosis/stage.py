@@ -14,11 +14,11 @@ from inertial.tables.stage import Stage, Tables
 from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
+from stages.diagnosis.one_event import mountings_of, rotations, with_consequences
 from stages.diagnosis.result import covariance_by_ids
 from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.sizes_of_causes import by_result, sentences, sizes
 from stages.diagnosis.temperature_curves import curve_rows
-from stages.diagnosis.told_together import mountings_of, rotations, with_consequences
 from stages.diagnosis.verdict import NOT_USABLE, Verdict, not_recorded, verdict
 
 
@@ -80,7 +80,7 @@ def diagnosis(
     covariance = covariance_by_ids(*(result.chosen.covariance_rows() for result in results))
     return {
         "causes": [
-            mountings.told(
+            mountings.described(
                 with_consequences(cause.row(own_sizes, own_sentences), cause, own_sentences),
                 cause,
                 turned.get(cause.main.id, np.zeros(len(AXES))),

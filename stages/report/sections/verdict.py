@@ -59,8 +59,8 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         _("usable within limits"),
         "fair",
         _(
-            "Departures from the ideal were found, or a parameter is known coarsely. The sentence of "
-            "each sensor says what, and what became of it: its result holds within these limits."
+            "Departures from the ideal were found, or a parameter is known coarsely. The sentence "
+            "of each sensor says what, and what became of it: its result holds within these limits."
         ),
     ),
     "usable": (

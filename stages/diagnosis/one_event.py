@@ -35,11 +35,11 @@ UNKNOWN = _("To which of the two mountings the parameters of the {sensors} belon
 
 def with_consequences(row: Row, cause: Cause, sentences: Mapping[str, str]) -> Row:
     """The row of a cause, whose sentence says the sizes of one event once from each side."""
-    told = [
+    others = [
         ONE_EVENT.format(sentence=sentences.get(each.id) or each.row["sentence"])
         for each in _same_event(cause)
     ]
-    return row | {"sentence": " ".join([row["sentence"], *told])}
+    return row | {"sentence": " ".join([row["sentence"], *others])}
 
 
 def _same_event(cause: Cause) -> Iterator[Hypothesis]:
@@ -65,7 +65,7 @@ class Mountings:
     directions: Mapping[str, Array]
     turns: frozenset[str]
 
-    def told(self, row: Row, cause: Cause, rotation: Array) -> Row:
+    def described(self, row: Row, cause: Cause, rotation: Array) -> Row:
         """The row of a cause, whose consequence says to which mounting the parameters belong.
 
         `rotation`: of the case, (3,), rad, zero about axes that do not show it.

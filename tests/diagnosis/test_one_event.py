@@ -8,7 +8,7 @@ import pytest
 from test_explanations import at, effect, finding, of
 
 from inertial.campaign.competition import ExplainedFindings, compete
-from stages.diagnosis.told_together import mountings_of, rotations, with_consequences
+from stages.diagnosis.one_event import mountings_of, rotations, with_consequences
 
 ATTITUDES = {"z-up": (0, 0, 1), "z-down": (0, 0, -1), "x-up": (1, 0, 0), "x-down": (-1, 0, 0)}
 ATTITUDES |= {"y-up": (0, 1, 0), "y-down": (0, -1, 0)}
@@ -47,7 +47,7 @@ def said(seconds: float, rotation: np.ndarray, *results: SimpleNamespace) -> str
     mountings = mountings_of(results, tables.manoeuvres, tables.segments, tables.clocks)
     shift = at(effect("mounting_shift", "accel"), seconds, 1.0, 338)
     cause = SimpleNamespace(main=shift, members=[ExplainedFindings(shift, (shift,))])
-    return mountings.told({"consequence": "It is off."}, cause, rotation)["consequence"]
+    return mountings.described({"consequence": "It is off."}, cause, rotation)["consequence"]
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_what_tilts_tells_the_time_of_a_shift_better():
     tilt = at(finding("segment", "table_moving", **of("x-up-rest")), 182.0, 0.04, 379)
     for consequences, known in (((shift,), False), ((shift, tilt), True)):
         cause = SimpleNamespace(main=shift, members=[ExplainedFindings(shift, consequences)])
-        text = mountings.told({"consequence": "It is off."}, cause, ABOUT_Z)["consequence"]
+        text = mountings.described({"consequence": "It is off."}, cause, ABOUT_Z)["consequence"]
         assert ("after it" in text) == known
         assert ("is not known" in text) != known
 
