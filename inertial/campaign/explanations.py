@@ -225,6 +225,9 @@ EXPLANATIONS = (
         (*PERFORMANCE, "wrong_scale_factor", "manoeuvre_swapped", "gravity_error"),
         same_sensor,
     ),
+    Explanation(
+        ("wrong_scale_factor", "wrong_imu_type"), ("noise_above_data_sheet",), same_sensor
+    ),
     Explanation(("manoeuvre_swapped",), PERFORMANCE, same_log),
     # A clock that is set, or runs wrong, by what its stamps then look like.
     Explanation(

@@ -25,6 +25,8 @@ UNIT_FACTORS = {
         STANDARD_GRAVITY: _("the values are in m/s² but are read as g"),
         1 / STANDARD_GRAVITY: _("the values are in g but are read as m/s²"),
         1000.0: _("the values are in mg but are read as g (or in mm/s² as m/s²)"),
+        1000.0 / STANDARD_GRAVITY: _("the values are in mg but are read as m/s²"),
+        100.0: _("the values are in cm/s² (Gal) but are read as m/s²"),
     },
     "gyro": {
         1 / DEGREE: _("the values are in degrees but are read as radians"),

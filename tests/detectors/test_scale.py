@@ -30,6 +30,8 @@ def test_a_large_bias_is_no_wrong_unit(reading):
     [
         (9.80665, "the values are in m/s² but are read as g"),
         (1 / 9.80665, "the values are in g but are read as m/s²"),
+        (1000 / 9.80665, "the values are in mg but are read as m/s²"),
+        (100.0, "the values are in cm/s² (Gal) but are read as m/s²"),
         (2.05, "counts_per_unit is 2 times too small"),
         (0.26, "counts_per_unit is 4 times too large"),
         (16384, "the values are counts, and counts_per_unit is missing"),

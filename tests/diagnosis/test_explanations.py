@@ -326,3 +326,12 @@ def test_a_shift_at_the_time_of_a_step_is_that_step():
         "mounting_shift": {"step_in_turn"}
     }
     assert len(causes(step, at(effect("mounting_shift", "gyro"), 25, 9, 436))) == 2
+
+
+def test_noise_in_a_wrong_unit_is_no_noise_of_its_own():
+    """103 times the data sheet's, where all that is read is 102 times too large."""
+    unit = finding("quality", "wrong_scale_factor", "accel")
+    noise = finding("noise", "noise_above_data_sheet", "accel")
+    other = finding("noise", "noise_above_data_sheet", "gyro")
+    assert causes(unit, noise) == {"wrong_scale_factor": {"noise_above_data_sheet"}}
+    assert len(list(compete([unit, other]))) == 2
