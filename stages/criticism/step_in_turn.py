@@ -20,6 +20,7 @@ MAX_SHARE = 1 / 8  # of a turn, that it takes: the rest tells how the residuals 
 MIN_SAMPLES = 2  # of a step: a single reading that is off is a spike
 # Far beyond noise: a smaller pulse has too little power at any one frequency to make a line.
 MIN_SIGMAS = 8.0
+EDGE_SECONDS = 0.1  # beside an end of the steady part, where a pulse may be of the ramp
 EDGE_SIGMAS = 3.0  # of a few samples, down to which its stretch reaches
 LEVEL_SIGMAS = 4.0  # from which the rate after it is another than before
 MIN_LEVEL = 16  # samples, before or after it, that tell a level
@@ -116,6 +117,8 @@ def _largest(turn: SteadyTurn) -> StepInTurn | None:
             scatter = max(*map(_scatter, rises), sigma * sqrt(2 / width))
             same = np.prod(np.sign(rises), axis=0) > 0
             exceeds = same * np.abs(rises).min(axis=0) / scatter
+            edge = max(width, int(EDGE_SECONDS / turn.step))
+            exceeds[:edge] = exceeds[-edge:] = 0.0
             first = int(np.argmax(exceeds))
             best = max(best, (float(exceeds[first]), axis, first, width))
     sigmas, axis, first, width = best

@@ -95,3 +95,13 @@ def test_nor_where_one_turn_alone_shows_it_clearly():
 def test_noise_and_wandering_biases_have_none(walk):
     for seed in range(20):
         assert not without_steps(turns(100 + seed, walk=walk))[1]
+
+
+@pytest.mark.parametrize("end", [slice(-3, None), slice(0, 3)])
+def test_a_ramp_that_reaches_into_the_steady_part_is_no_step(end):
+    """The last samples, with 60 °/s² for 0.02 s: 0.014° less at the end of one turn."""
+    made = turns(8)
+    truth = made[SLIPPED].truth.copy()
+    truth[end, 2] -= np.radians(0.014) / (3 * STEP)
+    made[SLIPPED] = replace(made[SLIPPED], truth=truth)
+    assert not find_oscillations(made, LEVEL, LOWEST).steps
