@@ -29,7 +29,7 @@ HIDDEN = {
     "accel_bias_ramp": ({"ramp_m_s2_h": [0, 0, 1.0e-3]}, {"c_z": 1e-3 / 3600}),
     "accel_bias_jump": ({"size_micro_g": [60, 0, 0], "at_s": 700}, {"b_x": 60 * MICRO_G}),
     "mounting_shift": (
-        {"rotation_arcsec": [0, 30, 0], "at_s": 2200},
+        {"rotation_arcsec": [0, 30, 0], "at_s": 2225},
         {"theta_y": np.radians(30 / 3600)},
     ),
     "lever_arm": ({"arm_m": [0, 0.016, 0]}, {"r_y": 0.016}),

@@ -225,9 +225,7 @@ EXPLANATIONS = (
         (*PERFORMANCE, "wrong_scale_factor", "manoeuvre_swapped", "gravity_error"),
         same_sensor,
     ),
-    Explanation(
-        ("wrong_scale_factor", "wrong_imu_type"), ("noise_above_data_sheet",), same_sensor
-    ),
+    Explanation(("wrong_scale_factor", "wrong_imu_type"), ("noise_above_data_sheet",), same_sensor),
     Explanation(("manoeuvre_swapped",), PERFORMANCE, same_log),
     # A clock that is set, or runs wrong, by what its stamps then look like.
     Explanation(
@@ -331,6 +329,8 @@ def _same_angle(cause: Hypothesis, other: Hypothesis) -> bool:
 
 def _explains_event(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether an event is what an effect says of it, or leaves what no effect explains."""
+    if other.cause == STEP_IN_TURN and cause.cause == "quantisation":  # a count for less than 1 s
+        return same_sensor(cause, other) and _size(other) < _size(cause)
     if other.cause == STEP_IN_TURN:
         return _is_of_step(cause, other)
     if cause.cause == STEP_IN_TURN:

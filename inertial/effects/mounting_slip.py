@@ -5,19 +5,22 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.arrays import Array, Booleans
-from inertial.effects.mounting_shift import MountingShift
-from inertial.physics.effect import Effect, Scan, Truth, known_earth
-from inertial.physics.motion import Motion, cross
+from inertial.effects.mounting_shift import SHIFT_TIMES, MountingShift
+from inertial.physics.drift import without_clock
+from inertial.physics.effect import Scan, Truth
+from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
+TIMES_OF_A_TURN = 2, 9  # that are tried, as many as all turns leave
 
-class MountingSlip(Effect):
-    """As a shift of the mounting, f += f × θ, ω += ω × θ from then on, but the gyros see it happen.
 
-    In one turn, which is scanned, the case turns by θ besides: ω += θ |θ'|/Θ, Θ the angle of that
-    turn, and the shift goes with the share of it that is done. A shift that sets in between two
-    manoeuvres adds nothing to any turn, and a turn that goes too far turns no axis of the case for
-    those that follow.
+class MountingSlip(MountingShift):
+    """A shift of the mounting within a turn, t₀ scanned there, and the gyros see it happen.
+
+    In that turn the case turns by θ besides: ω += θ |θ'|/Θ, Θ the angle of the turn. About its axis
+    the blocks take their angle from the gyros, so only the whole turn shows how far. A shift that
+    sets in between two manoeuvres adds nothing to any turn, and a turn that goes too far turns no
+    axis of the case for those that follow.
     """
 
     name = "mounting_slip"
@@ -25,31 +28,46 @@ class MountingSlip(Effect):
         "the IMU slips in its fixture while the table turns: that turn goes further for the gyros, "
         "and its orientation in the fixture differs from then on"
     )
-    source = MountingShift.source
-    parameters = MountingShift.parameters
-    sizes = MountingShift.sizes
-    vector = True
-    thinkable = MountingShift.thinkable
-    scan = Scan("turn", "1", _("place of the turn among the manoeuvres of the plan"), between=False)
-
-    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
-        own = self._turning(motion) & (np.floor(motion.visit) == self.value(motion))
-        if not own.any():
-            return truth
-        whole = np.max(np.abs(motion.angle + motion.rate * motion.seconds / 2)[own])
-        done = (motion.visit > motion.visit[own].max()).astype(np.float64)
-        done[own] = np.abs(motion.angle[own]) / whole
-        faster = np.where(own, np.abs(motion.rate) / whole, 0.0)
-        turned = np.outer(done, values)
-        upward, level = known_earth(truth, motion)
-        seen = cross(motion.omega + upward + level, turned) + np.outer(faster, values)
-        return replace(
-            truth, rate=truth.rate + seen, force=truth.force + cross(truth.force, turned)
-        )
+    scan = Scan("t0", "s", _("time of the slip since the first sample of all logs"))
 
     def grid(self, motion: Motion) -> Array:
-        return np.unique(np.floor(motion.visit[self._turning(motion)]))
+        turns = np.unique(np.floor(motion.visit[_turning(motion)]))
+        if without_clock(motion):
+            return turns
+        least, most = TIMES_OF_A_TURN
+        count = int(np.clip(SHIFT_TIMES // max(len(turns), 1), least, most))
+        share = (np.arange(count) + 0.5) / count
+        spans = [_span(motion, np.floor(motion.visit) == turn) for turn in turns]
+        return np.array([first + share * (last - first) for first, last in spans]).ravel()
 
-    @staticmethod
-    def _turning(motion: Motion) -> Booleans:
-        return np.asarray(motion.rate != 0)
+    def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
+        moved = super().moves(truth, motion, values)
+        own = self._turn(motion)
+        if not own.any():
+            return moved
+        whole = np.max(np.abs(motion.angle + motion.rate * motion.seconds / 2)[own])
+        faster = np.where(own, np.abs(motion.rate) / whole, 0.0)
+        return replace(moved, rate=moved.rate + np.outer(faster, values))
+
+    def _turn(self, motion: Motion) -> Booleans:
+        """The stretches of the turn in which it slips; all false between two turns."""
+        at, visit = self.value(motion), np.floor(motion.visit)
+        if without_clock(motion):
+            return np.asarray(_turning(motion) & (visit == at))
+        for turn in np.unique(visit[_turning(motion)]):
+            own = _turning(motion) & (visit == turn)
+            first, last = _span(motion, own)
+            if first <= at <= last:
+                return np.asarray(own)
+        return np.zeros(len(visit), bool)
+
+
+def _turning(motion: Motion) -> Booleans:
+    return np.asarray(motion.rate != 0)
+
+
+def _span(motion: Motion, own: Booleans) -> tuple[float, float]:
+    """When some turning stretches begin, and when they end, s."""
+    own = own & _turning(motion)
+    half = motion.seconds[own] / 2
+    return float((motion.time[own] - half).min()), float((motion.time[own] + half).max())

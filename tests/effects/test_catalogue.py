@@ -120,7 +120,7 @@ BLIND = {
         "gyro_bias_ramp", "gyro_scale_ramp", "gyro_warm_up", "gyro_bias_jump", "gyro_scale_jump",
         "accel_bias_ramp", "accel_scale_ramp", "accel_warm_up", "accel_bias_jump",
         "accel_scale_jump",
-        "mounting_shift",
+        "mounting_shift", "mounting_slip",
     },
     "temperature": {
         "gyro_bias_temperature", "gyro_scale_temperature",

@@ -232,18 +232,18 @@ def test_a_case_that_has_turned_sees_everything_turned_the_other_way():
 
 
 def test_a_case_that_slips_in_a_turn_sees_itself_turn_and_then_everything_turned():
-    """Over the whole turn the gyros see θ more; behind it all is turned the other way."""
+    """Over the whole turn the gyros see θ more; from t₀ on all is turned the other way."""
     turned, step = np.array([1e-5, -2e-5, 3e-5]), np.pi / 100
     angles = step * (np.arange(100) + 0.5)  # of stretches, each at its middle
     motion = on_a_turn(np.append(angles, [np.pi] * 3))
     visit = np.append(np.full(100, 2.5), [3.0] * 3)
     motion = replace(motion, visit=visit, rate=np.append(np.full(100, step / STEP), [0] * 3))
-    gyro, accel = acted("mounting_slip", turned.tolist(), motion, at=2.0)
+    gyro, accel = acted("mounting_slip", turned.tolist(), motion, at=39.5 * STEP)
     truth, back = truth_of(motion, STILL), Rotation.from_rotvec(turned).inv()
-    share = np.append(angles / np.pi, [1] * 3)[:, None]
+    share = np.where(np.arange(103) < 40, 0.0, 1.0)[:, None]
     np.testing.assert_allclose(accel, share * (back.apply(truth.force) - truth.force), atol=1e-8)
     seen = gyro - share * (back.apply(truth.rate) - truth.rate)
-    np.testing.assert_allclose(seen[:100].sum(axis=0) * STEP, turned, rtol=1e-4)
+    np.testing.assert_allclose(seen[:100].sum(axis=0) * STEP, turned, rtol=1e-3)
     np.testing.assert_allclose(seen[100:], 0.0, atol=1e-12)
 
 
