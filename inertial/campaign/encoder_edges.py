@@ -1,5 +1,6 @@
 """The angle of the table's encoder where stretches of the records of a log begin and end."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,18 +37,13 @@ class EdgesOver:
 
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
-        if np.isnan(batch["table_angle"]).all():
-            return
-        found = rows_in(batch, self._stretches)
-        if found is None:
-            return
         read = np.column_stack([batch["time"], batch["table_angle"]])
-        own = self._ends[batch.log]
-        for k, start, end in zip(found.stretches, found.starts, found.ends, strict=True):
-            first, last = own.get(int(k), (read[:0], read[:0]))
+        for k, start, end in stretches_with_angle(batch, self._stretches):
+            own = self._ends[batch.log]
+            first, last = own.get(k, (read[:0], read[:0]))
             more = read[start : min(end, start + EDGE_SAMPLES - len(first))]
             tail = np.concatenate([last, read[max(start, end - EDGE_SAMPLES) : end]])
-            own[int(k)] = np.concatenate([first, more]), tail[-EDGE_SAMPLES:]
+            own[k] = np.concatenate([first, more]), tail[-EDGE_SAMPLES:]
 
     def result(self) -> dict[str, Edges]:
         """By log, in the order of the stretches; NaN where the encoder gives nothing."""
@@ -60,6 +56,15 @@ class EdgesOver:
                 found[k, [1, 3]] = _at_edge(tail, tail[-1, 0])
             result[log] = Edges(*found.T)
         return result
+
+
+def stretches_with_angle(batch: Batch, stretches: Stretches) -> Iterator[tuple[int, int, int]]:
+    """The stretches of which a batch with the encoder's angle has rows [start, end)."""
+    if np.isnan(batch["table_angle"]).all():
+        return
+    if found := rows_in(batch, stretches):
+        for k, start, end in zip(found.stretches, found.starts, found.ends, strict=True):
+            yield int(k), int(start), int(end)
 
 
 def _at_edge(read: Array, time: float) -> tuple[float, float]:

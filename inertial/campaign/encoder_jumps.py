@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.campaign.encoder_edges import stretches_with_angle
 from inertial.campaign.masked_samples import Batch
-from inertial.campaign.sums import Stretches, rows_in
+from inertial.campaign.sums import Stretches
 from inertial.tables import GYRO
 
 JUMP_SECONDS = 0.1  # within which an encoder jumps, in its log of 10 Hz or more
@@ -41,14 +42,9 @@ class JumpsOver:
 
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
-        if np.isnan(batch["table_angle"]).all():
-            return
-        found = rows_in(batch, self._stretches)
-        if found is None:
-            return
         rates = np.column_stack([batch[name] for name in GYRO])
-        own = self._jumps[batch.log]
-        for k, start, end in zip(found.stretches, found.starts, found.ends, strict=True):
+        for k, start, end in stretches_with_angle(batch, self._stretches):
+            own = self._jumps[batch.log]
             part, axis = slice(start, end), self._about[batch.log][k]
             along = rates[part][:, axis != 0] @ axis[axis != 0]
             jump = largest_jump(batch["time"][part], batch["table_angle"][part], along)

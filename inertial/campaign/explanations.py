@@ -88,7 +88,7 @@ def _same_cause(cause: Hypothesis, other: Hypothesis) -> bool:
 _KIND = {
     name: kind
     for kind, names in {
-        "bias jump": ("bias_jump", "gyro_bias_jump", "accel_bias_jump", "mounting_shift"),
+        "bias jump": ("bias_jump", "gyro_bias_jump", "accel_bias_jump", *MOUNTINGS),
         "periodic": ("oscillation", "table_ripple", "table_eccentricity"),
         "temperature": (
             "temperature_drift",
@@ -176,6 +176,7 @@ JUMPS = frozenset({"gyro_bias_jump", "accel_bias_jump"})
 MAX_APART_SIGMAS = 3.0  # of two times of one event
 MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with any other
 MAX_ANGLE_RATIO = 2.0  # of one rotation as two stages have it: a rest shows two components of three
+OF_A_PULSE = ("impact", "spike", "saturation", "dead_axis", "clock_step", "samples_lost", "gap")
 LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
 
 
@@ -331,6 +332,8 @@ def _explains_event(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether an event is what an effect says of it, or leaves what no effect explains."""
     if other.cause == STEP_IN_TURN and cause.cause == "quantisation":  # a count for less than 1 s
         return same_sensor(cause, other) and _size(other) < _size(cause)
+    if other.cause == STEP_IN_TURN and cause.cause in OF_A_PULSE:
+        return _unresolved(cause) and same_manoeuvre(cause, other)
     if other.cause == STEP_IN_TURN:
         return _is_of_step(cause, other)
     if cause.cause == STEP_IN_TURN:
@@ -356,7 +359,7 @@ def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
     if cause.cause == "encoder_angles":
         return not other.causes.isdisjoint(BY_ANGLES_OF_TURNS)
     if cause.cause in ("position_not_kept", "fixture_creep"):
-        return other.cause in ("position_scatter", "mounting_shift", *POSITION_OFF)
+        return other.cause in ("position_scatter", *MOUNTINGS, *POSITION_OFF)
     if cause.cause not in OF_ANGLES:
         return cause.cause in SPOILING
     of_one_turn = cause.cause == "samples_lost" and "turn_angle_error" in other.causes

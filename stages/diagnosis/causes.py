@@ -14,6 +14,7 @@ from inertial.campaign.hypotheses import (
     JUMP_NOT_TESTABLE,
     LAW,
     MODEL,
+    MOUNTINGS,
     ONE_OF_CLASS,
     PLAN,
     RECORDING,
@@ -48,7 +49,6 @@ CLOCK = "clock_scale"
 OF_ENCODER = ("encoder_scale", "encoder_angles")
 RATE_OFF, TABLE_RATE_OFF = "rate_off", "table_rate_off"
 QUANTISATION = "quantisation"
-MOUNTING_SHIFT = "mounting_shift"  # turns the axes of both sensors, whichever shows it
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
 
 DONE = {
@@ -367,7 +367,7 @@ class Evidence:
         modelled = [result for result in own if result.models(cause.causes)]
         others = [result for result in own if result not in modelled]
         freed = any(cause.id in result.decision.freed for result in modelled)
-        turned = cause.cause == MOUNTING_SHIFT and not freed
+        turned = cause.cause in MOUNTINGS and not freed
         kept = others if turned else [each for each in others if each.shows(cause.causes)]
         moves = [move for result in kept or own if (move := result.moves(cause.causes)) is not None]
         if cause.row.get("moves") is not None:
@@ -397,7 +397,7 @@ def _may_be_shift(cause: Hypothesis) -> bool:
     What the residuals of one sensor are no more than consistent with, those of the other are
     tested for themselves.
     """
-    return MOUNTING_SHIFT in cause.causes and cause.cause != UNKNOWN_STRUCTURE
+    return not cause.causes.isdisjoint(MOUNTINGS) and cause.cause != UNKNOWN_STRUCTURE
 
 
 def _rounds(cause: Hypothesis) -> bool:
@@ -423,9 +423,9 @@ def _turns(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
 
     Where a shift is one of a class.
     """
-    if MOUNTING_SHIFT not in cause.causes - {cause.cause}:
+    if (cause.causes - {cause.cause}).isdisjoint(MOUNTINGS):
         return {}
-    others = [result for result in own if not result.shows({MOUNTING_SHIFT})]
+    others = [result for result in own if not result.shows(MOUNTINGS)]
     return {r.sensor: move for r in others for move in _moved_by_turning(own, [r])}
 
 
@@ -437,7 +437,8 @@ def _moved_by_turning(
     All its rotations may be before or all after the shift: then its terms hold for one of the two
     mountings, and its residuals show nothing.
     """
-    angle = max((result.angle(MOUNTING_SHIFT) for result in showing), default=0.0)
+    angles = (result.angle(effect) for result in showing for effect in MOUNTINGS)
+    angle = max(angles, default=0.0)
     sigmas = [result.cross_sigma for result in others]
     return [angle / sigma for sigma in sigmas if sigma and angle]
 

@@ -9,6 +9,7 @@ with an unknown of its own it moves nothing, whatever it is.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from inertial.campaign.hypotheses import SLIP
 from inertial.campaign.records import Row
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
@@ -20,7 +21,6 @@ from inertial.text.parameters import JOINT
 UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
-SLIP = "mounting_slip"  # shown by one turn, it turns the axes of all that follows
 OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
 TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma

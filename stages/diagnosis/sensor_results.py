@@ -12,13 +12,13 @@ import pandas as pd
 
 from inertial.arrays import Array
 from inertial.campaign.competition import ExplainedFindings
-from inertial.campaign.hypotheses import MODEL
+from inertial.campaign.hypotheses import MODEL, SLIP
 from inertial.campaign.records import Row, rows_of
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
 from inertial.text.parameters import BIAS, CROSS, FREE, JOINT, SCALE
-from stages.diagnosis.decision import SLIP, Decision, alarms_of, decided
+from stages.diagnosis.decision import Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
 CLEAR = 3.0  # sigma of an angle

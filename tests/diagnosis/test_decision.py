@@ -203,3 +203,13 @@ def test_what_of_the_matrix_is_hardly_known_is_said_of_a_usable_result():
     assert told.sentence == "Gyros: usable. Known to 0.31° (σ) only: m_yz."
     del known["cross_yz"]
     assert verdict(result, []).verdict == "usable"
+
+
+def test_a_slip_in_a_turn_says_something_else_of_all_that_follows():
+    """Though one turn alone shows it: so it competes with the error of that turn's angle."""
+    rows = [JOINT, candidate(probability=0.9), candidate("member_1", probability=0.1)]
+    off = effect("turn_angle_error", "x-forward")
+    slip = effect("mounting_slip", "x-forward", method="member_1")
+    decision = decided(rows, [off, slip])
+    assert decision.freed == {"criticism/1": "x-forward"}
+    assert decision.alike == {"extended"}

@@ -335,3 +335,16 @@ def test_noise_in_a_wrong_unit_is_no_noise_of_its_own():
     other = finding("noise", "noise_above_data_sheet", "gyro")
     assert causes(unit, noise) == {"wrong_scale_factor": {"noise_above_data_sheet"}}
     assert len(list(compete([unit, other]))) == 2
+
+
+@pytest.mark.parametrize(
+    ("masked", "turn", "one"),
+    [(False, "x-fwd", True), (False, "y-fwd", False), (True, "x-fwd", False)],
+)
+def test_an_impact_in_a_turn_is_the_step_of_that_turn(masked, turn, one):
+    """What is masked is not in the readings any more, so it makes no step."""
+    step = replace(effect("step_in_turn", "gyro"), **of("x-fwd"))
+    impact = finding("quality", "impact", "gyro", masked=masked, **of(turn))
+    assert causes(impact, step) == (
+        {"impact": {"step_in_turn"}} if one else {"impact": set(), "step_in_turn": set()}
+    )

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from inertial.estimation.triad import linear_names
 from stages.diagnosis.result import result_of
@@ -98,3 +99,22 @@ def test_widened_its_sigmas_and_covariances_agree():
     assert [row["value"] for row in result.rows] == [3.0] * 12 + [7.0]
     assert np.diag(result.covariance) == pytest.approx((1.5 * SIGMA) ** 2)
     assert made((None, None), extended=1.0).widened(1.5).rows[0]["sigma"] is None
+
+
+def test_a_slip_that_a_sensor_does_not_show_is_in_its_sigmas():
+    """The case has turned by θ with probability 0.2: before it M is M R(θ), as it now stands M."""
+    turn, chance = np.array([2e-3, -1e-3, 5e-4]), 0.2
+    own = rows("joint", None)
+    matrix = np.array([[1.01, 0.002, -0.003], [0.001, 0.98, 0.004], [-0.002, 0.003, 1.02]])
+    for row, value in zip(own, [*(matrix - np.eye(3)).ravel(), 0.1, 0.2, 0.3], strict=True):
+        row |= {"value": float(value), "sigma": SIGMA}
+    known = result_of("joint", {"joint": own}, covariance(own), {})
+    result = known.turned(turn, chance)
+    moved = (matrix @ Rotation.from_rotvec(turn).as_matrix() - matrix).ravel()
+    values, sigmas = (np.array([row[key] for row in result.rows[:9]]) for key in ("value", "sigma"))
+    expected = (matrix - np.eye(3)).ravel() + chance * moved
+    np.testing.assert_allclose(values, expected, atol=2e-6)  # R to the second order of θ
+    spread = (sigmas**2 - SIGMA**2) ** 0.5
+    np.testing.assert_allclose(spread, 0.4 * np.abs(moved), atol=2e-6)
+    assert result.method == "mixture"
+    assert [row["value"] for row in result.rows[9:12]] == pytest.approx([0.1, 0.2, 0.3])

@@ -114,7 +114,7 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
                 *outline.value_and_sigma(_("Joint fit")),
                 *outline.value_and_sigma(_("Extended")),
                 outline.Column(_("unit"), "unit"),
-                outline.Column(_("shift, in σ extended"), "number"),
+                outline.Column(_("shift, in σ of the extended fit"), "number"),
                 outline.Column(_("Meaning"), "note"),
             ),
             list(_shifts(own)),
