@@ -1,4 +1,4 @@
-"""Memory of a sensor: the play of its hysteresis."""
+"""Memory of a sensor: play and relay, of which hysteresis is made."""
 
 import numpy as np
 
@@ -17,3 +17,14 @@ def play(values: Array, width: float, before: float) -> Array:
         played[run] = np.clip(before, values[run] - width, values[run] + width)
         before = float(played[run[-1]])
     return played
+
+
+def relay(values: Array, width: float, before: float) -> Array:
+    """The relay operator, (m,): 1 once u, (m,), is above `width`, −1 once it is below −`width`.
+
+    before: what it was before the first, which it keeps until then.
+    """
+    flips = np.where(np.abs(values) > width, np.sign(values), 0.0)
+    flips = np.concatenate([[before], flips])
+    places = np.where(flips != 0, np.arange(len(flips)), 0)
+    return flips[np.maximum.accumulate(places)][1:]

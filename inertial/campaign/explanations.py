@@ -261,7 +261,9 @@ EXPLANATIONS = (
     ),
     # A rate that is another after each turn looks like a bias that wanders, or that remembers.
     Explanation(
-        ("motion_after_turns",), (*MISFITS, "gyro_random_walk", "gyro_hysteresis"), same_sensor
+        ("motion_after_turns",),
+        (*MISFITS, "gyro_random_walk", "gyro_hysteresis", "gyro_bias_sense"),
+        same_sensor,
     ),
     # What was recorded is no turn as planned, at whatever rate it is.
     Explanation(("incomplete_turn", "wrong_angle"), ("wrong_rate",), same_manoeuvre),

@@ -25,6 +25,7 @@ from inertial.effects.gravity_error import GravityError
 from inertial.effects.gyro_accel_misalignment import GyroAccelMisalignment
 from inertial.effects.gyro_bias_jump import GyroBiasJump
 from inertial.effects.gyro_bias_ramp import GyroBiasRamp
+from inertial.effects.gyro_bias_sense import GyroBiasSense
 from inertial.effects.gyro_bias_temperature import GyroBiasTemperature
 from inertial.effects.gyro_dead_band import GyroDeadBand
 from inertial.effects.gyro_flicker import GyroFlicker
@@ -86,6 +87,7 @@ CATALOGUE: dict[str, Effect] = {
         GyroFlicker(),
         *(GyroDeadBand(axis) for axis in "xyz"),
         GyroHysteresis(),
+        GyroBiasSense(),
         GyroSaturation(),
         GyroLatency(),
         # accelerometers

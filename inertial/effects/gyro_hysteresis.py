@@ -54,12 +54,7 @@ class GyroHysteresis(Effect):
         "h", "rad/s", 0.1 * DEGREE_PER_HOUR, _("half the loop of the {axis} gyro")
     )
     of_stillness = True
-    stays = _(
-        "it depends on the rates before the reading, which the reading does not tell. Turns of one "
-        "rate do not show what it does in them: a scale factor is off by h over that rate where "
-        "the bias only lingers after a turn, and by twice that where it has the same sign in it. "
-        "Turn at a second rate to tell"
-    )
+    stays = _("it depends on the rates before the reading, which the reading does not tell")
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 10, 50)
 
     def added(self, truth: Truth, motion: Motion) -> Reading:

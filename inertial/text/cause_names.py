@@ -88,6 +88,7 @@ NAMES = {
     "gravity_error": _("wrong gravity"),
     "gyro_count_size": _("count size of the gyros"),
     "gyro_accel_misalignment": _("gyros rotated against accelerometers"),
+    "gyro_bias_sense": _("gyro bias with the sense of the last turn"),
     "gyro_bias_temperature": _("gyro bias with temperature"),
     "gyro_bias_per_log": _("bias of the gyros after each switch-on"),
     "gyro_dead_band_x": _("dead band of the x gyro"),

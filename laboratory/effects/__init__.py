@@ -34,6 +34,7 @@ from laboratory.effects.gyro_accel_misalignment import GyroAccelMisalignment
 from laboratory.effects.gyro_anisoelasticity import GyroAnisoelasticity
 from laboratory.effects.gyro_bias_jump import GyroBiasJump
 from laboratory.effects.gyro_bias_ramp import GyroBiasRamp
+from laboratory.effects.gyro_bias_sense import GyroBiasSense
 from laboratory.effects.gyro_bias_temperature import GyroBiasTemperature
 from laboratory.effects.gyro_coefficient_drift import GyroCoefficientDrift
 from laboratory.effects.gyro_cubic_drift import GyroCubicDrift
@@ -135,6 +136,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_disturbance": GyroDisturbance.specified,
     "gyro_telegraph": GyroTelegraph.specified,
     "gyro_hysteresis": GyroHysteresis.specified,
+    "gyro_bias_sense": GyroBiasSense.specified,
     "gyro_flicker": GyroFlicker.specified,
     "gyro_low_pass": GyroLowPass.specified,
     "gyro_saturation": GyroSaturation.specified,

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from inertial.effects import CATALOGUE
 from inertial.effects.accel_hysteresis import hysteresis
+from inertial.effects.gyro_bias_sense import last_sense
 from inertial.effects.gyro_hysteresis import course
 from inertial.physics.effect import Reading, Truth
 from inertial.physics.forward import Site, Triad, predict, truth_of
@@ -294,7 +295,13 @@ def test_gyros_remember_whether_the_rate_rose_or_fell():
     loop = course(rate, visits, seen)
     np.testing.assert_allclose(loop[6:, 0], [1, -1, -0.6, 1], atol=1e-12)
     np.testing.assert_allclose(loop[:, 1], [0] * 6 + [-1] * 4, atol=1e-12)
+    kept = last_sense(rate, visits, seen)  # 4 and 10 °/s are turns; 0 and 0.2 °/s are none
+    np.testing.assert_array_equal(kept[:, 0], [0, 1, 1, 1, 1, 1, -1, -1, -1, -1])
+    np.testing.assert_array_equal(kept[:, 1], [0] * 6 + [1] * 4)
+    np.testing.assert_array_equal(last_sense(rate[mixed], visits[mixed], seen[mixed]), kept[mixed])
     turn = replace(on_a_turn(np.zeros(10)), about=np.array([1.0, 0, 0]), rate=about_x, visit=visits)
+    gyro, _ = acted("gyro_bias_sense", [2e-6, 0, 0], turn)
+    np.testing.assert_allclose(gyro[[0, 1, 5, 7, 9], 0], [0, 2e-6, 2e-6, -2e-6, -2e-6], rtol=0.01)
     gyro, _ = acted("gyro_hysteresis", [2e-6, 0, 0], turn)
     np.testing.assert_allclose(gyro[[1, 5, 9], 0], [-2e-6, 2e-6, -2e-6], rtol=0.01)
 

@@ -34,6 +34,7 @@ GROUPS = (
     ),
     (
         *("gyro_g2_sensitivity", "gyro_scale_quadratic", "gyro_warm_up", "gyro_bias_temperature"),
+        "gyro_bias_sense",
         *("accel_cubic", "accel_hysteresis", "accel_warm_up", "table_tilt"),
     ),
     (

@@ -87,6 +87,7 @@ WAYS: Mapping[str, Way] = {
     "gyro_scale_temperature": _three("k_ppm_k", PPM, "k", plans=RATES),
     "gyro_bias_jump": _three("size_deg_h", DEGREE_PER_HOUR, "b", **AT),
     "gyro_hysteresis": _three("offset_deg_h", DEGREE_PER_HOUR, "h", plans=MEMORY),
+    "gyro_bias_sense": _three("offset_deg_h", DEGREE_PER_HOUR, "b", plans=MEMORY),
     "accel_quadratic": _three("k2_micro_g_g2", PPM / G, "k2"),
     "accel_cubic": _three("k3_micro_g_g3", PPM / G**2, "k3", plans=RATES),
     "accel_cross_products": Way(

@@ -102,6 +102,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"height_deg_h": ONE, "dwell_s": 3},
     ),
     "gyro_hysteresis": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
+    "gyro_bias_sense": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
     "accel_flicker": ({"instability_micro_g": 0}, {"instability_micro_g": 10}),
     "gyro_flicker": ({"instability_deg_h": 0}, {"instability_deg_h": 1}),
     "gyro_saturation": ({"limit_deg_s": [300] * 3}, {"limit_deg_s": [30] * 3}),

@@ -432,6 +432,25 @@ def test_a_slow_turn_loads_the_springs_in_part(performed: Performed) -> None:
     assert last[:, 2] == pytest.approx(2 * DEG_H * 0.5 / 4, rel=0.01)
 
 
+def test_gyros_stay_magnetised_by_the_last_turn(performed: Performed) -> None:
+    """40 °/s turn all the domains over; 3.5 °/s back two of four, and the others keep the sense."""
+    plan = [turn(40) | {"rate_deg_s": 40, "log": "turn"}, rest(name="last")]
+    back = turn(3.5) | {"rate_deg_s": 3.5, "log": "back", "id": "back", "degrees": -21}
+    for one in (plan[0], back):
+        del one["seconds"]
+    plan[0]["id"] = "turn"
+    plan += [back, rest(name="then")]
+    effects = {"gyro_bias_sense": {"offset_deg_h": [1, 1, 2]}}
+    for way in (1, -1):
+        plan[0]["degrees"], back["degrees"] = way * 360, -way * 21
+        recording = performed(*plan, effects=effects)
+        expected = np.broadcast_to([0, 0, way * 2 * DEG_H], (399, 3))
+        assert deviation(recording, "last", "gyro") == pytest.approx(expected, abs=4e-3 * DEG_H)
+        assert deviation(recording, "then", "gyro") == pytest.approx(0, abs=4e-3 * DEG_H)
+        steady = deviation(recording, "turn", "gyro")[1300:1699]
+        assert steady == pytest.approx(expected, abs=4e-3 * DEG_H)
+
+
 def test_a_vibration_scatters_and_shifts_while_it_lasts(performed: Performed) -> None:
     """0.1 g for 20 s: 0.5 g/g² × 0.01 g² = 5 mg under a scatter of 0.1 g, 5 sigma of 2000."""
     shake = {"vibration_g": 0.1, "from_s": 9.99, "to_s": 29.99}
