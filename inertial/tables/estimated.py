@@ -73,7 +73,7 @@ NOISE_TERMS = Table(
             "stepped",
             TRUTH,
             "",
-            "whether one static stretch alone changes by a step, which is no drift of the channel",
+            "whether one manoeuvre alone changes by a step at rest: no drift of the channel",
         ),
         Column("value", DOUBLE, "as unit", "coefficient", nullable=True),
         Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),

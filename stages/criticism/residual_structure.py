@@ -80,6 +80,11 @@ class Tested:
         """The tests that detect a structure, the most significant first."""
         return sorted((test for test in self.tests if test.detected), key=lambda test: test.p_value)
 
+    @property
+    def possible(self) -> set[str]:
+        """The kinds of which the recording has what they depend on."""
+        return {test.kind for test in self.tests if test.possible}
+
     def of(self, sensor: str) -> list[Structure]:
         """Those in the readings of a sensor, `gyro` or `accel`."""
         return [test for test in self.detected if test.sensor == sensor]
@@ -283,6 +288,9 @@ SCAN_UNITS = {"time": "Hz", "change": "s", "angle": "cycles per revolution"}
 NOT_NOISE = _("The residuals of the {sensors} are not noise: {description} ({p_value}).")
 ALSO = _("The structure shows in {others} too.")
 CARRIED = _("With {manoeuvres} left out the tests detect none.")
+NO_TEMPERATURE = _(
+    "The recording has no temperature that changes, so it does not show whether they go with it."
+)
 NOT_CARRIED = _("No small group of manoeuvres was found without which it vanishes.")
 CONSEQUENCE = _(
     "The joint result stands as it is: no effect by name is added to it for this "
@@ -350,6 +358,8 @@ def _finding(
     if others := [_name(test) for test in tests[1:]]:
         sentence.append(ALSO.format(others=_(" and in ").join(others)))
     sentence.append(CARRIED.format(manoeuvres=listed(carried)) if carried else NOT_CARRIED)
+    if best.kind in ("time", "change") and "temperature" not in tested.possible:
+        sentence.append(NO_TEMPERATURE)
     action = ACTION_IF_CARRIED.format(manoeuvres=listed(carried)) if carried else ACTION
     if consistent:
         names = _(" and ").join(in_words(name) for name in consistent)

@@ -22,7 +22,7 @@ from inertial.estimation.noise_terms import NoiseTerms, noise_terms
 from inertial.estimation.welch import Spectrum, WelchSums, segment_for
 from inertial.sensors import COLUMNS
 from inertial.tables import AXES
-from stages.noise.steps_at_rest import Course, of_one_stretch
+from stages.noise.steps_at_rest import Course, Step, of_one_manoeuvre
 
 StaticStretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
 
@@ -53,7 +53,7 @@ class _Pool:
     stretch: StaticStretch | None = None
     samples: int = 0
     course: Course = field(default_factory=Course)
-    steps: list[tuple[int, Array]] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
 
     @classmethod
     def of(
@@ -97,7 +97,8 @@ class _Pool:
     def end(self) -> None:
         for sums in (self.sums, self.powers, self.welch):
             sums.end()
-        self.steps.append(self.course.step())
+        if self.stretch is not None:
+            self.steps.append(Step(self.stretch[0], *self.course.step()))
         self.course = Course()
 
     @property
@@ -166,7 +167,7 @@ class SensorNoise:
     """The noise of the c recorded channels of a sensor.
 
     `interval`: s, between samples; `seconds`: of the longest stretch; `stepped`: (c,), whether one
-    stretch alone changes by a step, so that what it shows as a drift is none.
+    manoeuvre alone changes by a step at rest, so that what it shows as a drift is none.
     """
 
     sensor: str
@@ -256,5 +257,5 @@ def _noise_of(pool: _Pool) -> SensorNoise:
         pool.welch.spectrum(),
         pool.interval,
         max(pool.powers.seconds),
-        of_one_stretch(pool.steps, len(pool.channels)),
+        of_one_manoeuvre(pool.steps, len(pool.channels)),
     )

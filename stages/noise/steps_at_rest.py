@@ -1,9 +1,9 @@
-"""Whether a single static stretch changes by a step, which the noise would take for a drift.
+"""Whether a single manoeuvre changes by a step at rest, which the noise would take for a drift.
 
-A bias that jumps, or an IMU that is moved, within one rest looks there like a random walk, and a
-random walk of that size would hide it: every manoeuvre would be allowed to differ as much. A drift
-is in all stretches. So where the others of comparable length show none, what one of them shows is
-no drift.
+A bias that jumps, or an IMU that is moved, within one manoeuvre looks there like a random walk, and
+a random walk of that size would hide it: every manoeuvre would be allowed to differ as much. A
+drift is in all. So where the static stretches of comparable length in other manoeuvres show none,
+what those of one manoeuvre show is no drift.
 """
 
 from collections.abc import Sequence
@@ -58,12 +58,26 @@ class Course:
         return k * self.each, squares.max(axis=0) / np.where(variance > 0, variance, np.inf)
 
 
-def of_one_stretch(steps: Sequence[tuple[int, Array]], channels: int) -> Booleans:
-    """Of which channels a single stretch alone changes by a step, (c,)."""
-    known = [(samples, ratios) for samples, ratios in steps if samples]
+@dataclass(frozen=True)
+class Step:
+    """Of the static stretch of a manoeuvre, see `Course.step`."""
+
+    manoeuvre: str
+    samples: int
+    ratios: Array
+
+
+def of_one_manoeuvre(steps: Sequence[Step], channels: int) -> Booleans:
+    """Of which channels a single manoeuvre alone changes by a step at rest, (c,)."""
+    known = [step for step in steps if step.samples]
     found = np.zeros(channels, bool)
-    for samples, ratios in known:
-        others = [r for n, r in known if r is not ratios and n >= COMPARABLE * samples]
+    for step in known:
+        least = COMPARABLE * step.samples
+        others = [
+            other.ratios
+            for other in known
+            if other.manoeuvre != step.manoeuvre and other.samples >= least
+        ]
         if len(others) >= LEAST_OTHERS:
-            found |= (ratios > CLEAR) & (np.array(others) < QUIET).all(axis=0)
+            found |= (step.ratios > CLEAR) & (np.array(others) < QUIET).all(axis=0)
     return found

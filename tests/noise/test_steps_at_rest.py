@@ -1,10 +1,12 @@
 """A step within one rest is no drift; a drift is in all rests."""
 
+from dataclasses import replace
+
 import chain
 import numpy as np
 import pytest
 
-from stages.noise.steps_at_rest import CLEAR, QUIET, Course, of_one_stretch
+from stages.noise.steps_at_rest import CLEAR, QUIET, Course, Step, of_one_manoeuvre
 
 RESTS, SAMPLES = 6, 4000
 
@@ -17,7 +19,7 @@ def course(values: np.ndarray) -> Course:
     return made
 
 
-def rests(seed: int, step: float = 0.0, walk: float = 0.0) -> list[tuple[int, np.ndarray]]:
+def rests(seed: int, step: float = 0.0, walk: float = 0.0) -> list[Step]:
     """White noise of 1, x also with a walk in all rests, y with a step within the third."""
     random = np.random.default_rng(seed)
     made = []
@@ -25,7 +27,7 @@ def rests(seed: int, step: float = 0.0, walk: float = 0.0) -> list[tuple[int, np
         values = random.normal(size=(SAMPLES, 3))
         values[:, 0] += walk * np.cumsum(random.normal(size=SAMPLES))
         values[SAMPLES // 3 :, 1] += step * (number == 2)
-        made.append(course(values).step())
+        made.append(Step(f"rest {number}", *course(values).step()))
     return made
 
 
@@ -41,16 +43,18 @@ def test_the_ratio_is_that_of_the_means_before_and_after():
 def test_a_step_within_one_rest_alone_is_found_and_a_walk_is_none():
     for seed in range(20):
         clean, stepped = rests(seed), rests(seed, step=0.5)
-        assert not of_one_stretch(clean, 3).any()
-        assert of_one_stretch(stepped, 3).tolist() == [False, True, False]
-        assert not of_one_stretch(rests(seed, walk=0.02), 3).any()
-        assert max(ratios.max() for _, ratios in clean) < CLEAR
+        assert not of_one_manoeuvre(clean, 3).any()
+        assert of_one_manoeuvre(stepped, 3).tolist() == [False, True, False]
+        assert not of_one_manoeuvre(rests(seed, walk=0.02), 3).any()
+        assert max(step.ratios.max() for step in clean) < CLEAR
     assert QUIET < CLEAR
 
 
-def test_two_rests_that_change_are_a_drift():
-    two = [*rests(1, step=0.5)[:4], *rests(2, step=0.5)[:4]]
-    assert not of_one_stretch(two, 3).any()
+def test_two_rests_that_change_are_a_drift_unless_they_are_of_one_manoeuvre():
+    first, second = rests(1, step=0.5)[:4], rests(2, step=0.5)[:4]
+    again = [replace(step, manoeuvre=f"again {step.manoeuvre}") for step in second]
+    assert not of_one_manoeuvre([*first, *again], 3).any()
+    assert of_one_manoeuvre([*first, *second], 3).tolist() == [False, True, False]
 
 
 @pytest.mark.slow

@@ -105,11 +105,11 @@ def _nothing(segments: Iterable[Record]) -> str:
 
 
 def _stepped(terms: Sequence[Record]) -> Iterator[str]:
-    """Of which axes a single rest changes by a step."""
+    """Of which axes a single manoeuvre changes by a step at rest."""
     rows = [row["channel"][-1] for row in terms if row["stepped"]]
     if axes := list(dict.fromkeys(rows)):
         yield _(
-            "Within one static position alone {axes} changes by a step: B, K and R contain it, and "
+            "At rest in one manoeuvre alone {axes} changes by a step: B, K and R contain it, and "
             "enter no σ.",
             axes=listed(axes),
         )
