@@ -17,6 +17,8 @@ from inertial.campaign.masked_samples import MaskedSamples
 from inertial.campaign.measurement import NOTHING, Measurement, SensorResult, measurements_of
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import Row, rows_of
+from inertial.campaign.static_positions import StaticPosition
+from inertial.estimation.random_walk import measured_covariance
 from inertial.estimation.triad import linear_names
 from inertial.estimation.uncertainty_budget import Model, budget
 from inertial.tables.errors import Refusal
@@ -146,21 +148,25 @@ def _deviations(
 ) -> tuple[Array, Array]:
     """What biases are off by, of accelerometers and gyros, where the result has one of each.
 
-    From one switch-on to the next, by a scatter of the manoeuvres, and by a random walk, which at
-    any time of T is K √(T/6) from its mean.
+    By a scatter of the manoeuvres, by a random walk between them, which at any time of T is
+    K √(T/6) from its mean, and by what is known of the drift before a fit: from one switch-on to
+    the next, and what the noise at rest shows, from the mean of the static positions.
     """
     time, _warm = data.course
     seconds = float(np.ptp(time[np.isfinite(time)])) if np.isfinite(time).any() else 0.0
 
-    def of(result: SensorResult) -> Array:
-        between = data.drift(result.sensor).switch_on
+    def of(result: SensorResult, positions: Sequence[StaticPosition]) -> Array:
         fit = (result.triad is not None and _fit(fits, data.mount, result)) or {}
         scatter, walk = (fit.get(name) or 0.0 for name in ("scatter", "random_walk"))
-        sizes = [np.full(3, scatter), np.full(3, walk * np.sqrt(seconds / 6))]
-        sizes += [] if between is None else [between]
-        return np.asarray(np.sqrt(np.sum(np.square(sizes), axis=0)))
+        variance = np.full(3, scatter**2 + walk**2 * seconds / 6)
+        if positions:
+            stretches = [position.stretch for position in positions]
+            known = measured_covariance(stretches, data.drift(result.sensor))
+            variance += np.trace(known, axis1=1, axis2=2) / len(stretches) - known.mean(axis=(1, 2))
+        return np.asarray(np.sqrt(variance))
 
-    return of(measurement.accelerometer), of(measurement.gyro)
+    accel = of(measurement.accelerometer, data.accelerometer_positions[0])
+    return accel, of(measurement.gyro, data.gyro_positions[0])
 
 
 def _scatters(fits: Sequence[Row], mount: str) -> tuple[Array, Array]:
