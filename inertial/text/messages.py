@@ -2,10 +2,10 @@
 
     _("{count} records are missing before record {record}", count=12, record=4711)
 
-The English sentence is its own key. `messages.pot`, beside this file, lists all of them; `make
-docs` writes it anew, and a test fails where it lacks one. Another language is a file
-`<language>.po` beside it. A process speaks English unless it says `speak` before it imports what
-has sentences in it; then the sentences of the tables that it reads are in that language too.
+The English sentence is its own key. Another language is a file `<language>.po` beside this one, to
+which `make docs` adds what is new in the code; a test fails where it lacks a sentence. A process
+speaks English unless it says `speak` before it imports what has sentences in it; then the sentences
+of the tables that it reads are in that language too.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from typing import Any
 
 from inertial.text.recipes import Recipe, filled, remember, rendered, values_in
 
-CATALOGUE = Path(__file__).with_name("messages.pot")
+LANGUAGES = Path(__file__).parent
 ENGLISH = "en"
 NOTHING = "\u200b"  # in place of a word that another language does not have; "" is no translation
 LOCALES = {"en": "en", "zh": "zh-CN"}  # as a page states it
 
 
-def translations(language: str, folder: Path = CATALOGUE.parent) -> NullTranslations:
+def translations(language: str, folder: Path = LANGUAGES) -> NullTranslations:
     """The sentences in a language; those that it lacks stay English."""
     file = folder / f"{language}.po"
     if not file.exists():
