@@ -8,13 +8,14 @@ from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.differences import Difference, table_of
 from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.stage import Stage, Tables
-from stages.comparison.declared import DECLARED
-from stages.comparison.methods_compared import Results, method_against_method
-from stages.comparison.rate_segments_compared import (
+from stages.comparison.compared import (
+    Results,
     forward_against_backward,
+    method_against_method,
     static_against_turns,
     straight_line,
 )
+from stages.comparison.declared import DECLARED
 
 
 def comparison(

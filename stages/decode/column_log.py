@@ -18,8 +18,7 @@ from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
-from stages.decode.decoded import Decoded, first_of, intervals_of, on_axis
-from stages.decode.table_angle import ANGLE_UNITS, Continuous
+from stages.decode.decoded import ANGLE_UNITS, Continuous, Decoded, first_of, intervals_of, on_axis
 
 # What a degree of a unit is in K, and its zero.
 KELVIN = {"degC": (1.0, ICE_POINT), "K": (1.0, 0.0), "degF": (5 / 9, ICE_POINT - 32 * 5 / 9)}

@@ -21,7 +21,7 @@ from inertial.tables import BODY, OF_TRIAD
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, STAGES
 from stages.extension.candidates import Candidate
-from stages.extension.selected_sizes import SelectedSizes
+from stages.extension.models import SelectedSizes
 
 # ---- The parameters of a model with effects, their covariance, and how well it fits.
 

@@ -22,7 +22,7 @@ from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
-from stages.segment import completeness, reduction, repair, turn_completeness
+from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
 from stages.segment.detection import ExaminationOfRests, compare
 from stages.segment.encoder import ByEncoder, EncoderJumps, plan_by_encoder, without_unused
@@ -271,12 +271,12 @@ def _turned(
         clipped = sums.clipped(stated.name).get("", np.zeros(6, bool))[3:]
         own = in_motion.get(stated.name, blocks.iloc[:0])
         given = (own, gaps, level, tolerance, clipped)
-        done = turn_completeness.turn(located, place, told.manoeuvre, *given)
+        done = completeness.turn(located, place, told.manoeuvre, *given)
         if done.complete and told.on_record is not None:
             told = told.from_rest_to_rest
-            done = turn_completeness.turn(located, place, told.manoeuvre, *given)
+            done = completeness.turn(located, place, told.manoeuvre, *given)
         if located.axes.gyro != AS_NAMED:
-            done, told = turn_completeness.by_other_axes(done), replace(told, used=False)
+            done, told = completeness.by_other_axes(done), replace(told, used=False)
         told_of[stated.name] = told
         performed[stated.name] = replace(done, sentence=f"{done.sentence} {told.remark}".rstrip())
     return performed, told_of

@@ -27,7 +27,7 @@ from inertial.estimation.temperature import (
 from inertial.physics.drift import delay
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import stretches
-from stages.criticism.temperature_selection import select_with_temperature, temperature_models
+from stages.criticism.temperature_functions import select_with_temperature, temperature_models
 from tests.expressions import value_of
 
 G = 9.8

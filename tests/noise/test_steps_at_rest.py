@@ -4,7 +4,7 @@ import chain
 import numpy as np
 import pytest
 
-from stages.noise.steps_at_rest import CLEAR, QUIET, Course, of_one_stretch
+from stages.noise.static_stretches import CLEAR, QUIET, Course, of_one_stretch
 
 RESTS, SAMPLES = 6, 4000
 

@@ -45,13 +45,13 @@ from stages.report.sections import basis, unmodelled_effects
 from stages.report.sections.axes_of_case import axes_of_case
 from stages.report.sections.certified_values import (
     NOT_USABLE,
+    conformity,
     earlier_values,
     frame_of,
     further_terms,
     values,
 )
 from stages.report.sections.comparisons import changed_in_words
-from stages.report.sections.conformity import conformity
 from stages.report.sections.findings import causes, spoils
 from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
