@@ -10,8 +10,8 @@ from drafting import Document, comments, drafted, told, written
 from logs_by_hand import EIGHTEEN, by_hand_log
 from moved_by_hand import GRAVITY, RATE
 
+from commands.check import no_results
 from commands.draft.__main__ import draft, main
-from commands.no_result import no_results
 from inertial.estimation.triad import linear_names
 from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal

@@ -6,9 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from commands.design.for_campaign import RIGHT, Addition
+from commands.design.for_campaign import NAMES, RIGHT, Addition, Reached
 from commands.design.from_nothing import Designed
-from commands.design.wanted import NAMES, Reached
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.effect_evidence import evidence

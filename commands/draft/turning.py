@@ -5,8 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from commands.draft.gravity import gravity_in
-from commands.draft.series import Divided, Still
+from commands.draft.series import Divided, Still, gravity_in
 from inertial.arrays import Array
 from inertial.estimation.attitude import integrate
 from inertial.signal.axis_permutations import AS_NAMED, PERMUTATIONS, Permutation
