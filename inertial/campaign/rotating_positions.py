@@ -12,8 +12,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.interpolated_gaps import gaps_of, weights_of
-from inertial.campaign.recorded_turns import refusal_of
+from inertial.campaign.recorded_turns import gaps_of, refusal_of, weights_of
 from inertial.campaign.records import Manoeuvre, Part
 from inertial.campaign.static_positions import (
     Blocks,

@@ -20,7 +20,7 @@ from inertial.signal.detector import (
     read_in,
 )
 from inertial.signal.free_rotation import FreeRotation
-from inertial.signal.held_readings import readings_of
+from inertial.signal.runs import readings_of
 from inertial.signal.scatter import (
     BLOCK,
     MAD_TO_SIGMA,

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.campaign.effect_evidence import deviance
 from inertial.campaign.equations import Campaign
-from inertial.campaign.shared_tilts import deviance
 from inertial.effects import CATALOGUE
 from inertial.estimation.effect_information import MIN_INFORMATION_SHARE as MIN_SHARE
 from inertial.model_selection import walk_odds

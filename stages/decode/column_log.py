@@ -13,7 +13,7 @@ from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.formats.columns.data_rows import Rows
 from inertial.signal.regular_clock import RegularClock, are_regular, regular_clock
-from inertial.signal.signed_counts import bits_without_sign, signed
+from inertial.signal.scale_factor import bits_without_sign, signed
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _

@@ -8,9 +8,10 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array, Integers
-from inertial.campaign.encoder_jumps import Jump
+from inertial.campaign.encoder import Jump
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.signal.detector import Given
+from inertial.signal.gravity_turned import rate_of_gravity
 from inertial.signal.plan_detector import (
     Misread,
     Recorded,
@@ -20,7 +21,6 @@ from inertial.signal.plan_detector import (
     StaticMeans,
     Swapped,
 )
-from inertial.signal.rate_of_gravity import rate_of_gravity
 from inertial.tables import ACCEL, GYRO, STATIC_PHASES
 from stages.segment.located import Located
 from stages.segment.matching import motion
