@@ -12,11 +12,11 @@ from commands.draft.series import Divided
 from commands.new_campaign import comment
 from inertial.arrays import Array
 from inertial.campaign.unknown_attitude import in_words
-from inertial.estimation.length_outliers import off_lengths
 from inertial.estimation.multi_position import (
     SCATTER_RANGE,
     FreeRest,
     free_positions,
+    off_lengths,
     unobservable,
 )
 from inertial.estimation.scatter_and_random_walk import with_scatter

@@ -8,10 +8,9 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.estimation.effect_information import EffectInformation
-from inertial.estimation.elimination import Name
+from inertial.estimation.elimination import OF_AXIS, OF_CASE, TILTS, Name, case_by_both, names_of
 from inertial.estimation.gyroscope_equations import is_upright
 from inertial.estimation.least_squares import System
-from inertial.estimation.position_tilt import OF_AXIS, OF_CASE, TILTS, case_by_both, names_of
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS

@@ -23,7 +23,7 @@ from inertial.campaign.static_positions import (
     turn_errors,
 )
 from inertial.estimation.accelerometers import StaticForce
-from inertial.estimation.sensitivities import Sensitivities
+from inertial.estimation.effect_information import Sensitivities
 from inertial.physics.motion import is_vertical, level_axes, mean_turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 

@@ -24,8 +24,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.bias_instability import Instability, moments
 from inertial.estimation.elimination import EquationBlock, Name
+from inertial.estimation.noise_model import Instability, moments
 
 COMMON_CLOCK = ""  # the name of the clock of all logs, where they have one
 

@@ -1,16 +1,21 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
-from inertial.tables.shared import AXIS, MOUNT, PHASES, QUANTITY, SENSOR, channels
 from inertial.tables.table import (
+    AXIS,
     DOUBLE,
     INTEGER,
     LABEL,
+    MOUNT,
+    PHASES,
+    QUANTITY,
+    SENSOR,
     SENTENCE,
     TEXT,
     TEXTS,
     TRUTH,
     Column,
     Table,
+    channels,
 )
 
 # ---- Samples with the errors taken out, and the checks of them.

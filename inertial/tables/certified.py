@@ -1,7 +1,6 @@
 """The certificate: what the laboratory states beside the numbers, and conformity to tolerances."""
 
-from inertial.tables.shared import MOUNT, QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import DOUBLE, MOUNT, QUANTITY, SENSOR, TEXT, TRUTH, Column, Table
 
 CERTIFICATE = Table(
     "certificate",

@@ -1,7 +1,6 @@
 """Repairs of a recording, candidates for the result, and the diagnosis: causes and verdict."""
 
-from inertial.tables.shared import BODY, MOUNT
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import BODY, DOUBLE, INTEGER, MOUNT, SENTENCE, TEXT, TRUTH, Column, Table
 
 SENSOR = Column("sensor", TEXT, "", "accel or gyro, where one is concerned", nullable=True)
 AXIS = Column("axis", TEXT, "", BODY, nullable=True)

@@ -1,7 +1,19 @@
 """Noise, parameters, covariance, fits and comparisons."""
 
-from inertial.tables.shared import BODY, METHOD, MOUNT, QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    BODY,
+    DOUBLE,
+    INTEGER,
+    METHOD,
+    MOUNT,
+    QUANTITY,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+)
 from inertial.text.parameters import AXES
 
 # --- Noise, parameters, covariance, fits and positions ---

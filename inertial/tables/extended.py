@@ -1,7 +1,6 @@
 """The extended model: its gain, and the change of the parameters."""
 
-from inertial.tables.shared import BODY, MOUNT
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
+from inertial.tables.table import BODY, DOUBLE, INTEGER, MOUNT, TEXT, TRUTH, Column, Table
 
 _MODEL = Column(
     "model",

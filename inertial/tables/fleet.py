@@ -1,7 +1,6 @@
 """What several campaigns show together: effects and what shares them, populations of types."""
 
-from inertial.tables.shared import SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import DOUBLE, INTEGER, SENSOR, SENTENCE, TEXT, TRUTH, Column, Table
 
 FINDING = Column("finding", TEXT, "", "id of the finding")
 LEVELS = "type, table, imu or campaign; with + what the campaigns do not tell apart"

@@ -1,7 +1,16 @@
 """How well calibrations of one IMU repeat, jumps between them, and what the next may be."""
 
-from inertial.tables.shared import QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    DOUBLE,
+    INTEGER,
+    QUANTITY,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+)
 
 UNIT = Column("unit", TEXT, "", "unit of the parameter, SI")
 

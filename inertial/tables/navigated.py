@@ -1,7 +1,6 @@
 """Free inertial navigation with the readings before and after calibration; alignment at rest."""
 
-from inertial.tables.shared import MOUNT
-from inertial.tables.table import DOUBLE, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import DOUBLE, MOUNT, SENTENCE, TEXT, TRUTH, Column, Table
 
 MOTION = Column("motion", TEXT, "", "rest, or turn: a whole one, from rest to rest")
 SECONDS = Column("seconds", DOUBLE, "s", "of free inertial navigation, from the end of alignment")

@@ -1,7 +1,21 @@
 """The plan: campaign, what is known, manoeuvres, what others published."""
 
-from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, QUANTITY, SENSOR, vector
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    AS_CHANNEL,
+    AXIS,
+    BODY,
+    DOUBLE,
+    INTEGER,
+    LOG,
+    QUANTITY,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    vector,
+)
 
 CAMPAIGN = Table(
     "campaign",

@@ -1,7 +1,24 @@
 """What was recorded: samples, clocks, findings, masks, segments, blocks."""
 
-from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, PHASES, RECORDS, SENSOR, channels
-from inertial.tables.table import DOUBLE, INTEGER, LABEL, SENTENCE, TEXT, TRUTH, WORD, Column, Table
+from inertial.tables.table import (
+    AS_CHANNEL,
+    AXIS,
+    BODY,
+    DOUBLE,
+    INTEGER,
+    LABEL,
+    LOG,
+    PHASES,
+    RECORDS,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    WORD,
+    Column,
+    Table,
+    channels,
+)
 from inertial.text.parameters import AXES
 
 SAMPLES = Table(

@@ -1,7 +1,19 @@
 """Parameters by epochs, windows and angles, and the motion of the table."""
 
-from inertial.tables.shared import AXIS, BODY, METHOD, MOUNT, QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, Column, Table
+from inertial.tables.table import (
+    AXIS,
+    BODY,
+    DOUBLE,
+    INTEGER,
+    METHOD,
+    MOUNT,
+    QUANTITY,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    Column,
+    Table,
+)
 
 EPOCHS = Table(
     "epochs",

@@ -1,8 +1,20 @@
 """The simulation and its unmodelled effects."""
 
 from inertial.tables.recorded import FINDINGS
-from inertial.tables.shared import BODY, LOG, MOUNT, PHASES, channels
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    BODY,
+    DOUBLE,
+    INTEGER,
+    LOG,
+    MOUNT,
+    PHASES,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    channels,
+)
 
 # ---- The simulated readings and their residuals.
 

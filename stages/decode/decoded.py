@@ -22,7 +22,7 @@ from inertial.formats.arrow_arrays import (
     batch_of_rows,
     repeated_text,
 )
-from inertial.formats.columns.encoder_log import Encoder
+from inertial.formats.columns.column_reader import Encoder
 from inertial.formats.gps_time import WEEK
 from inertial.tables import ACCOUNTS, MEAN_SIGMAS, REFUSED, SAMPLES
 from inertial.tables.errors import Refusal
