@@ -104,7 +104,6 @@ def test_rests_and_turns_of_one_log_come_in_their_order(tmp_path):
 
 # ---- by hand, in columns without a name
 
-
 UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 
 

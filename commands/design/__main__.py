@@ -31,7 +31,7 @@ from commands.design.for_campaign import (
 from commands.design.from_nothing import Designed, best, foreseen_of
 from commands.design.turntable import FULL_SCALE_SHARE, Instrument, Turntable, instrument, turntable
 from commands.design.visits import Item, possible, published
-from commands.new_campaign import free_folder
+from commands.new import free_folder
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.foreseen import session_seconds

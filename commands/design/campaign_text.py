@@ -9,7 +9,7 @@ from ruamel.yaml import YAML
 
 from commands.design.turntable import Instrument, Turntable
 from commands.design.visits import Item
-from commands.new_campaign import LINE_WIDTH, comment, flow
+from commands.new import LINE_WIDTH, comment, flow
 from inertial.text.messages import _
 
 TABLE_KEYS = ("name", "heading_deg", "position_sigma_arcsec", "angle_sigma_arcsec")

@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from commands.draft.header import header
+from commands.draft.header import GRAVITY, GRAVITY_SIGMA, header
 from commands.draft.manoeuvres import Manoeuvre, leaning
-from commands.draft.questions import GRAVITY, GRAVITY_SIGMA
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
 from commands.draft.triads import Triad
-from commands.new_campaign import GUESS, flow, guess, in_flow, scalar
+from commands.new import GUESS, flow, guess, in_flow, scalar
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 

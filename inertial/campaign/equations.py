@@ -29,8 +29,7 @@ from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
-from inertial.estimation.scatter_by_hand import Scatter
-from inertial.estimation.switch_ons import SwitchOns
+from inertial.estimation.scatter_and_random_walk import Scatter, SwitchOns
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined

@@ -25,7 +25,7 @@ from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.effect_information import NO_SENSITIVITIES, Sensitivities
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
-from inertial.estimation.scatter_by_hand import Scatter
+from inertial.estimation.scatter_and_random_walk import Scatter
 from inertial.physics.effect import GOOD, POOR, Effect
 from inertial.physics.forward import Triad
 from inertial.physics.motion import Motion

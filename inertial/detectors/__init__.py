@@ -41,8 +41,15 @@ from inertial.detectors.repeated_records import Duplicate, HeldRecord
 from inertial.detectors.saturation import Saturation
 from inertial.detectors.slower_sensor import SlowerSensor
 from inertial.detectors.spike import Spikes
-from inertial.detectors.stamp_faults import ArrivalStamps, ClockStep, TimeBackwards, TimeStandsStill
-from inertial.detectors.stamps_misstated import RateOff, WrongDay, WrongTimeUnit
+from inertial.detectors.stamp_faults import (
+    ArrivalStamps,
+    ClockStep,
+    RateOff,
+    TimeBackwards,
+    TimeStandsStill,
+    WrongDay,
+    WrongTimeUnit,
+)
 from inertial.detectors.table_moving import TableMoving
 from inertial.detectors.table_rate import TableRateByGravity
 from inertial.detectors.temperatures import (

@@ -42,8 +42,12 @@ from inertial.estimation.least_squares import (
     with_errors_in_order,
 )
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
-from inertial.estimation.scatter_and_random_walk import ScatterFit
-from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
+from inertial.estimation.scatter_and_random_walk import (
+    Scatter,
+    ScatterFit,
+    contradicting,
+    likeliest,
+)
 from inertial.estimation.triad import UNKNOWNS, design_of
 from inertial.physics.motion import cross
 

@@ -24,7 +24,7 @@ from inertial.estimation.effect_information import Sensitivities
 from inertial.estimation.elimination import EquationBlock, whitened
 from inertial.estimation.multi_position import upward_of
 from inertial.estimation.random_walk import Stretch
-from inertial.estimation.scatter_by_hand import Scatter
+from inertial.estimation.scatter_and_random_walk import Scatter
 from inertial.estimation.triad import UNKNOWNS
 
 

@@ -16,7 +16,6 @@ from stages.criticism.finding_rows import TableRow
 
 # ---- Means at temperatures, without time: readings at rest, and scale factors of turns.
 
-
 ACCELEROMETERS, GYROS, SCALE = "accel", "gyro", "scale"
 MIN_SPAN = 5.0  # K, of a sweep of temperatures
 MIN_TEMPERATURES = 6  # so that the residuals of a parabola show the noise

@@ -16,7 +16,7 @@ from inertial.campaign.scatter_given_effects import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
-from inertial.estimation.switch_ons import SwitchOns
+from inertial.estimation.scatter_and_random_walk import SwitchOns
 from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS

@@ -10,13 +10,14 @@ import pandas as pd
 
 from inertial.arrays import Array, finite_or_none
 from inertial.campaign.records import Row
-from inertial.estimation.calibration_components import Component, components
 from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.estimation.history_of_values import (
     MIN_VALUES,
+    Component,
     History,
     Jump,
     Prediction,
+    components,
     drift,
     jump,
     predicted,

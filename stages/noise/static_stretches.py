@@ -16,10 +16,9 @@ from inertial.arrays import Array, Booleans, finite_or_none
 from inertial.campaign.noise_levels import drift_of
 from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
-from inertial.estimation.multiresolution import MIN_WHOLE, Powers
+from inertial.estimation.multiresolution import MIN_WHOLE, Powers, Spectrum, WelchSums, segment_for
 from inertial.estimation.noise_model import TERMS, NoiseModel
 from inertial.estimation.noise_terms import NoiseTerms, noise_terms
-from inertial.estimation.welch import Spectrum, WelchSums, segment_for
 from inertial.sensors import COLUMNS
 from inertial.tables import AXES
 

@@ -24,11 +24,10 @@ from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
-from stages.segment.detection import ExaminationOfRests, compare
 from stages.segment.encoder import ByEncoder, EncoderJumps, plan_by_encoder, without_unused
 from stages.segment.located import Located
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
-from stages.segment.plan_and_recording import Recording, recorded_of
+from stages.segment.plan_and_recording import ExaminationOfRests, Recording, compare, recorded_of
 from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken
 from stages.segment.span_offsets import logs_in_doubt, moved_back, spans_off, whole_logs
