@@ -86,7 +86,7 @@ def _restricted(reduced: EffectInformation, observable: Array) -> EffectInformat
 # ---- The tilts of positions that gyros and accelerometers both show, and the likelihood that
 # follows.
 #
-# Gyros in a turn about the vertical show the part that is fixed to the case; see `position_tilt`.
+# Gyros in a turn about the vertical show the part that is fixed to the case; see `elimination`.
 # So their equations are written in the unknowns of the accelerometers, and what both show counts
 # once.
 
