@@ -12,7 +12,6 @@ from inertial.detectors.dead_axis import DeadAxis
 from inertial.detectors.encoder_against_plan import EncoderAngles, EncoderScale
 from inertial.detectors.fixture_creep import FixtureCreep
 from inertial.detectors.gap import Gap
-from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.impact import Impact
 from inertial.detectors.manoeuvres_against_plan import (
     ManoeuvreMissing,
@@ -50,8 +49,8 @@ from inertial.detectors.stamp_faults import (
     WrongDay,
     WrongTimeUnit,
 )
+from inertial.detectors.stated_against_gravity import GravityError, TableRateByGravity
 from inertial.detectors.table_moving import TableMoving
-from inertial.detectors.table_rate import TableRateByGravity
 from inertial.detectors.temperatures import (
     TemperatureDrift,
     TemperatureMisstated,

@@ -42,6 +42,13 @@ class Column:
     nullable: bool = False
 
 
+def optional(
+    name: str, type: str | tuple[Column, ...], unit: str, meaning: str, frame: str = ""
+) -> Column:
+    """A column that may be null: not known, not tested, or not applicable."""
+    return Column(name, type, unit, meaning, frame, nullable=True)
+
+
 @dataclass(frozen=True)
 class Table:
     """Whoever reads this table gets these columns, in this order.
@@ -121,14 +128,7 @@ def vector(stem: str, unit: str, meaning: str, *, nullable: bool = True) -> list
 
 def channels(meaning: str, *, prefix: str = "") -> list[Column]:
     return [
-        Column(
-            f"{prefix}{channel}",
-            DOUBLE,
-            UNITS[channel[:-2]],
-            f"{meaning}, {channel}",
-            BODY,
-            nullable=True,
-        )
+        optional(f"{prefix}{channel}", DOUBLE, UNITS[channel[:-2]], f"{meaning}, {channel}", BODY)
         for channel in CHANNELS
     ]
 
