@@ -20,7 +20,6 @@ import numpy as np
 from ruamel.yaml import YAML
 
 from commands.design import for_campaign, printed
-from commands.design.campaign_text import new_campaign, with_more
 from commands.design.for_campaign import (
     Splitting,
     campaign_tables,
@@ -29,6 +28,7 @@ from commands.design.for_campaign import (
     wanted_sigmas,
 )
 from commands.design.from_nothing import Designed, best, foreseen_of
+from commands.design.printed import new_campaign, with_more
 from commands.design.turntable import FULL_SCALE_SHARE, Instrument, Turntable, instrument, turntable
 from commands.design.visits import Item, possible, published
 from commands.new import free_folder

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from inertial.campaign.effect_evidence import Moved, most_moved
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
-from inertial.campaign.external_reliability import Moved, most_moved
 from inertial.effects import KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.estimation.effect_information import whitening
 from inertial.model_selection.cause import (

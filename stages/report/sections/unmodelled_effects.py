@@ -25,6 +25,7 @@ from stages.report.sections.effect_sentences import (
     grade_of,
     kind_of,
     largest_shift,
+    limits_of,
     name_of,
     reductions,
     summary,
@@ -32,9 +33,8 @@ from stages.report.sections.effect_sentences import (
     tested_effects,
     worth,
 )
+from stages.report.sections.effect_sentences import observable as is_observable
 from stages.report.sections.findings import FINDING_TABLES, cause_of_finding, title_of
-from stages.report.sections.possible_sizes import limits_of
-from stages.report.sections.possible_sizes import observable as is_observable
 from stages.report.tables import (
     CAUSE_TABLES,
     GAIN_TABLES,
