@@ -71,7 +71,7 @@
 #                                 DRAWS=40 so many campaigns (docs/cluster.md)
 #   make scale                    what campaigns cost, many and long ones, in docs/scale.md; an hour
 #                                 on two cores, can be resumed; with DRAWS=5 so many small campaigns
-#   make docs                     docs/tables.md, docs/theory.md and the catalogues of messages, from the code
+#   make docs                     docs/tables.md, docs/theory.md and the messages to translate, from the code
 #   make recordings               docs/recordings.md: the real recordings, which are not part of the
 #                                 project, drafted and compared with what is known of them; 15 minutes
 #   make clean                    deletes what can be computed again from the raw logs; reports stay
@@ -261,11 +261,13 @@ mutants: .venv/complete
 docs: .venv/complete
 	$(BIN)/python -m commands.tables
 	$(BIN)/python -m commands.theory
+	messages=$$(mktemp --suffix=.pot)
+	trap 'rm "$$messages"' EXIT
 	$(BIN)/pybabel -q extract --keywords _ --keywords plural:1,2 --keywords counted:2 --no-wrap --omit-header \
-		--sort-by-file --add-location file --output inertial/text/messages.pot inertial stages commands overviews
+		--sort-by-file --no-location --output "$$messages" inertial stages commands overviews
 	for language in zh; do # what is new there has an empty translation
 		$(BIN)/pybabel -q update --no-fuzzy-matching --ignore-obsolete --no-wrap --ignore-pot-creation-date \
-			--input-file inertial/text/messages.pot --locale $$language --output-file inertial/text/$$language.po
+			--input-file "$$messages" --locale $$language --output-file inertial/text/$$language.po
 	done
 
 # Slurm and munge are Debian's, installed where that is permitted.

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from jinja2 import Environment, StrictUndefined
 
-from inertial.physics.ideal_triad import IdealReading, at_steady_speed, in_free_fall
+from inertial.physics.forward import IdealReading, at_steady_speed, in_free_fall
 from inertial.physics.site import ANOMALY_SIGMA, EARTH_RATE, normal_gravity
 from inertial.text.numbers import fixed
 from inertial.text.units import DEGREE_PER_HOUR

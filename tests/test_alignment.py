@@ -11,7 +11,7 @@ import laboratory
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.estimation.alignment import at_rest, integrated, separated
 from inertial.tables.errors import Refusal
-from stages.alignment.runs import groups
+from stages.alignment.stage import groups
 
 SOURCE = chain.ROOT / "data/simulated/modulation.yaml"
 # As the description of the campaign has it, by the laws of motion in the level frame.

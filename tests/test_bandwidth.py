@@ -10,8 +10,8 @@ from scipy import stats
 import laboratory
 from inertial.estimation.bandwidth import by_noise, first_order, spread_by_ramps
 from inertial.estimation.encoder_angle import against_encoder
+from inertial.estimation.multiresolution import WelchSums, segment_for
 from inertial.estimation.time_angle import Valued
-from inertial.estimation.welch import WelchSums, segment_for
 
 SOURCE = chain.ROOT / "data/simulated/encoder.yaml"
 STEP, COUNT = 0.005, 1e-8  # s; rad

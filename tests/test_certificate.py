@@ -20,7 +20,7 @@ from stages.diagnosis.conformity import (
 )
 from stages.plan.certificate import Statements
 from stages.report.sections.certificate import SECTION
-from stages.report.sections.conformity import _risk
+from stages.report.sections.certified_values import _risk
 from tests.report.synthetic import campaign, section_on
 
 CAMPAIGN = """

@@ -15,7 +15,7 @@ from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.physics.site import earth_rate
 from inertial.tables.errors import Refusal
 from inertial.tables.yaml_file import YamlFile
-from stages.comparison.methods_compared import Results, method_against_method
+from stages.comparison.stage import Results, method_against_method
 from stages.plan.published import published_values
 
 DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s

@@ -10,8 +10,8 @@ from drafting import Document, comments, drafted, told, written
 from logs_by_hand import EIGHTEEN, by_hand_log
 from moved_by_hand import GRAVITY, RATE
 
+from commands.check import no_results
 from commands.draft.__main__ import draft, main
-from commands.no_result import no_results
 from inertial.estimation.triad import linear_names
 from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal
@@ -103,7 +103,6 @@ def test_rests_and_turns_of_one_log_come_in_their_order(tmp_path):
 
 
 # ---- by hand, in columns without a name
-
 
 UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
 

@@ -13,7 +13,7 @@ import laboratory
 from inertial.campaign.records import Manoeuvre
 from inertial.detectors.encoder_against_plan import EncoderAngles, EncoderScale
 from inertial.estimation.encoder_angle import against_encoder, corrected, low_pass, ripple
-from stages.decode.table_angle import Continuous
+from stages.decode.decoded import Continuous
 from stages.segment.encoder import _in_motion, by_encoder
 
 SOURCE = chain.ROOT / "data/simulated/encoder.yaml"

@@ -11,9 +11,8 @@ from scipy.spatial.transform import Rotation
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.measurement import measurements_of
 from inertial.campaign.records import rows_of
-from inertial.physics.error_growth import Growth, of_alignment
 from inertial.physics.forward import Site
-from inertial.physics.strapdown import Start, aligned, navigated
+from inertial.physics.strapdown import Growth, Start, aligned, navigated, of_alignment
 from inertial.text.parameters import PARTS
 from stages.navigation.corridor import uncertain
 from stages.navigation.navigator import Navigator

@@ -23,8 +23,7 @@ from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 from overviews.tables_of import RESULT
 from overviews.tables_of import tables_of as of_campaign
 from overviews.units import Imu, imus_of
-from stages.history.changes import change
-from stages.history.repeatability import Observed
+from stages.history.repeatability import Observed, change
 from stages.report.tables import Tables
 from tests.report.synthetic import campaign as synthetic
 from tests.report.synthetic import tables_of

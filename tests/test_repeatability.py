@@ -13,9 +13,8 @@ from scipy.spatial.transform import Rotation
 
 from inertial import tables
 from inertial.campaign.records import rows_of
-from inertial.estimation.calibration_components import components
-from inertial.estimation.history_of_values import History, drift, jump, predicted
-from inertial.estimation.switch_ons import between
+from inertial.estimation.history_of_values import History, components, drift, jump, predicted
+from inertial.estimation.scatter_and_random_walk import between
 from inertial.tables.parquet import write_once
 from inertial.tables.yaml_file import YamlFile
 from laboratory.folder import campaign_yaml
@@ -188,7 +187,6 @@ def test_a_drift_is_no_jump():
 
 
 # ---- the stage
-
 
 BIASES = (1.00, 1.03, 0.98, 1.01, 1.60, 1.63, 1.58, 1.61)  # 1e-5 rad/s, known to 1e-7
 

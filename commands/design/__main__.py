@@ -20,13 +20,18 @@ import numpy as np
 from ruamel.yaml import YAML
 
 from commands.design import for_campaign, printed
-from commands.design.campaign_text import new_campaign, with_more
-from commands.design.for_campaign import Splitting, campaign_tables, classes_of
+from commands.design.for_campaign import (
+    Splitting,
+    campaign_tables,
+    classes_of,
+    reach,
+    wanted_sigmas,
+)
 from commands.design.from_nothing import Designed, best, foreseen_of
+from commands.design.printed import new_campaign, with_more
 from commands.design.turntable import FULL_SCALE_SHARE, Instrument, Turntable, instrument, turntable
 from commands.design.visits import Item, possible, published
-from commands.design.wanted import reach, wanted_sigmas
-from commands.new_campaign import free_folder
+from commands.new import free_folder
 from inertial import tables
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.foreseen import session_seconds

@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 
 from commands.draft.campaign_file import campaign_file
+from commands.draft.header import names_of_logs, without_clock
 from commands.draft.manoeuvres import plan_of
-from commands.draft.questions import names_of_logs, without_clock
 from commands.draft.raw_log import raw_log
 from commands.draft.sensors import Kind, kinds_of
-from commands.new_campaign import free_folder
+from commands.new import free_folder
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.numbers import significant, visible

@@ -7,10 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from commands.draft.column_names import sensor_named
 from commands.draft.raw_log import Name, RawLog, finite
 from commands.draft.timing import grows, time_of
-from commands.draft.triads import Triad, other_imus, sensors_among, threes, with_bits
+from commands.draft.triads import Triad, other_imus, sensor_named, sensors_among, threes, with_bits
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 

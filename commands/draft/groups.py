@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from commands.draft.column_names import sensor_named
 from commands.draft.columns import Named
 from commands.draft.raw_log import Name, RawLog, finite
 from commands.draft.timing import time_of
+from commands.draft.triads import sensor_named
 from inertial.arrays import Array
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _

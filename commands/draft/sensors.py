@@ -6,13 +6,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from commands.draft.columns import Columns, Named, columns_of
-from commands.draft.gravity import sphere
 from commands.draft.groups import alike, recorded_together, runs_of, sensors_apart
-from commands.draft.raw_log import RawLog
-from commands.draft.receiver import Receiver, receiver_of
-from commands.draft.scales import Scale, accel_scale, are_counts, gyro_scale
-from commands.draft.series import Divided, Series, divided
-from commands.draft.tails import without_tail
+from commands.draft.raw_log import RawLog, without_tail
+from commands.draft.scales import (
+    Receiver,
+    Scale,
+    Turning,
+    accel_scale,
+    are_counts,
+    gyro_scale,
+    receiver_of,
+    turning,
+)
+from commands.draft.series import Divided, Series, divided, sphere
 from commands.draft.timing import (
     TICKS,
     UNITS,
@@ -23,7 +29,6 @@ from commands.draft.timing import (
     timing_of,
 )
 from commands.draft.triads import Triad
-from commands.draft.turning import Turning, turning
 from inertial.arrays import Array
 from inertial.signal.rests_and_motions import BinStretch, rest_level
 from inertial.tables.errors import Refusal

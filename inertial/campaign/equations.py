@@ -21,6 +21,7 @@ from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import Reference, StaticForce
 from inertial.estimation.carried_effects import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
+from inertial.estimation.effect_information import Sensitivities
 from inertial.estimation.elimination import Name
 from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.gyroscope_observations import EARTH_UP, SteadyRate
@@ -28,9 +29,7 @@ from inertial.estimation.gyroscopes import LinearisedEquations
 from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
-from inertial.estimation.scatter_by_hand import Scatter
-from inertial.estimation.sensitivities import Sensitivities
-from inertial.estimation.switch_ons import SwitchOns
+from inertial.estimation.scatter_and_random_walk import Scatter, SwitchOns
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined

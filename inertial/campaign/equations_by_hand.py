@@ -16,16 +16,18 @@ from inertial.campaign.motions import Merged
 from inertial.campaign.passages import RecordedPassage
 from inertial.campaign.records import Known
 from inertial.campaign.solution import Solution
-from inertial.estimation import force_magnitudes
+from inertial.estimation import accelerometers, multi_position
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.attitude import integrate
 from inertial.estimation.between_positions import NONE, Prior
 from inertial.estimation.carried_effects import Carried, CarriedEquations, carried_equations
 from inertial.estimation.drifting_equations import DriftingEquations
+from inertial.estimation.effect_information import NO_SENSITIVITIES, Sensitivities
+from inertial.estimation.elimination import whitened
 from inertial.estimation.gyroscope_observations import Earth
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
-from inertial.estimation.scatter_by_hand import Scatter
-from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
+from inertial.estimation.scatter_and_random_walk import Scatter
+from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import GOOD, POOR, Effect
 from inertial.physics.forward import Triad
 from inertial.physics.motion import Motion
@@ -93,7 +95,7 @@ class ByHand:
     ) -> DriftingEquations:
         """The equations of the accelerometers at some of the rests."""
         known = (self.gravity.number, self.gravity.scatter, triad)
-        return force_magnitudes.drifting(rests, *known, prior_sigmas, self.force_scatter)
+        return drifting(rests, *known, prior_sigmas, self.force_scatter)
 
     def gyro(
         self,
@@ -170,4 +172,63 @@ def motion_of(
         senses=unknown,
         tumbled=np.zeros((n, 3)),
         square=rate**2,
+    )
+
+
+# ---- The accelerometers in positions of unknown attitude: |f| = g, one linear equation for each.
+#
+#     |P⁻¹ (reading − bias)| − g = 0
+#
+# about P and the upward direction v that the readings give. The row n = P⁻ᵀ v of the three readings
+# is the only combination that no small rotation of the position changes, and it changes by n · δ
+# for an error δ of the readings, whatever its cause: noise, a bias, an effect (Tedaldi, Pretto &
+# Menegatti, ICRA 2014). It is the same estimate as that of `multi_position`, in the twelve unknowns
+# of other methods, with P symmetric.
+
+SYMMETRY_SIGMA = 1e-8  # of M_xy − M_yx
+CROSS_SIGMA = multi_position.PRIOR_SIGMA[3] * np.sqrt(2)  # before both cross terms are alike
+PRIOR_SIGMA = np.append(np.where(np.eye(3, dtype=bool).ravel(), 1.0, CROSS_SIGMA), np.full(3, 10.0))
+PAIRS = ((1, 3), (2, 6), (5, 7))  # of the nine elements by rows
+
+
+def drifting(
+    statics: Sequence[StaticForce],
+    gravity: float,
+    gravity_sigma: float,
+    about: Triad,
+    effect_sigma: Mapping[str, float],
+    scatter: float,
+) -> DriftingEquations:
+    """The equations about a triad and the direction `up` of each position.
+
+    Unknowns: M by rows, bias, gravity, effects; `scatter`, m/s²: between positions, beyond noise.
+    """
+    effects = list(effect_sigma)
+    prior = np.concatenate([accelerometers.PRIOR, [gravity], np.zeros(len(effects))])
+    ups = np.array([static.up for static in statics])
+    normal = ups @ np.linalg.inv(about.matrix)
+    every = accelerometers.linear_rows(statics, gravity, about, prior, effects)
+    along = np.einsum("ni,nij->nj", normal, every)
+    rows = along[:, np.r_[: len(prior), -1]]  # no tilt changes them
+    noise = np.hypot([static.sigma for static in statics], scatter)
+    rows[:, -1] -= multi_position.lengthened(about.matrix, ups, noise, gravity)
+    sigma = np.linalg.norm(normal * noise, axis=1)
+    alike = np.zeros((len(PAIRS), rows.shape[1]))
+    for row, (one, other) in enumerate(PAIRS):
+        alike[row, [one, other]] = 1.0, -1.0
+    symmetric = whitened(alike, np.full(len(PAIRS), SYMMETRY_SIGMA), ())
+    blocks = [(symmetric, Stretch("symmetry"))]
+    for i, static in enumerate(statics):
+        some = slice(i, i + 1)
+        block = whitened(rows[some], sigma[some], ())
+        blocks.append((block, static.stretch or Stretch(f"rest {i}")))
+    names = [("parameter", str(i)) for i in range(UNKNOWNS)] + [("gravity", "")]
+    return DriftingEquations(
+        blocks,
+        ["", *(static.position for static in statics)],
+        {},
+        prior,
+        np.array([*PRIOR_SIGMA, gravity_sigma, *effect_sigma.values()]),
+        (*names, *(("effect", name) for name in effects)),
+        accelerometers.BIAS,
     )

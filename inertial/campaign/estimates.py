@@ -13,8 +13,7 @@ from inertial.campaign.records import Manoeuvre, Part, Row, with_mount
 from inertial.estimation import triad
 from inertial.estimation.gyroscope_observations import EARTH_UP
 from inertial.estimation.least_squares import Estimate
-from inertial.estimation.scatter_and_random_walk import ScatterFit
-from inertial.estimation.switch_ons import SwitchOns
+from inertial.estimation.scatter_and_random_walk import ScatterFit, SwitchOns
 from inertial.tables import AXES, BODY, OF_TRIAD
 from inertial.tables.campaign_inputs import ESTIMATION
 from inertial.text.messages import _

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from inertial.campaign.encoder_windows import by_windows
-from inertial.campaign.interpolated_gaps import gaps_of, sigma_of
+from inertial.campaign.encoder import by_windows
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.recorded_turns import Rotation, mean_rate, recorded_turns
+from inertial.campaign.recorded_turns import Rotation, gaps_of, mean_rate, recorded_turns, sigma_of
 from inertial.campaign.records import Manoeuvre, Part
 from inertial.campaign.static_positions import StaticPosition, stretch_of
 from inertial.estimation.gyroscope_observations import (

@@ -1,6 +1,6 @@
 """The turns of a plan as they were recorded, and why one cannot be used."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import degrees
 from typing import TYPE_CHECKING
@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.campaign.encoder_windows import windows_of
-from inertial.campaign.interpolated_gaps import weights_of
+from inertial.campaign.encoder import windows_of
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.static_positions import NO_BLOCKS, Blocks, by_manoeuvre
-from inertial.estimation.turn_outliers import off_rate, off_ratio
+from inertial.estimation.gyroscope_observations import Gap
+from inertial.estimation.spectrum import rate_deviation
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 
 if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
+
 
 TURNING = ("spin-up", "steady", "spin-down", "settling", "turning")
 MIN_REST_SHARE = 0.1  # of the time of a turn, that its rests last to show the bias in it
@@ -214,3 +215,149 @@ def _refused(one: Rotation, why: str, stated: float | None, ratio: float) -> Rot
     said = degrees(stated or 0.0)
     why = why.format(read=significant(ratio * said, 4), stated=significant(said, 4))
     return replace(one, refusal=why, off_ratio=ratio)
+
+
+# ---- Interpolation of missing samples of a rotation, and the sigma of its angle.
+#
+# In the steady part the angle is the mean recorded rate times the missing time, in a ramp the
+# integral of the straight line between the neighbouring blocks. Their noise is in the equations;
+# the other errors of the angle are:
+#
+# - the mean rate while samples are missing differs from the recorded one: by the stated sigma of
+#   the table's rate, or by the variation in the data, whichever is larger. It is the same
+#   for all gaps of a rotation, and does not average out;
+# - an oscillation of the case faster than a block appears in the scatter of samples only: the
+#   recorded part may end at any phase of it;
+# - in a ramp the acceleration may change between the neighbouring blocks: the straight line is
+#   wrong by up to a quarter of the change of rate between them.
+
+
+def gaps_of(part: Blocks) -> list[Gap]:
+    """The gaps between the k blocks of a turn, interpolated from the neighbouring blocks."""
+    seconds, steady = part.seconds, part.steady
+    gaps = []
+    for i in np.flatnonzero(part.missing).tolist():
+        lost = float(part.missing[i])
+        shares = np.zeros(len(part))
+        if steady[i - 1] and steady[i]:
+            shares[steady] = lost / seconds[steady].sum()
+        else:
+            # The straight line through the means of both blocks, at the middle of the gap.
+            weight = (seconds[i - 1] + lost) / (seconds[i - 1] + 2 * lost + seconds[i])
+            shares[i - 1 : i + 1] = lost * np.array([1 - weight, weight]) / seconds[i - 1 : i + 1]
+        gaps.append(Gap(i, lost, shares))
+    return gaps
+
+
+def weights_of(part: Blocks) -> Array:
+    """The weights of the k blocks of a turn in its sums, (k,), so that these have no gaps."""
+    return np.ones(len(part)) + sum((gap.shares for gap in gaps_of(part)), np.zeros(1))
+
+
+def sigma_of(
+    part: Blocks,
+    gaps: Sequence[Gap],
+    about: Array,
+    name: str,
+    noise: NoiseLevels,
+    rate_sigma: float,
+) -> float:
+    """The sigma of the interpolated angle of all gaps together, rad, without noise.
+
+    Parameters
+    ----------
+    about : (3,), axis of the turn; `name` of its manoeuvre
+    rate_sigma : relative, of the table's rate
+    """
+    if not gaps:
+        return 0.0
+    seconds, steady = part.seconds, part.steady
+    rate = np.nan_to_num(part.gyro) @ about
+    elapsed = np.cumsum(seconds + part.missing) - seconds / 2
+    density = np.nan_to_num(noise.of(name, "steady", GYRO))
+    oscillation = _oscillation(name, noise, about, float(seconds.sum() / part.counts.sum()))
+    # An oscillation slower than one period in a block is visible in the blocks.
+    longest = float(np.median(seconds)) / (2 * np.pi)
+    variance = sum(2 * (oscillation * min(gap.seconds, longest)) ** 2 for gap in gaps)
+
+    steady_gaps = [gap for gap in gaps if steady[gap.before - 1] and steady[gap.before]]
+    if steady_gaps:
+        longest_gap = max(steady_gaps, key=lambda gap: gap.seconds)
+        deviation = rate_deviation(
+            rate[steady],
+            seconds[steady],
+            elapsed[steady],
+            np.flatnonzero(steady) < longest_gap.before,
+            longest_gap.seconds,
+            float(np.linalg.norm(about * density)),
+        )
+        stated = rate_sigma * abs(float(np.average(rate[steady], weights=seconds[steady])))
+        variance += (max(deviation, stated) * sum(gap.seconds for gap in steady_gaps)) ** 2
+    change = np.abs(np.diff(rate)) / np.diff(elapsed)  # rad/s², from block to block
+    for gap in gaps:
+        if not any(gap is other for other in steady_gaps):
+            largest = change[max(gap.before - 2, 0) : gap.before + 1].max()
+            interval = elapsed[gap.before] - elapsed[gap.before - 1]
+            variance += (largest * interval / 4 * gap.seconds) ** 2
+    return float(np.sqrt(variance))
+
+
+def _oscillation(name: str, noise: NoiseLevels, about: Array, step: float) -> float:
+    """Scatter of the samples of the steady part about the axis beyond white noise, rad/s."""
+    white = noise.of(name, "steady", GYRO) ** 2 / step
+    excess = np.maximum(np.nan_to_num(noise.of_samples(name, "steady", GYRO) ** 2 - white), 0.0)
+    return float(np.sqrt(about**2 @ excess))
+
+
+# ---- Turns of which one was not what is stated: at another rate, or by another angle.
+#
+# The runs at a steady rate about one axis lie on a line, reading = bias + (1 + s) rate. One is off
+# where a line through the others passes it by far more than it passes any of them. A sensor that is
+# not linear leaves its line at the ends, so of a run beyond all others nothing is said, unless one
+# goes as fast the other way.
+#
+# Turns by an angle read as many times that as the scale factors are, which are alike or nearly so:
+# one that reads otherwise, by far more than the others differ, was another turn. An asymmetry of a
+# gyro would move two of them, each as far; a scale factor all turns about its axis.
+
+MIN_OTHERS = 4  # of runs on the line two more than it has parameters
+MIN_OFF = 0.003  # of what is stated: less a table may be off, and effects of gyros do
+LEAST_SPREAD = 1e-4  # of ratios: less is no more alike
+MIN_RATIO = 10.0  # of what it is off to the largest that another is
+
+
+def off_rate(stated: Array, read: Array, sigma: Array) -> tuple[int, float] | None:
+    """The number of the run that is off and the rate that it had; None where none is.
+
+    stated, read, sigma : (n,), rates about the axis, and what the readings are uncertain by, rad/s
+    """
+    found: list[tuple[float, int, float]] = []
+    for one in range(len(stated)):
+        others = np.arange(len(stated)) != one
+        if others.sum() < MIN_OTHERS or np.abs(stated[one]) > np.abs(stated[others]).max():
+            continue
+        design = np.column_stack([np.ones(others.sum()), stated[others]])
+        (bias, slope), *_ = np.linalg.lstsq(design, read[others], rcond=None)
+        rate = (read[one] - bias) / slope
+        left = np.abs(read[others] - design @ [bias, slope]).max()
+        off = abs(rate - stated[one])
+        ratio = off / max(left, sigma[one], sigma[others].max())
+        if ratio > MIN_RATIO and off > MIN_OFF * abs(stated[one]):
+            found.append((float(ratio), one, float(rate)))
+    return max(found)[1:] if found else None
+
+
+def off_ratio(ratios: Array, axes: Sequence[Hashable]) -> int | None:
+    """The number of the turn whose recorded over stated angle is off; None where none is.
+
+    ratios, axes : of the n turns
+    """
+    if len(ratios) <= MIN_OTHERS:
+        return None
+    one = int(np.argmax(np.abs(ratios - np.median(ratios))))
+    if list(axes).count(axes[one]) < 2:
+        return None
+    others = np.delete(ratios, one)
+    off = abs(ratios[one] - np.median(others))
+    spread = max(float(np.abs(others - np.median(others)).max()), LEAST_SPREAD)
+    return one if off > max(MIN_OFF, MIN_RATIO * spread) else None

@@ -12,8 +12,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.interpolated_gaps import gaps_of, weights_of
-from inertial.campaign.recorded_turns import refusal_of
+from inertial.campaign.recorded_turns import gaps_of, refusal_of, weights_of
 from inertial.campaign.records import Manoeuvre, Part
 from inertial.campaign.static_positions import (
     Blocks,
@@ -24,7 +23,7 @@ from inertial.campaign.static_positions import (
     turn_errors,
 )
 from inertial.estimation.accelerometers import StaticForce
-from inertial.estimation.sensitivities import Sensitivities
+from inertial.estimation.effect_information import Sensitivities
 from inertial.physics.motion import is_vertical, level_axes, mean_turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 

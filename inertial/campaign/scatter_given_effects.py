@@ -15,13 +15,15 @@ from inertial.estimation.least_squares import Estimate
 from inertial.estimation.multi_position import SCATTER_RANGE
 from inertial.estimation.scatter_and_random_walk import (
     MIN_DEVIANCE_DROP,
+    Scatter,
     ScatterFit,
     WalkSearch,
+    contradicting,
+    likeliest,
     most_likely,
     walk_search,
     with_scatter,
 )
-from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 

@@ -11,7 +11,7 @@ from inertial.arrays import Array
 from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
 from inertial.estimation.gyroscope_observations import TABLE, Earth, Position
 from inertial.estimation.position_outlier import is_off
-from inertial.estimation.switch_ons import covering
+from inertial.estimation.scatter_and_random_walk import covering
 from inertial.estimation.triad import linear_names
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross, level_axes

@@ -21,15 +21,16 @@ from inertial.campaign.records import Manoeuvre, Part, omissions, with_mount
 from inertial.campaign.static_positions import NO_NOISE, StaticPosition
 from inertial.estimation.between_positions import Stop
 from inertial.estimation.least_squares import Estimate
-from inertial.estimation.length_outliers import OffLength, off_lengths
 from inertial.estimation.multi_position import FREE as UNKNOWNS
 from inertial.estimation.multi_position import (
     NAMES,
     PRIOR,
     SCATTER_RANGE,
     FreeRest,
+    OffLength,
     Unobservable,
     free_positions,
+    off_lengths,
     unobservable,
 )
 from inertial.estimation.scatter_and_random_walk import ScatterFit, with_scatter

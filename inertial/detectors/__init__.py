@@ -5,20 +5,22 @@ and the tests take it from these lists. A detector masks what it detects for tho
 """
 
 from inertial.detectors.bias_jump import BiasJump
-from inertial.detectors.bias_removed import BiasRemoved
 from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
-from inertial.detectors.copied_channel import CopiedChannel
-from inertial.detectors.copied_log import CopiedLog
+from inertial.detectors.copied_readings import CopiedChannel, CopiedLog
 from inertial.detectors.dead_axis import DeadAxis
 from inertial.detectors.encoder_against_plan import EncoderAngles, EncoderScale
 from inertial.detectors.fixture_creep import FixtureCreep
 from inertial.detectors.gap import Gap
-from inertial.detectors.gravity_error import GravityError
 from inertial.detectors.impact import Impact
-from inertial.detectors.manoeuvre_missing import ManoeuvreMissing, TurningPointOnce
-from inertial.detectors.manoeuvre_swapped import ManoeuvreSwapped
-from inertial.detectors.manoeuvres_against_plan import RestsDivided, ShortRest, WrongSpans
+from inertial.detectors.manoeuvres_against_plan import (
+    ManoeuvreMissing,
+    ManoeuvreSwapped,
+    RestsDivided,
+    ShortRest,
+    TurningPointOnce,
+    WrongSpans,
+)
 from inertial.detectors.misread_axes_and_signs import (
     AxisSwap,
     AxisSwapAgainstPlan,
@@ -28,20 +30,27 @@ from inertial.detectors.misread_axes_and_signs import (
     SignFlipOfGyros,
 )
 from inertial.detectors.motion_after_turns import MotionAfterTurns
-from inertial.detectors.normalised_force import NormalisedForce
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.position_not_kept import PositionNotKept
+from inertial.detectors.processed_readings import BiasRemoved, NormalisedForce
 from inertial.detectors.quantisation import Quantisation
+from inertial.detectors.receiver_statements import StatusInvalid, WrongImuType
 from inertial.detectors.repeated_records import Duplicate, HeldRecord
 from inertial.detectors.saturation import Saturation
 from inertial.detectors.slower_sensor import SlowerSensor
 from inertial.detectors.spike import Spikes
-from inertial.detectors.stamp_faults import ArrivalStamps, ClockStep, TimeBackwards, TimeStandsStill
-from inertial.detectors.stamps_misstated import RateOff, WrongDay, WrongTimeUnit
-from inertial.detectors.status_invalid import StatusInvalid
+from inertial.detectors.stamp_faults import (
+    ArrivalStamps,
+    ClockStep,
+    RateOff,
+    TimeBackwards,
+    TimeStandsStill,
+    WrongDay,
+    WrongTimeUnit,
+)
+from inertial.detectors.stated_against_gravity import GravityError, TableRateByGravity
 from inertial.detectors.table_moving import TableMoving
-from inertial.detectors.table_rate import TableRateByGravity
 from inertial.detectors.temperatures import (
     TemperatureDrift,
     TemperatureMisstated,
@@ -53,9 +62,12 @@ from inertial.detectors.time_of_turns import (
     SampleRateByTurns,
     WrongTimeUnitOfTurns,
 )
-from inertial.detectors.turns_against_plan import IncompleteTurn, WrongDirection, WrongRate
-from inertial.detectors.turns_too_far import TurnTooFar
-from inertial.detectors.wrong_imu_type import WrongImuType
+from inertial.detectors.turns_against_plan import (
+    IncompleteTurn,
+    TurnTooFar,
+    WrongDirection,
+    WrongRate,
+)
 from inertial.detectors.wrong_scale_factor import (
     GravityRemoved,
     WrongScaleFactor,

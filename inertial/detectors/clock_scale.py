@@ -8,7 +8,6 @@ import numpy as np
 
 from inertial.arrays import Array, Integers
 from inertial.signal.detector import Description, Detector, Event, Given, Log, Piece
-from inertial.signal.mean_changes import changes
 from inertial.signal.scatter import in_blocks
 from inertial.signal.stamps import (
     MAX_RATE_ERROR,
@@ -20,6 +19,7 @@ from inertial.signal.stamps import (
     stamps_of,
     unit_of,
 )
+from inertial.signal.steps import changes
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
 

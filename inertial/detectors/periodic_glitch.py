@@ -17,9 +17,8 @@ from inertial.signal.detector import (
     names_of_logs,
     read_in,
 )
-from inertial.signal.held_readings import new_readings
 from inertial.signal.phase_folding import Glitch
-from inertial.signal.runs import joined
+from inertial.signal.runs import joined, new_readings
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant, whole
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from inertial.sensors import COLUMNS, PLURAL
 from inertial.signal.detector import Description, Detector, Event, Log
-from inertial.signal.held_readings import records_of_a_reading
+from inertial.signal.runs import records_of_a_reading
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant

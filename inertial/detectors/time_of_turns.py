@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from inertial.arrays import Array, Booleans
-from inertial.detectors.stamps_misstated import TIME_UNITS
+from inertial.detectors.stamp_faults import TIME_UNITS
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.signal.scale_factor import MAX_RATIO_SPREAD, turn_ratios

@@ -18,9 +18,19 @@ from scipy.spatial.transform import Rotation
 
 from inertial.arrays import Array
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
+from inertial.estimation.effect_information import NO_SENSITIVITIES, Sensitivities
+from inertial.estimation.elimination import (
+    AZIMUTH,
+    OF_AXIS,
+    TILTS,
+    EquationBlock,
+    Name,
+    compressed,
+    in_force,
+    names_of,
+    whitened,
+)
 from inertial.estimation.least_squares import Estimate, System
-from inertial.estimation.position_tilt import AZIMUTH, OF_AXIS, TILTS, in_force, names_of
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
 from inertial.estimation.scatter_and_random_walk import (
     Deviances,
@@ -28,7 +38,6 @@ from inertial.estimation.scatter_and_random_walk import (
     walk_search,
     with_random_walk,
 )
-from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Triad
 from inertial.physics.motion import all_level_axes, cross

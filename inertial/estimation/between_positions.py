@@ -16,7 +16,7 @@ propagate it. The noise of a motion rotates all later directions, so its covaria
 Where samples are timed by stamps of arrival, the rate of the clock of each log is an unknown too:
 where it is too slow, all motions of the log have turned by as much more, as with a smaller M.
 
-Rests and motions differ beyond noise by what `scatter_by_hand` describes.
+Rests and motions differ beyond noise by what `scatter_and_random_walk` describes.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -42,8 +42,12 @@ from inertial.estimation.least_squares import (
     with_errors_in_order,
 )
 from inertial.estimation.multi_position import FreeRest, Upward, upward_of
-from inertial.estimation.scatter_and_random_walk import ScatterFit
-from inertial.estimation.scatter_by_hand import Scatter, contradicting, likeliest
+from inertial.estimation.scatter_and_random_walk import (
+    Scatter,
+    ScatterFit,
+    contradicting,
+    likeliest,
+)
 from inertial.estimation.triad import UNKNOWNS, design_of
 from inertial.physics.motion import cross
 

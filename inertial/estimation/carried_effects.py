@@ -20,11 +20,11 @@ from inertial.estimation.between_positions import (
     rows_of_rates,
 )
 from inertial.estimation.drifting_equations import DriftingEquations
+from inertial.estimation.effect_information import Sensitivities
 from inertial.estimation.elimination import EquationBlock, whitened
 from inertial.estimation.multi_position import upward_of
 from inertial.estimation.random_walk import Stretch
-from inertial.estimation.scatter_by_hand import Scatter
-from inertial.estimation.sensitivities import Sensitivities
+from inertial.estimation.scatter_and_random_walk import Scatter
 from inertial.estimation.triad import UNKNOWNS
 
 

@@ -35,7 +35,7 @@ from inertial.estimation.random_walk import (
     walk_covariance,
     with_drifts,
 )
-from inertial.estimation.switch_ons import SwitchOns, between
+from inertial.estimation.scatter_and_random_walk import SwitchOns, between
 from inertial.estimation.triad import UNKNOWNS
 
 Deviance = Callable[[float], float]

@@ -42,8 +42,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array, Booleans
-from inertial.estimation.bias_instability import wave, waves_within
-from inertial.estimation.elimination import EquationBlock, Name, compressed, whitened
+from inertial.estimation.elimination import (
+    OF_CASE,
+    TILTS,
+    EquationBlock,
+    Name,
+    compressed,
+    names_of,
+    whitened,
+)
 from inertial.estimation.gyroscope_observations import (
     TABLE,
     Earth,
@@ -52,7 +59,7 @@ from inertial.estimation.gyroscope_observations import (
     StaticRate,
     SteadyRate,
 )
-from inertial.estimation.position_tilt import OF_CASE, TILTS, names_of
+from inertial.estimation.noise_model import wave, waves_within
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.triad import UNKNOWNS, design_of
 from inertial.physics.motion import all_level_axes, cross, is_vertical, level_axes, turned_all

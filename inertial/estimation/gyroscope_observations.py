@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array, Booleans
+from inertial.estimation.effect_information import NO_SENSITIVITIES, Sensitivities
 from inertial.estimation.random_walk import Stretch
-from inertial.estimation.sensitivities import NO_SENSITIVITIES, Sensitivities
 
 EARTH_UP = ("earth", "up")  # the name of the unknown: the upward component
 TABLE = "the table"  # the position that all share whose mark is known, and no heading

@@ -16,8 +16,8 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.estimation.accelerometers import Reference, StaticForce, equations, weighted
+from inertial.estimation.elimination import TILTS
 from inertial.estimation.least_squares import Estimate
-from inertial.estimation.position_tilt import TILTS
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.estimation.triad import UNKNOWNS

@@ -13,7 +13,7 @@ common clock have a random walk each, whose start has the variance that all reco
 
 Scatter and random walk are alike on all axes, and estimated from what the stretches differ by. What
 the noise within static stretches says of K and of a bias instability B, for each axis, is known
-before and comes on top; see `bias_instability`. Stretches without time have no such drift.
+before and comes on top; see `noise_model`. Stretches without time have no such drift.
 
 Source: IEEE Std 952-2020, rate random walk.
 """
@@ -24,8 +24,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.bias_instability import Instability, moments
 from inertial.estimation.elimination import EquationBlock, Name
+from inertial.estimation.noise_model import Instability, moments
 
 COMMON_CLOCK = ""  # the name of the clock of all logs, where they have one
 

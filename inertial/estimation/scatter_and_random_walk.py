@@ -15,12 +15,89 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize, minimize_scalar
+from scipy.optimize import brentq, minimize, minimize_scalar
+from scipy.special import ndtri, stdtrit
 
 from inertial.arrays import Array
 from inertial.estimation.least_squares import Estimate
+from inertial.estimation.probability import f_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
-from inertial.estimation.switch_ons import SwitchOns
+
+# ---- By what the bias of a sensor differs from one switch-on to the next, within one campaign.
+#
+# The bias of each part of the campaign that lies between two switch-ons is one of q independent
+# deviations d ~ N(0, τ²) from a common one. All other unknowns eliminated, the equations say N d =
+# r. With the eigenvalues λ and vectors V of N and s = Vᵀ r, −2 log of the restricted likelihood is
+#
+#     Σ log(1 + τ² λ) − Σ τ² s² / (1 + τ² λ),
+#
+# and the expected information of τ² is ½ Σ λ²/(1 + τ² λ)² (Patterson & Thompson 1971; Searle,
+# Casella & McCulloch 1992). One eigenvalue is 0, for a common deviation is the bias: so q − 1 are
+# free.
+#
+# τ of few switch-ons is not well known, so a bias is off by Student's distribution of q − 1
+# degrees. The covariance gets the normal one with the same interval of 95 % (GUM G.3).
+
+TWO_SIDED = 0.975  # quantile at the end of an interval of 95 %
+ONE_SIDED = 2.706  # rise of the deviance at the one-sided limit of 95 %
+NO_INFORMATION = 1e-9  # relative to the largest eigenvalue
+# Of the variance that is sought, relative to the smallest and the largest of the deviations: some
+# combinations are known a million times better than others, where few positions lie between two.
+RANGE = (1e-8, 1e4)
+
+
+@dataclass(frozen=True, eq=False)
+class SwitchOns:
+    """Of each axis, (3,), unit of the readings; NaN where it is not recorded.
+
+    `count`: of switch-ons; `value`: standard deviation between them; `sigma`: of that, NaN where 0
+    is the likeliest; `upper`: one-sided 95 %.
+    """
+
+    count: int
+    value: Array
+    sigma: Array
+    upper: Array
+
+    @property
+    def covering(self) -> Array:
+        """The standard deviation in the covariance, (3,); 0 where none is known."""
+        return covering(self.value, self.count)
+
+
+def covering(value: Array, count: int) -> Array:
+    """The normal standard deviation whose interval of 95 % is that of Student's distribution."""
+    return np.nan_to_num(value) * float(stdtrit(count - 1, TWO_SIDED) / ndtri(TWO_SIDED))
+
+
+def between(information: Array, right: Array) -> tuple[float, float, float]:
+    """The standard deviation of q biases, its sigma and upper limit; N, (q, q), and r, (q,)."""
+    values, vectors = np.linalg.eigh(information)
+    there = values > NO_INFORMATION * max(float(values[-1]), 0.0)
+    if not there.any():
+        return np.nan, np.nan, np.nan
+    values, squares = values[there], (vectors.T @ right)[there] ** 2
+
+    def deviance(variance: float) -> float:
+        grown = 1 + variance * values
+        return float(np.sum(np.log(grown)) - np.sum(variance * squares / grown))
+
+    sizes = squares / values**2 + 1 / values
+    low, high = np.log(RANGE[0] * sizes.min()), np.log(RANGE[1] * sizes.max())
+    found = minimize_scalar(lambda x: deviance(np.exp(x)), bounds=(low, high), method="bounded")
+    best = float(np.exp(found.x)) if found.fun < 0 and found.x > low + 1 else 0.0
+
+    def rise(x: float) -> float:
+        return deviance(np.exp(x)) - deviance(best) - ONE_SIDED
+
+    start = np.log(best) if best else low
+    upper = float(np.exp(brentq(rise, start, high) / 2)) if rise(high) > 0 else np.inf
+    information_of_variance = 0.5 * float(np.sum((values / (1 + best * values)) ** 2))
+    sigma = 1 / np.sqrt(information_of_variance) / (2 * np.sqrt(best)) if best else np.nan
+    return float(np.sqrt(best)), float(sigma), upper
+
+
+# ---- Scatter and random walk by restricted likelihood.
 
 Deviance = Callable[[float], float]  # as a function of one size
 
@@ -255,3 +332,107 @@ def _random_walk_sigma(likely: Deviances, scatter: float, walk: float) -> float:
         curvature[i, j] = mixed / (2 * CURVATURE_STEP) ** 2
     variance = float(2 * np.linalg.inv(curvature)[0, 0])
     return walk * float(np.sqrt(variance)) if variance > 0 else float("nan")
+
+
+# ---- What rests and motions by hand differ by beyond noise.
+#
+# Rests differ by a rate, such as the g-sensitivity of a gyro, or by an angle: the IMU sways in the
+# hand, so its mean rate is the smaller the longer it rests. So does a motion; and it may not begin
+# and end exactly where the accelerometers determined the directions: an angle besides, its swing.
+# Each is a variance component of the equations, by restricted likelihood. A rest, or a motion, that
+# is far off all others was something else, such as a slip, a shock, or vibration: it is left out.
+
+RATE_RANGE = (1e-8, 0.1)  # rad/s
+SWING_RANGE = (1e-6, 0.3)  # rad
+ROUNDS = 3  # of one after the other
+SETTLED = 0.02  # relative change of a scatter
+FALSE_OMISSIONS = 1e-3  # of a session in which all are alike
+FITTED = (3, 9)  # parameters that rests, and motions, determine: biases, and M
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Of rests, rad/s, where the IMU `sways` for a rest of the usual length; `swing`, rad."""
+
+    rate: float = 0.0
+    sways: bool = False
+    swing: float = 0.0
+
+    def of_rate(self, seconds: float, usual: float) -> float:
+        """Of the mean rates of a rest or a motion of so many seconds, rad/s."""
+        return self.rate * usual / seconds if self.sways else self.rate
+
+
+def likeliest(
+    fit: Callable[[Scatter], Estimate], noise_degrees: float
+) -> tuple[ScatterFit, Scatter]:
+    """The scatters of largest restricted likelihood; `fit`: the estimate as a function of them."""
+    found = Scatter()
+    p_value = fit(found).p_value(noise_degrees)
+    fitted: ScatterFit | None = None
+    for _round in range(ROUNDS):
+        swung = with_scatter(_swinging(fit, found), SWING_RANGE, noise_degrees)
+        found = replace(found, swing=swung.scatter)
+        fits = [
+            (with_scatter(_resting(fit, found, sways), RATE_RANGE, noise_degrees), sways)
+            for sways in (False, True)
+        ]
+        before = fitted
+        fitted, sways = min(fits, key=lambda each: each[0].estimate.deviance)
+        found = replace(found, rate=fitted.scatter, sways=sways)
+        if before and abs(before.scatter - fitted.scatter) <= SETTLED * fitted.scatter:
+            break
+    assert fitted is not None  # there is a round
+    return replace(fitted, p_value=p_value), found
+
+
+def _swinging(fit: Callable[[Scatter], Estimate], about: Scatter) -> Callable[[float], Estimate]:
+    return lambda size: fit(replace(about, swing=size))
+
+
+def _resting(
+    fit: Callable[[Scatter], Estimate], about: Scatter, sways: bool
+) -> Callable[[float], Estimate]:
+    return lambda size: fit(replace(about, rate=size, sways=sways))
+
+
+def contradicting(
+    residuals: Sequence[Array], stops: Sequence[int], firsts: Sequence[int]
+) -> list[int]:
+    """The places of rests and motions that contradict all others, the worst first.
+
+    The share of one in the sum of squares of its kind follows the F distribution; without those
+    that are too large the next is compared with the others. Of two beside each other the worse one
+    alone, for its error is in both.
+
+    Parameters
+    ----------
+    residuals : in units of their sigma, of the rests `stops`, by number, and of the motions from
+        the rests `firsts` to the next
+    """
+    rests = len(stops)
+    found: list[tuple[float, int]] = []
+    for fitted, first, some in zip(
+        FITTED, (0, rests), (residuals[:rests], residuals[rests:]), strict=True
+    ):
+        squares = np.array([float(each @ each) for each in some])
+        counts = np.array([len(each) for each in some])
+        left = int(counts.sum()) - fitted, float(squares.sum())
+        for worst in np.argsort(-squares).tolist():
+            degrees, own = left[0], int(counts[worst])
+            if degrees <= 2 * fitted:
+                break
+            others = max(left[1] - float(squares[worst]), np.finfo(float).tiny)
+            ratio = float(squares[worst]) / own / others * (degrees - own)
+            p_value = float(f_sf(ratio, own, degrees - own)) * len(squares)
+            if p_value >= FALSE_OMISSIONS:
+                break
+            found.append((p_value, first + worst))
+            left = degrees - own, others
+    ends = [{stop} for stop in stops] + [{first, first + 1} for first in firsts]
+    apart, touched = list[int](), set[int]()
+    for _p_value, place in sorted(found):
+        if not ends[place] & touched:
+            apart.append(place)
+        touched |= {stop + k for stop in ends[place] for k in (-1, 0, 1)}
+    return apart

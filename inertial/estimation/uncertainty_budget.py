@@ -17,7 +17,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.position_tilt import AZIMUTH, OF_AXIS, OF_CASE, TILTS
+from inertial.estimation.elimination import AZIMUTH, OF_AXIS, OF_CASE, TILTS
 from inertial.estimation.triad import UNKNOWNS
 
 STEP = 1e-4  # relative, of a variance: its square is lost, and nothing by rounding

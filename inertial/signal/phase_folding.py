@@ -8,7 +8,7 @@ from scipy.stats import norm
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import CHANNELS, COLUMNS
-from inertial.signal.held_readings import new_readings, records_of_a_reading
+from inertial.signal.runs import new_readings, records_of_a_reading
 from inertial.signal.scatter import MAD_TO_SIGMA, MIN_RELATIVE_STEP, median
 
 PERIODS = (60.0, 30.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2, 0.1)  # s, each divides the first

@@ -10,7 +10,7 @@ from inertial.arrays import Array, Booleans, Integers
 from inertial.physics.motion import cross
 from inertial.sensors import CHANNELS, COLUMNS
 from inertial.signal.detector import Log, Piece
-from inertial.signal.held_readings import readings_of, records_of_a_reading
+from inertial.signal.runs import readings_of, records_of_a_reading
 from inertial.signal.scatter import MAD_TO_SIGMA, median
 from inertial.signal.steps import MAX_SIDE_S, Step, steps
 

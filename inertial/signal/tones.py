@@ -8,7 +8,7 @@ from scipy.fft import rfft
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.signal.detector import Log, Piece
-from inertial.signal.held_readings import new_readings, records_of_a_reading
+from inertial.signal.runs import new_readings, records_of_a_reading
 from inertial.signal.spectral_lines import (
     HOP,
     PART_BINS,

@@ -89,7 +89,6 @@ from inertial.tables.recorded import (
     SEGMENTS,
     TRACES,
 )
-from inertial.tables.shared import ACCEL, BODY, CHANNEL_PARTS, GYRO, OF_TRIAD, STATIC_PHASES
 from inertial.tables.studied import (
     BANDWIDTHS,
     ENCODER,
@@ -100,6 +99,7 @@ from inertial.tables.studied import (
     TIME_ANGLE,
     WINDOWS,
 )
+from inertial.tables.table import ACCEL, BODY, CHANNEL_PARTS, GYRO, OF_TRIAD, STATIC_PHASES
 from inertial.tables.unmodelled import (
     CAUSE_POSITIONS,
     DETECTION_LIMITS,

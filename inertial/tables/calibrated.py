@@ -1,16 +1,22 @@
 """Compensated samples, their checks, and the archive of calibrations."""
 
-from inertial.tables.shared import AXIS, MOUNT, PHASES, QUANTITY, SENSOR, channels
 from inertial.tables.table import (
+    AXIS,
     DOUBLE,
     INTEGER,
     LABEL,
+    MOUNT,
+    PHASES,
+    QUANTITY,
+    SENSOR,
     SENTENCE,
     TEXT,
     TEXTS,
     TRUTH,
     Column,
     Table,
+    channels,
+    optional,
 )
 
 # ---- Samples with the errors taken out, and the checks of them.
@@ -21,7 +27,7 @@ COMPENSATED = Table(
     (
         Column("log", LABEL, "", "as in logs"),
         Column("record", INTEGER, "1", "as in samples"),
-        Column("time", DOUBLE, "s", "as in samples", nullable=True),
+        optional("time", DOUBLE, "s", "as in samples"),
         *channels("specific force, angular rate, with the errors taken out"),
     ),
 )
@@ -31,13 +37,7 @@ CHECKS = Table(
     (
         Column("id", TEXT, "", "stable identifier: compensation/quantity/manoeuvre"),
         MOUNT,
-        Column(
-            "manoeuvre",
-            TEXT,
-            "",
-            "as in manoeuvres, with the rest of a turn in brackets",
-            nullable=True,
-        ),
+        optional("manoeuvre", TEXT, "", "as in manoeuvres, with the rest of a turn in brackets"),
         Column(
             "quantity",
             TEXT,
@@ -48,19 +48,18 @@ CHECKS = Table(
             " beyond which samples are not compensated",
         ),
         Column("unit", TEXT, "", "unit of the values, SI"),
-        Column("expected", DOUBLE, "as unit", "what is known of it", nullable=True),
-        Column("expected_sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
-        Column("before", DOUBLE, "as unit", "by the readings", nullable=True),
-        Column("after", DOUBLE, "as unit", "by the compensated readings", nullable=True),
-        Column(
+        optional("expected", DOUBLE, "as unit", "what is known of it"),
+        optional("expected_sigma", DOUBLE, "as unit", "its standard deviation"),
+        optional("before", DOUBLE, "as unit", "by the readings"),
+        optional("after", DOUBLE, "as unit", "by the compensated readings"),
+        optional(
             "after_sigma",
             DOUBLE,
             "as unit",
             "of after less expected, by noise, angle, position and earth rate; without what all"
             " manoeuvres share and the parameters have taken up, as the sigma of gravity",
-            nullable=True,
         ),
-        Column("in_sigmas_after", DOUBLE, "1", "after less expected, in sigmas", nullable=True),
+        optional("in_sigmas_after", DOUBLE, "1", "after less expected, in sigmas"),
         Column("sentence", SENTENCE, "", "the check in words"),
     ),
 )
@@ -72,7 +71,7 @@ RESIDUALS = Table(
         MOUNT,
         Column("manoeuvre", TEXT, "", "as in manoeuvres; a rest in blocks, a turn in seconds"),
         Column("phase", TEXT, "", PHASES),
-        Column("time", DOUBLE, "s", "middle of the mean", nullable=True),
+        optional("time", DOUBLE, "s", "middle of the mean"),
         Column("seconds", DOUBLE, "s", "recorded in it"),
         *channels("read less predicted by the result that counts", prefix="residual_"),
         *channels("of white noise alone in such a mean", prefix="sigma_"),
@@ -98,34 +97,29 @@ CHARACTERISTICS = Table(
             " resolution: least change of an input that did, on one side of zero;"
             " acceleration_insensitive_drift: bias of a gyro, whatever force adds",
         ),
-        Column(
+        optional(
             "value",
             DOUBLE,
             "as unit",
             "errors: over the largest input; threshold and resolution: an upper limit, 95 %",
-            nullable=True,
         ),
-        Column(
-            "sigma", DOUBLE, "as unit", "its standard deviation; null for limits", nullable=True
-        ),
-        Column(
+        optional("sigma", DOUBLE, "as unit", "its standard deviation; null for limits"),
+        optional(
             "lower",
             DOUBLE,
             "as unit",
             "of threshold and resolution a lower limit: the largest input that gave less than half"
             " of its output, 95 %, or what counts without carry and noise let through",
-            nullable=True,
         ),
-        Column(
+        optional(
             "by_noise",
             DOUBLE,
             "as unit",
             "of a largest error: what noise, table and site alone do not exceed in 95 % of the"
             " cases",
-            nullable=True,
         ),
         Column("unit", TEXT, "", "unit of the values, SI"),
-        Column("largest_input", DOUBLE, "as input_unit", "largest that was applied", nullable=True),
+        optional("largest_input", DOUBLE, "as input_unit", "largest that was applied"),
         Column("input_unit", TEXT, "", "its unit, SI"),
         Column("points", INTEGER, "1", "inputs that were applied, or static positions"),
         Column("reason", SENTENCE, "", "why there is no value"),
@@ -162,7 +156,7 @@ UNCERTAINTY_BUDGET = Table(
 
 def _rows(*fields: tuple[str, str, str]) -> tuple[Column, ...]:
     """The columns of the rows that each value of a column holds: name, type and meaning."""
-    return tuple(Column(name, kind, "", meaning, nullable=True) for name, kind, meaning in fields)
+    return tuple(optional(name, kind, "", meaning) for name, kind, meaning in fields)
 
 
 # An archive outlives the other tables, so it borrows no columns of theirs. Whoever counts its
@@ -177,11 +171,11 @@ CALIBRATION = Table(
         Column("instrument", TEXT, "", "name of the IMU's type"),
         Column("serial", TEXT, "", "serial number, or unknown"),
         Column("date", TEXT, "", "date as the campaign states it, or unknown"),
-        Column("laboratory", TEXT, "", "where", nullable=True),
-        Column("operator", TEXT, "", "by whom", nullable=True),
-        Column("notes", TEXT, "", "remarks of the laboratory", nullable=True),
-        Column("mounting", TEXT, "", "as in campaign; none in older calibrations", nullable=True),
-        Column("switch_on", TEXT, "", "as in campaign; none in older ones", nullable=True),
+        optional("laboratory", TEXT, "", "where"),
+        optional("operator", TEXT, "", "by whom"),
+        optional("notes", TEXT, "", "remarks of the laboratory"),
+        optional("mounting", TEXT, "", "as in campaign; none in older calibrations"),
+        optional("switch_on", TEXT, "", "as in campaign; none in older ones"),
         Column("table", TEXT, "", "name of the table"),
         Column(
             "parameters",
@@ -288,7 +282,7 @@ EARLIER = Table(
         Column("value", DOUBLE, "as unit", "its estimate then, by the result that counted"),
         Column("sigma", DOUBLE, "as unit", "standard deviation of the estimate"),
         Column("unit", TEXT, "", "unit of value and sigma"),
-        Column("verdict", TEXT, "", "of its sensor, as in verdict; older: none", nullable=True),
-        Column("condition", SENTENCE, "", "on which it is valid, in words", nullable=True),
+        optional("verdict", TEXT, "", "of its sensor, as in verdict; older: none"),
+        optional("condition", SENTENCE, "", "on which it is valid, in words"),
     ),
 )

@@ -1,16 +1,25 @@
 """The certificate: what the laboratory states beside the numbers, and conformity to tolerances."""
 
-from inertial.tables.shared import MOUNT, QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    DOUBLE,
+    MOUNT,
+    QUANTITY,
+    SENSOR,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    optional,
+)
 
 CERTIFICATE = Table(
     "certificate",
     1,
     (
         Column("item", TEXT, "", "key of certificate.schema.yaml, such as customer.name"),
-        Column("text", TEXT, "", "what is stated; none: not stated, or a value", nullable=True),
-        Column("value", DOUBLE, "as unit", "of a condition of the room", nullable=True),
-        Column("expanded_uncertainty", DOUBLE, "as unit", "of that value, k = 2", nullable=True),
+        optional("text", TEXT, "", "what is stated; none: not stated, or a value"),
+        optional("value", DOUBLE, "as unit", "of a condition of the room"),
+        optional("expanded_uncertainty", DOUBLE, "as unit", "of that value, k = 2"),
         Column("unit", TEXT, "", "of the value"),
         Column("required", TRUTH, "", "ISO/IEC 17025:2017, 7.8, wants it on a certificate"),
         Column("file", TEXT, "", "which states it; empty where none does"),
@@ -23,7 +32,7 @@ STANDARDS = Table(
         Column("realises", TEXT, "", "quantity: angle, rate, time, gravity, temperature, humidity"),
         Column("name", TEXT, "", "what it is"),
         *(
-            Column(name, TEXT, "", meaning, nullable=True)
+            optional(name, TEXT, "", meaning)
             for name, meaning in (
                 ("identification", "serial or inventory number"),
                 ("certificate", "number of its certificate"),

@@ -1,10 +1,20 @@
 """Repairs of a recording, candidates for the result, and the diagnosis: causes and verdict."""
 
-from inertial.tables.shared import BODY, MOUNT
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    BODY,
+    DOUBLE,
+    INTEGER,
+    MOUNT,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    optional,
+)
 
-SENSOR = Column("sensor", TEXT, "", "accel or gyro, where one is concerned", nullable=True)
-AXIS = Column("axis", TEXT, "", BODY, nullable=True)
+SENSOR = optional("sensor", TEXT, "", "accel or gyro, where one is concerned")
+AXIS = optional("axis", TEXT, "", BODY)
 
 # ---- Repairs: what was set right before the estimation, on which condition.
 
@@ -29,24 +39,16 @@ REPAIRS = Table(
         ),
         SENSOR,
         AXIS,
-        Column("log", TEXT, "", "as in logs, where one is concerned", nullable=True),
-        Column("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned", nullable=True),
-        Column("value", DOUBLE, "as unit", "what is used, where it is a number", nullable=True),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
-        Column("stated", DOUBLE, "as unit", "what the campaign states", nullable=True),
+        optional("log", TEXT, "", "as in logs, where one is concerned"),
+        optional("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned"),
+        optional("value", DOUBLE, "as unit", "what is used, where it is a number"),
+        optional("sigma", DOUBLE, "as unit", "its standard deviation"),
+        optional("stated", DOUBLE, "as unit", "what the campaign states"),
         Column("unit", TEXT, "", "unit of value, sigma and stated"),
-        Column(
-            "fitting_before",
-            INTEGER,
-            "1",
-            "observations that fit the plan without it",
-            nullable=True,
-        ),
-        Column(
-            "fitting_after", INTEGER, "1", "observations that fit the plan with it", nullable=True
-        ),
-        Column("observations", INTEGER, "1", "observations that were compared", nullable=True),
-        Column("finding", TEXT, "", "id of the finding that it removes", nullable=True),
+        optional("fitting_before", INTEGER, "1", "observations that fit the plan without it"),
+        optional("fitting_after", INTEGER, "1", "observations that fit the plan with it"),
+        optional("observations", INTEGER, "1", "observations that were compared"),
+        optional("finding", TEXT, "", "id of the finding that it removes"),
         Column("condition", SENTENCE, "", "what must be true for it to be right, in words"),
         Column("sentence", SENTENCE, "", "what was set right, in words"),
     ),
@@ -80,24 +82,22 @@ CANDIDATES = Table(
             "posterior probability among the members of its class, all equal beforehand; of the"
             " joint method that of the members which this sensor does not show",
         ),
-        Column(
+        optional(
             "drop",
             DOUBLE,
             "1",
             "reduction of chi-squared of held-out manoeuvres against the joint model; none: not"
             " cross-validated",
-            nullable=True,
         ),
-        Column("snr_squared", DOUBLE, "1", "what exactly known effects would bring", nullable=True),
-        Column("folds", INTEGER, "1", "number of groups of manoeuvres held out", nullable=True),
-        Column("counted", INTEGER, "1", "of these, predictable from the others", nullable=True),
-        Column(
+        optional("snr_squared", DOUBLE, "1", "what exactly known effects would bring"),
+        optional("folds", INTEGER, "1", "number of groups of manoeuvres held out"),
+        optional("counted", INTEGER, "1", "of these, predictable from the others"),
+        optional(
             "carried_by",
             TEXT,
             "",
             "manoeuvre without which an effect of it is not detected in the others; by which"
             " effect: candidate_effects",
-            nullable=True,
         ),
         Column(
             "undetermined",
@@ -124,13 +124,12 @@ CANDIDATE_EFFECTS = Table(
         Column("method", TEXT, "", "as in candidates"),
         Column("effect", TEXT, "", "effect of the catalogue in the model of this candidate"),
         Column("finding", TEXT, "", "id of the finding of criticism that names it or its class"),
-        Column(
+        optional(
             "carried_by",
             TEXT,
             "",
             "manoeuvre without which this effect is not detected in the others, so that these do"
             " not show it, or contradict it; none: no single manoeuvre carries it",
-            nullable=True,
         ),
     ),
 )
@@ -149,15 +148,15 @@ CAUSES = Table(
         MOUNT,
         SENSOR,
         AXIS,
-        Column("log", TEXT, "", "as in logs, where one is concerned", nullable=True),
-        Column("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned", nullable=True),
+        optional("log", TEXT, "", "as in logs, where one is concerned"),
+        optional("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned"),
         Column("count", INTEGER, "1", "how many equal ones this stands for"),
         Column("sentence", SENTENCE, "", "the cause in words, with how large and how sure"),
-        Column("size", DOUBLE, "as unit", "how large", nullable=True),
-        Column("sigma", DOUBLE, "as unit", "standard deviation of size", nullable=True),
+        optional("size", DOUBLE, "as unit", "how large"),
+        optional("sigma", DOUBLE, "as unit", "standard deviation of size"),
         Column("unit", TEXT, "", "unit of size and sigma"),
-        Column("snr", DOUBLE, "1", "signal-to-noise ratio of an effect", nullable=True),
-        Column("p_value", DOUBLE, "1", "chance of it if nothing is wrong", nullable=True),
+        optional("snr", DOUBLE, "1", "signal-to-noise ratio of an effect"),
+        optional("p_value", DOUBLE, "1", "chance of it if nothing is wrong"),
         Column(
             "cure",
             TEXT,
@@ -165,25 +164,23 @@ CAUSES = Table(
             "repaired, modelled, curve: of the temperature, masked, interpolated, left_out; none:"
             " nothing removes it here",
         ),
-        Column("gain", SENTENCE, "", "what the cure brought, in words", nullable=True),
-        Column("fitting_before", INTEGER, "1", "as in repairs", nullable=True),
-        Column("fitting_after", INTEGER, "1", "as in repairs", nullable=True),
-        Column(
+        optional("gain", SENTENCE, "", "what the cure brought, in words"),
+        optional("fitting_before", INTEGER, "1", "as in repairs"),
+        optional("fitting_after", INTEGER, "1", "as in repairs"),
+        optional(
             "held_out_drop",
             DOUBLE,
             "1",
             "reduction of chi-squared of manoeuvres that the fit has not seen",
-            nullable=True,
         ),
-        Column(
+        optional(
             "moves",
             DOUBLE,
             "1",
             "largest shift of a parameter that it causes or caused, in sigma of that parameter;"
             " none: not known",
-            nullable=True,
         ),
-        Column("condition", SENTENCE, "", "on which the result is valid, in words", nullable=True),
+        optional("condition", SENTENCE, "", "on which the result is valid, in words"),
         Column("consequence", SENTENCE, "", "what it does to the result, in words"),
         Column("done", SENTENCE, "", "what was done about it, in words"),
         Column("action", SENTENCE, "", "what to do in the laboratory, in words"),
@@ -198,7 +195,7 @@ CAUSE_MEMBERS = Table(
         MOUNT,
         Column("rank", INTEGER, "1", "1 for the most probable"),
         Column("member", TEXT, "", "what it may be: an effect of the catalogue or a fault"),
-        Column("probability", DOUBLE, "1", "posterior probability, where compared", nullable=True),
+        optional("probability", DOUBLE, "1", "posterior probability, where compared"),
     ),
 )
 CONSEQUENCES = Table(
@@ -220,7 +217,7 @@ VERDICTS = Table(
         Column("verdict", TEXT, "", "usable, usable_within_limits, on_condition, or not_usable"),
         Column("sentence", SENTENCE, "", "the verdict in words, the cause first"),
         Column("method", TEXT, "", "method of the result: joint, extended, or mixture"),
-        Column("condition", SENTENCE, "", "on which the result is valid, in words", nullable=True),
+        optional("condition", SENTENCE, "", "on which the result is valid, in words"),
         Column("reason", SENTENCE, "", "why this method, in words"),
     ),
 )
@@ -239,27 +236,24 @@ TEMPERATURE_CURVES = Table(
         Column("sigma", DOUBLE, "as unit", "its standard deviation, that at T0 included"),
         Column("unit", TEXT, "", "unit of value and sigma"),
         Column("order", INTEGER, "1", "degree of the polynomial, or of the lines beside a knot"),
-        Column("knot", DOUBLE, "K", "where the slope changes, if it does", nullable=True),
-        Column(
+        optional("knot", DOUBLE, "K", "where the slope changes, if it does"),
+        optional(
             "probability",
             DOUBLE,
             "1",
             "of this order or knot, where the value is the mean over several shapes",
-            nullable=True,
         ),
-        Column(
+        optional(
             "relative_to",
             DOUBLE,
             "K",
             "temperature from which the value is a change, where its level is not known",
-            nullable=True,
         ),
-        Column(
+        optional(
             "not_separated",
             TEXT,
             "",
             "what else the change may be, in words, where one attitude does not separate it",
-            nullable=True,
         ),
     ),
 )
@@ -273,14 +267,13 @@ WARM_UP = Table(
         Column("axis", TEXT, "", BODY),
         Column("band", DOUBLE, "as unit", "to either side of the last value of the bias"),
         Column("unit", TEXT, "", "unit of band"),
-        Column(
+        optional(
             "seconds",
             DOUBLE,
             "s",
             "from the first sample, after which the bias stays within; none: it does not settle",
-            nullable=True,
         ),
-        Column("sigma", DOUBLE, "s", "its standard deviation; none at the start", nullable=True),
+        optional("sigma", DOUBLE, "s", "its standard deviation; none at the start"),
         Column("sentence", SENTENCE, "", "the same in words"),
     ),
 )

@@ -1,7 +1,20 @@
 """Noise, parameters, covariance, fits and comparisons."""
 
-from inertial.tables.shared import BODY, METHOD, MOUNT, QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    BODY,
+    DOUBLE,
+    INTEGER,
+    METHOD,
+    MOUNT,
+    QUANTITY,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    optional,
+)
 from inertial.text.parameters import AXES
 
 # --- Noise, parameters, covariance, fits and positions ---
@@ -17,7 +30,7 @@ NOISE = Table(
         Column("sigma", DOUBLE, "rad/√s, m/s/√s", "standard deviation of white_noise"),
         Column("per_sample", DOUBLE, "rad/s, m/s²", "standard deviation of the samples"),
         Column("samples", INTEGER, "1", "number of samples"),
-        Column("data_sheet", DOUBLE, "rad/√s, m/s/√s", "the data sheet's figure", nullable=True),
+        optional("data_sheet", DOUBLE, "rad/√s, m/s/√s", "the data sheet's figure"),
     ),
 )
 ALLAN = Table(
@@ -30,9 +43,7 @@ ALLAN = Table(
         Column("lower", DOUBLE, "rad/s, m/s²", "lower end of its 1-sigma confidence interval"),
         Column("upper", DOUBLE, "rad/s, m/s²", "upper end of it"),
         Column("degrees", DOUBLE, "1", "equivalent degrees of freedom of deviation²"),
-        Column(
-            "model", DOUBLE, "rad/s, m/s²", "deviation by the terms of the noise", nullable=True
-        ),
+        optional("model", DOUBLE, "rad/s, m/s²", "deviation by the terms of the noise"),
         Column("stretches", INTEGER, "1", "number of static stretches that are pooled"),
     ),
 )
@@ -49,9 +60,7 @@ SPECTRA = Table(
             "power density of both sides, as N² of a white noise N",
         ),
         Column("degrees", DOUBLE, "1", "equivalent degrees of freedom of density"),
-        Column(
-            "model", DOUBLE, "rad²/s, m²/s³", "density by the terms of the noise", nullable=True
-        ),
+        optional("model", DOUBLE, "rad²/s, m²/s³", "density by the terms of the noise"),
         Column("line", TRUTH, "", "whether an oscillation is there, so that the bin is not fitted"),
     ),
 )
@@ -75,12 +84,12 @@ NOISE_TERMS = Table(
             "",
             "whether one manoeuvre alone changes by a step at rest: no drift of the channel",
         ),
-        Column("value", DOUBLE, "as unit", "coefficient", nullable=True),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
-        Column("upper", DOUBLE, "as unit", "upper limit, one-sided 95 %", nullable=True),
+        optional("value", DOUBLE, "as unit", "coefficient"),
+        optional("sigma", DOUBLE, "as unit", "its standard deviation"),
+        optional("upper", DOUBLE, "as unit", "upper limit, one-sided 95 %"),
         Column("unit", TEXT, "", "unit of value, sigma and upper"),
-        Column("p_value", DOUBLE, "1", "probability of the data without the term", nullable=True),
-        Column("data_sheet", DOUBLE, "as unit", "the data sheet's figure", nullable=True),
+        optional("p_value", DOUBLE, "1", "probability of the data without the term"),
+        optional("data_sheet", DOUBLE, "as unit", "the data sheet's figure"),
         Column("seconds", DOUBLE, "s", "longest stretch without a gap"),
     ),
 )
@@ -88,8 +97,8 @@ LEVELS = Table(
     "levels",
     5,
     (
-        Column("manoeuvre", TEXT, "", "as in noise; none: all that have no row", nullable=True),
-        Column("phase", TEXT, "", "rest or steady; none as manoeuvre", nullable=True),
+        optional("manoeuvre", TEXT, "", "as in noise; none: all that have no row"),
+        optional("phase", TEXT, "", "rest or steady; none as manoeuvre"),
         Column("channel", TEXT, "", "one of the six channels"),
         Column("white_noise", DOUBLE, "rad/√s, m/s/√s", "effective: what every sigma rests on"),
         Column("sigma", DOUBLE, "rad/√s, m/s/√s", "standard deviation of white_noise"),
@@ -101,37 +110,28 @@ LEVELS = Table(
             " which a sample counts as 1 s: stated; residuals: next to 0, for a scatter shows it",
         ),
         Column("degrees", DOUBLE, "1", "degrees of freedom of white_noise"),
-        Column(
+        optional(
             "rounding",
             DOUBLE,
             "rad/√s, m/s/√s",
             "beside white_noise: what makes a mean of all of it as uncertain as coarse counts do",
-            nullable=True,
         ),
-        Column("measured", DOUBLE, "rad/√s, m/s/√s", "as in noise", nullable=True),
-        Column("per_sample", DOUBLE, "rad/s, m/s²", "as in noise", nullable=True),
-        Column(
+        optional("measured", DOUBLE, "rad/√s, m/s/√s", "as in noise"),
+        optional("per_sample", DOUBLE, "rad/s, m/s²", "as in noise"),
+        optional(
             "bias_instability",
             DOUBLE,
             "rad/s, m/s²",
             "B of the common level's channel by terms, or the likeliest, or the data sheet's; none:"
             " does not enter",
-            nullable=True,
         ),
-        Column(
+        optional(
             "random_walk",
             DOUBLE,
             "rad/s/√s, m/s²/√s",
             "K of its bias by terms, or the likeliest; none: does not enter",
-            nullable=True,
         ),
-        Column(
-            "data_sheet",
-            DOUBLE,
-            "rad/s, m/s²",
-            "B of the data sheet, of a common level",
-            nullable=True,
-        ),
+        optional("data_sheet", DOUBLE, "rad/s, m/s²", "B of the data sheet, of a common level"),
     ),
 )
 PARAMETERS = Table(
@@ -143,18 +143,12 @@ PARAMETERS = Table(
         MOUNT,
         SENSOR,
         METHOD,
-        Column(
-            "effect",
-            TEXT,
-            "",
-            "effect in the model that it is a parameter of; none: of the sensor",
-            nullable=True,
+        optional(
+            "effect", TEXT, "", "effect in the model that it is a parameter of; none: of the sensor"
         ),
         Column("parameter", TEXT, "", "name within the method"),
-        Column(
-            "value", DOUBLE, "as unit", "estimate; none where it is not determined", nullable=True
-        ),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
+        optional("value", DOUBLE, "as unit", "estimate; none where it is not determined"),
+        optional("sigma", DOUBLE, "as unit", "its standard deviation"),
         Column("unit", TEXT, "", "unit of value and sigma"),
         Column("frame", TEXT, "", "frame it is expressed in"),
         Column("meaning", SENTENCE, "", "what it is, in words"),
@@ -191,13 +185,12 @@ FIT = Table(
             "scatter", DOUBLE, "as unit", "what manoeuvres differ by beyond noise; 0 where p ≥ 1 %"
         ),
         Column("unit", TEXT, "", "unit of the scatter"),
-        Column(
+        optional(
             "scatter_seconds",
             DOUBLE,
             "s",
             "length of a rest with this scatter, which is in inverse proportion to it: the hand "
             "sways; none: the same in all",
-            nullable=True,
         ),
         Column(
             "random_walk",
@@ -205,20 +198,19 @@ FIT = Table(
             "unit/√s",
             "of the bias, which is that of the middle, beyond that of levels; 0: none",
         ),
-        Column("random_walk_sigma", DOUBLE, "unit/√s", "its standard deviation", nullable=True),
-        Column(
+        optional("random_walk_sigma", DOUBLE, "unit/√s", "its standard deviation"),
+        optional(
             "earth_rate_up",
             DOUBLE,
             "rad/s",
             "upward component of the earth's rate, of which the latitude is an observation",
             "level",
-            nullable=True,
         ),
         Column(
             "switch_ons", INTEGER, "1", "between which biases may differ: parts of the campaign"
         ),
         *(
-            Column(f"switch_on_{axis}{of}", DOUBLE, "as unit", meaning, nullable=True)
+            optional(f"switch_on_{axis}{of}", DOUBLE, "as unit", meaning)
             for axis in AXES
             for of, meaning in (
                 ("", "standard deviation of the bias between them, beside the noise; none for one"),
@@ -236,9 +228,9 @@ FIT_MANOEUVRES = Table(
         SENSOR,
         METHOD,
         Column("manoeuvre", TEXT, "", "as in manoeuvres, or as in blocks where it was found"),
-        Column("phase", TEXT, "", "as in blocks; none: all that the method uses", nullable=True),
+        optional("phase", TEXT, "", "as in blocks; none: all that the method uses"),
         Column("used", TRUTH, "", "in the fit"),
-        Column("reason", SENTENCE, "", "why it is not", nullable=True),
+        optional("reason", SENTENCE, "", "why it is not"),
     ),
 )
 POSITIONS = Table(
@@ -296,13 +288,7 @@ WANTED = Table(
         Column("floor", DOUBLE, "as the parameter", "what of it no time averages out"),
         Column("random_walk", DOUBLE, "parameter·√s", "white noise of the bias, √s of a rest"),
         Column("wanted", DOUBLE, "as the parameter", "sigma that is wanted"),
-        Column(
-            "wanted_seconds",
-            DOUBLE,
-            "s",
-            "for it; none where the floor is above it",
-            nullable=True,
-        ),
+        optional("wanted_seconds", DOUBLE, "s", "for it; none where the floor is above it"),
     ),
 )
 
@@ -327,18 +313,17 @@ DIFFERENCES = Table(
         Column("unit", TEXT, "", "unit of the values, SI"),
         Column("first", SENTENCE, "", "what is compared: id of a parameter, or in words"),
         Column("second", SENTENCE, "", "with what: id of a parameter, or in words"),
-        Column("first_value", DOUBLE, "as unit", "none where not determined", nullable=True),
-        Column("second_value", DOUBLE, "as unit", "none where not determined", nullable=True),
-        Column("difference", DOUBLE, "as unit", "first less second", nullable=True),
-        Column("sigma", DOUBLE, "as unit", "its sigma; none where not known", nullable=True),
-        Column("in_sigmas", DOUBLE, "1", "difference in units of its sigma", nullable=True),
-        Column("p_value", DOUBLE, "1", "chance of one so large, either way", nullable=True),
-        Column(
+        optional("first_value", DOUBLE, "as unit", "none where not determined"),
+        optional("second_value", DOUBLE, "as unit", "none where not determined"),
+        optional("difference", DOUBLE, "as unit", "first less second"),
+        optional("sigma", DOUBLE, "as unit", "its sigma; none where not known"),
+        optional("in_sigmas", DOUBLE, "1", "difference in units of its sigma"),
+        optional("p_value", DOUBLE, "1", "chance of one so large, either way"),
+        optional(
             "significant",
             TRUTH,
             "",
             "more than chance among all comparisons; none where there is no p_value",
-            nullable=True,
         ),
         Column("sentence", SENTENCE, "", "the difference and the verdict in words"),
     ),

@@ -1,7 +1,6 @@
 """The extended model: its gain, and the change of the parameters."""
 
-from inertial.tables.shared import BODY, MOUNT
-from inertial.tables.table import DOUBLE, INTEGER, TEXT, TRUTH, Column, Table
+from inertial.tables.table import BODY, DOUBLE, INTEGER, MOUNT, TEXT, TRUTH, Column, Table, optional
 
 _MODEL = Column(
     "model",
@@ -17,7 +16,7 @@ GAIN = Table(
     (
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
-        Column("axis", TEXT, "", "of a single channel; none: of all three", BODY, nullable=True),
+        optional("axis", TEXT, "", "of a single channel; none: of all three", BODY),
         _MODEL,
         Column(
             "scope", TEXT, "", "fitted: all manoeuvres; held-out: each by the fit to the others"
@@ -26,32 +25,29 @@ GAIN = Table(
         Column("before", DOUBLE, "unit²", "chi-squared without the effects; or mean square"),
         Column("after", DOUBLE, "unit²", "the same with them"),
         Column("drop", DOUBLE, "unit²", "before − after"),
-        Column(
+        optional(
             "snr_squared",
             DOUBLE,
             "1",
             "of the effects, without the part of noise; held-out: what the counted folds hold of"
             " it, so the reduction if the effects were known exactly",
-            nullable=True,
         ),
-        Column(
+        optional(
             "random_walk_drop",
             DOUBLE,
             "1",
             "part of the reduction that a random walk of the biases achieves as well, where the"
             " joint fit has one that the effects replace; else 0",
-            nullable=True,
         ),
-        Column("folds", INTEGER, "1", "groups of manoeuvres, each predicted", nullable=True),
-        Column(
+        optional("folds", INTEGER, "1", "groups of manoeuvres, each predicted"),
+        optional(
             "counted",
             INTEGER,
             "1",
             "folds whose training keeps half of the signal: only these are in the numbers",
-            nullable=True,
         ),
-        Column("rms_before", DOUBLE, "as unit", "of the residuals without", nullable=True),
-        Column("rms_after", DOUBLE, "as unit", "and with the effects", nullable=True),
+        optional("rms_before", DOUBLE, "as unit", "of the residuals without"),
+        optional("rms_after", DOUBLE, "as unit", "and with the effects"),
         Column("unit", TEXT, "", "sigma, or the unit of the channel"),
     ),
 )
@@ -92,20 +88,19 @@ MOVED = Table(
         Column("sensor", TEXT, "", "gyro or accel"),
         Column("parameter", TEXT, "", "its name"),
         Column("unit", TEXT, "", "unit of the values"),
-        Column("joint", DOUBLE, "as unit", "value of the joint fit", nullable=True),
-        Column("joint_sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
-        Column("extended", DOUBLE, "as unit", "value with the effects in the model", nullable=True),
-        Column("extended_sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
-        Column("difference", DOUBLE, "as unit", "extended − joint", nullable=True),
-        Column(
+        optional("joint", DOUBLE, "as unit", "value of the joint fit"),
+        optional("joint_sigma", DOUBLE, "as unit", "its standard deviation"),
+        optional("extended", DOUBLE, "as unit", "value with the effects in the model"),
+        optional("extended_sigma", DOUBLE, "as unit", "its standard deviation"),
+        optional("difference", DOUBLE, "as unit", "extended − joint"),
+        optional(
             "difference_sigma",
             DOUBLE,
             "as unit",
             "root of the difference of the variances; none where the joint fit has a scatter of"
             " the manoeuvres",
-            nullable=True,
         ),
-        Column("in_sigmas", DOUBLE, "1", "difference in sigmas of the joint fit", nullable=True),
+        optional("in_sigmas", DOUBLE, "1", "difference in sigmas of the joint fit"),
     ),
 )
 WORTH = Table(

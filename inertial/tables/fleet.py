@@ -1,7 +1,16 @@
 """What several campaigns show together: effects and what shares them, populations of types."""
 
-from inertial.tables.shared import SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    DOUBLE,
+    INTEGER,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    optional,
+)
 
 FINDING = Column("finding", TEXT, "", "id of the finding")
 LEVELS = "type, table, imu or campaign; with + what the campaigns do not tell apart"
@@ -31,13 +40,12 @@ FLEET = {
                 FINDING,
                 Column("effect", TEXT, "", "name in the catalogue"),
                 Column("level", TEXT, "", "what shares it: type, table, imu or campaign"),
-                Column(
+                optional(
                     "group",
                     TEXT,
                     "",
                     "the type, table, IMU or campaign; none: each has a size of its own, or tables"
                     " differ, see table_differences",
-                    nullable=True,
                 ),
                 Column("statistic", DOUBLE, "1", "reduction of chi-squared beside the others"),
                 Column("degrees", INTEGER, "1", "degrees of freedom of the statistic"),
@@ -95,13 +103,12 @@ FLEET = {
                 Column("less", SENTENCE, "", "tables on which they read less"),
                 Column("value", DOUBLE, "1", "by how much, of all scale factors alike"),
                 Column("sigma", DOUBLE, "1", "its standard deviation, turn-on to turn-on in it"),
-                Column(
+                optional(
                     "stated",
                     DOUBLE,
                     "1",
                     "standard deviation of a difference of two such tables by what the campaigns"
                     " state; none: not stated",
-                    nullable=True,
                 ),
                 Column("imus", INTEGER, "1", "IMUs that were on both sides"),
                 Column("axes", INTEGER, "1", "axes that show it"),
@@ -123,30 +130,27 @@ FLEET = {
                     " over the spreads between tables that are possible; with one table its part is"
                     " in the mean and not in sigma",
                 ),
-                Column(
+                optional(
                     "mean_degrees",
                     DOUBLE,
                     "1",
                     "degrees of freedom of mean_sigma, for Student's t; none: on one table the"
                     " differences are no larger than the sigmas, or how well they are known is not"
                     " determined",
-                    nullable=True,
                 ),
-                Column(
+                optional(
                     "prior_sigma",
                     DOUBLE,
                     "as unit",
                     "standard deviation of a new IMU of the type about the mean, in one campaign on"
                     " one table, beside the sigma of that campaign; none: of a single IMU",
-                    nullable=True,
                 ),
-                Column(
+                optional(
                     "prior_degrees",
                     DOUBLE,
                     "1",
                     "degrees of freedom of prior_sigma, for Student's t; none: of a single IMU, or"
                     " the differences are no larger than the sigmas",
-                    nullable=True,
                 ),
             ),
         ),
@@ -158,12 +162,11 @@ FLEET = {
                 Column("levels", TEXT, "", LEVELS),
                 Column("groups", INTEGER, "1", "number of tables, IMUs or campaigns"),
                 Column("value", DOUBLE, "as unit", "standard deviation, by restricted likelihood"),
-                Column(
+                optional(
                     "sigma",
                     DOUBLE,
                     "as unit",
                     "its standard deviation; none where 0 is the likeliest value",
-                    nullable=True,
                 ),
                 Column("unit", TEXT, "", "unit of the values, SI"),
             ),

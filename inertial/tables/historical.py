@@ -1,7 +1,17 @@
 """How well calibrations of one IMU repeat, jumps between them, and what the next may be."""
 
-from inertial.tables.shared import QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    DOUBLE,
+    INTEGER,
+    QUANTITY,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    optional,
+)
 
 UNIT = Column("unit", TEXT, "", "unit of the parameter, SI")
 
@@ -25,15 +35,14 @@ REPEATABILITY = Table(
         ),
         Column("calibrations", INTEGER, "1", "values, one for each calibration and mount"),
         Column("groups", INTEGER, "1", "days, mountings or switch-ons; of stability: means"),
-        Column("value", DOUBLE, "as unit", "standard deviation", nullable=True),
-        Column(
+        optional("value", DOUBLE, "as unit", "standard deviation"),
+        optional(
             "sigma",
             DOUBLE,
             "as unit",
             "its standard deviation; none where 0 is the likeliest value",
-            nullable=True,
         ),
-        Column("upper", DOUBLE, "as unit", "upper limit, one-sided 95 %", nullable=True),
+        optional("upper", DOUBLE, "as unit", "upper limit, one-sided 95 %"),
         Column("reason", SENTENCE, "", "why there is no value"),
     ),
 )
@@ -89,33 +98,22 @@ FORECAST = Table(
         QUANTITY,
         UNIT,
         Column("calibrations", INTEGER, "1", "values of known date"),
-        Column("from_date", TEXT, "", "date of the first", nullable=True),
-        Column("to_date", TEXT, "", "date of the last", nullable=True),
-        Column("drift", DOUBLE, "unit per year", "by weighted regression", nullable=True),
-        Column(
+        optional("from_date", TEXT, "", "date of the first"),
+        optional("to_date", TEXT, "", "date of the last"),
+        optional("drift", DOUBLE, "unit per year", "by weighted regression"),
+        optional(
             "drift_sigma",
             DOUBLE,
             "unit per year",
             "its standard deviation, with what the days differ by",
-            nullable=True,
         ),
-        Column("at", TEXT, "", "date of the next, after the usual interval", nullable=True),
-        Column("low", DOUBLE, "as unit", "lower limit of its 95 % interval", nullable=True),
-        Column("median", DOUBLE, "as unit", "median of what it may find", nullable=True),
-        Column("high", DOUBLE, "as unit", "upper limit of its 95 % interval", nullable=True),
-        Column(
-            "tolerance",
-            DOUBLE,
-            "as unit",
-            "for a change, by campaign or config.yaml",
-            nullable=True,
-        ),
-        Column(
-            "due",
-            TEXT,
-            "",
-            "date from which the 95 % interval leaves the last value ± tolerance",
-            nullable=True,
+        optional("at", TEXT, "", "date of the next, after the usual interval"),
+        optional("low", DOUBLE, "as unit", "lower limit of its 95 % interval"),
+        optional("median", DOUBLE, "as unit", "median of what it may find"),
+        optional("high", DOUBLE, "as unit", "upper limit of its 95 % interval"),
+        optional("tolerance", DOUBLE, "as unit", "for a change, by campaign or config.yaml"),
+        optional(
+            "due", TEXT, "", "date from which the 95 % interval leaves the last value ± tolerance"
         ),
         Column("reason", SENTENCE, "", "why there is no prediction, or no due date"),
     ),

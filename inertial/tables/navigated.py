@@ -1,7 +1,6 @@
 """Free inertial navigation with the readings before and after calibration; alignment at rest."""
 
-from inertial.tables.shared import MOUNT
-from inertial.tables.table import DOUBLE, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import DOUBLE, MOUNT, SENTENCE, TEXT, TRUTH, Column, Table, optional
 
 MOTION = Column("motion", TEXT, "", "rest, or turn: a whole one, from rest to rest")
 SECONDS = Column("seconds", DOUBLE, "s", "of free inertial navigation, from the end of alignment")
@@ -13,22 +12,17 @@ QUANTITY = Column(
 )
 UNIT = Column("unit", TEXT, "", "unit of the errors, SI")
 BEFORE = (
-    Column("nominal", DOUBLE, "as unit", "with the readings as decoded", nullable=True),
-    Column(
-        "published",
-        DOUBLE,
-        "as unit",
-        "with M and bias as published; none where they are not",
-        nullable=True,
+    optional("nominal", DOUBLE, "as unit", "with the readings as decoded"),
+    optional(
+        "published", DOUBLE, "as unit", "with M and bias as published; none where they are not"
     ),
-    Column("calibrated", DOUBLE, "as unit", "with the result that counts", nullable=True),
+    optional("calibrated", DOUBLE, "as unit", "with the result that counts"),
 )
-PREDICTED = Column(
+PREDICTED = optional(
     "predicted",
     DOUBLE,
     "as unit",
     "rms of the error with the result, by its covariance and the noise",
-    nullable=True,
 )
 
 NAVIGATION_ERRORS = Table(
@@ -44,19 +38,14 @@ NAVIGATION_ERRORS = Table(
         UNIT,
         *BEFORE,
         PREDICTED,
-        Column(
-            "by_parameters",
-            DOUBLE,
-            "as unit",
-            "the same by the covariance of the result alone",
-            nullable=True,
+        optional(
+            "by_parameters", DOUBLE, "as unit", "the same by the covariance of the result alone"
         ),
-        Column(
+        optional(
             "normalised",
             DOUBLE,
             "1",
             "squared error with the result by its predicted covariance, over the 3 axes",
-            nullable=True,
         ),
         Column(
             "azimuth",
@@ -87,7 +76,7 @@ NAVIGATION_SHARES = Table(
     (
         MOUNT,
         MOTION,
-        Column("seconds", DOUBLE, "s", "as in errors; none: each turn its own", nullable=True),
+        optional("seconds", DOUBLE, "s", "as in errors; none: each turn its own"),
         QUANTITY,
         Column(
             "family",
@@ -132,18 +121,17 @@ ALIGNMENTS = Table(
             " found, static of the case, by rotation of the axis of the turn; azimuth of"
             " `direction`; level_rate: horizontal part of the earth's rate",
         ),
-        Column("direction", TEXT, "", "body direction of an azimuth: mark, x, y, z", nullable=True),
+        optional("direction", TEXT, "", "body direction of an azimuth: mark, x, y, z"),
         Column("value", DOUBLE, "as unit", "its value"),
         Column("sigma", DOUBLE, "as unit", "by noise, and by the calibration where compensated"),
-        Column(
+        optional(
             "per_bias",
             DOUBLE,
             "s",
             "of an azimuth: by how much a bias of the gyros to the east, 1 rad/s, turns it; 0 where"
             " the rotation separates the two",
-            nullable=True,
         ),
-        Column("known", DOUBLE, "as unit", "what the campaign states, if known", nullable=True),
+        optional("known", DOUBLE, "as unit", "what the campaign states, if known"),
         Column("unit", TEXT, "", "rad or rad/s"),
     ),
 )

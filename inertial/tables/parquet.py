@@ -18,8 +18,7 @@ import pyarrow.parquet as pq
 
 from inertial.tables.errors import Refusal
 from inertial.tables.table import Column, Table
-from inertial.text.messages import ENGLISH, in_this_language, language
-from inertial.text.recipes import learn, needed
+from inertial.text.messages import ENGLISH, in_this_language, language, learn, needed
 
 if TYPE_CHECKING:  # decode streams record batches and starts faster without pandas
     import pandas as pd

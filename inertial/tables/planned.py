@@ -1,7 +1,22 @@
 """The plan: campaign, what is known, manoeuvres, what others published."""
 
-from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, QUANTITY, SENSOR, vector
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    AS_CHANNEL,
+    AXIS,
+    BODY,
+    DOUBLE,
+    INTEGER,
+    LOG,
+    QUANTITY,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    optional,
+    vector,
+)
 
 CAMPAIGN = Table(
     "campaign",
@@ -13,13 +28,13 @@ CAMPAIGN = Table(
         Column("instrument", TEXT, "", "name of the IMU's type"),
         Column("serial", TEXT, "", "serial number, or unknown"),
         Column("date", TEXT, "", "date as the campaign states it, or unknown"),
-        Column("laboratory", TEXT, "", "where", nullable=True),
-        Column("operator", TEXT, "", "by whom", nullable=True),
-        Column("notes", TEXT, "", "remarks of the laboratory", nullable=True),
-        Column("mounting", TEXT, "", "label of campaigns between which it stayed", nullable=True),
-        Column("switch_on", TEXT, "", "label of campaigns between which it ran on", nullable=True),
+        optional("laboratory", TEXT, "", "where"),
+        optional("operator", TEXT, "", "by whom"),
+        optional("notes", TEXT, "", "remarks of the laboratory"),
+        optional("mounting", TEXT, "", "label of campaigns between which it stayed"),
+        optional("switch_on", TEXT, "", "label of campaigns between which it ran on"),
         Column("table", TEXT, "", "name of the table"),
-        Column("rate", DOUBLE, "Hz", "stated sample rate", nullable=True),
+        optional("rate", DOUBLE, "Hz", "stated sample rate"),
         Column("latitude", DOUBLE, "rad", "geodetic latitude", "earth", True),
         Column("height", DOUBLE, "m", "height above the ellipsoid", "earth", True),
         Column("must_be_set", INTEGER, "", "bits that are set in the status of a valid record"),
@@ -31,8 +46,8 @@ KNOWN = Table(
     2,
     (
         Column("quantity", TEXT, "", "name of what is taken as known"),
-        Column("value", DOUBLE, "as unit", "its value; none where it is not known", nullable=True),
-        Column("sigma", DOUBLE, "as unit", "standard deviation of the value", nullable=True),
+        optional("value", DOUBLE, "as unit", "its value; none where it is not known"),
+        optional("sigma", DOUBLE, "as unit", "standard deviation of the value"),
         Column("unit", TEXT, "", "unit of value and sigma"),
         Column(
             "origin", SENTENCE, "", "stated in the campaign, computed, or assumed, and from what"
@@ -65,26 +80,19 @@ SENSORS = Table(
     (
         SENSOR,
         AXIS,
-        Column("count_size", DOUBLE, "rad, m/s", "increment of one count", nullable=True),
-        Column("full_scale", DOUBLE, "rad/s, m/s²", "largest input", nullable=True),
-        Column(
-            "white_noise", DOUBLE, "rad/√s, m/s/√s", "random walk of the data sheet", nullable=True
-        ),
-        Column(
+        optional("count_size", DOUBLE, "rad, m/s", "increment of one count"),
+        optional("full_scale", DOUBLE, "rad/s, m/s²", "largest input"),
+        optional("white_noise", DOUBLE, "rad/√s, m/s/√s", "random walk of the data sheet"),
+        optional(
             "bias_instability",
             DOUBLE,
             "rad/s, m/s²",
             "coefficient B of the data sheet: its lowest Allan deviation ÷ 0.664",
-            nullable=True,
         ),
-        Column(
-            "random_walk",
-            DOUBLE,
-            "rad/s/√s, m/s²/√s",
-            "random walk of the bias by the data sheet",
-            nullable=True,
+        optional(
+            "random_walk", DOUBLE, "rad/s/√s, m/s²/√s", "random walk of the bias by the data sheet"
         ),
-        Column("source", TEXT, "", "where these figures are from", nullable=True),
+        optional("source", TEXT, "", "where these figures are from"),
     ),
 )
 LOGS = Table(
@@ -103,16 +111,15 @@ RANGES = Table(
         LOG,
         SENSOR,
         AXIS,
-        Column("count", DOUBLE, AS_CHANNEL, "what one count is, if stated", nullable=True),
+        optional("count", DOUBLE, AS_CHANNEL, "what one count is, if stated"),
         Column("increments", TRUTH, "", "a count is an increment: its unit is times s"),
-        Column("limit", DOUBLE, AS_CHANNEL, "largest input, if stated", nullable=True),
-        Column(
+        optional("limit", DOUBLE, AS_CHANNEL, "largest input, if stated"),
+        optional(
             "sigma",
             DOUBLE,
             AS_CHANNEL,
             "where rows are means: standard deviation of one of their samples, or of the row; 0: in"
             " the log, or by the residuals; none: not known, or not of means",
-            nullable=True,
         ),
     ),
 )
@@ -155,35 +162,30 @@ MANOEUVRES = Table(
         *vector("up", "1", "unit vector that points up at the start"),
         *vector("mark", "1", "unit vector to the table's zero mark at the start"),
         *vector("about", "1", "unit vector of the axis of the turn"),
-        Column("tumble", TEXT, "", "the tumble that a rest is one of", nullable=True),
+        optional("tumble", TEXT, "", "the tumble that a rest is one of"),
         *vector("tumble_axis", "1", "unit vector of the axis of that tumble"),
         *vector("tumbled", "rad", "angle since the start of the tumble, about its axis"),
         Column(
             "angle", DOUBLE, "rad", "angle of the turn about `about`, right-hand rule", BODY, True
         ),
-        Column("angle_sigma", DOUBLE, "rad", "standard deviation of the angle", nullable=True),
+        optional("angle_sigma", DOUBLE, "rad", "standard deviation of the angle"),
         Column("rate", DOUBLE, "rad/s", "signed rate of the turn about `about`", BODY, True),
-        Column(
+        optional(
             "rate_sigma",
             DOUBLE,
             "rad/s",
             "standard deviation of the rate by the encoder; none: by the table's stated one",
-            nullable=True,
         ),
-        Column("acceleration", DOUBLE, "rad/s²", "of the table at start and stop", nullable=True),
-        Column("seconds", DOUBLE, "s", "planned duration", nullable=True),
-        Column("temperature", DOUBLE, "K", "stated temperature of the instrument", nullable=True),
-        Column(
-            "temperature_sigma", DOUBLE, "K", "its standard deviation, if stated", nullable=True
-        ),
+        optional("acceleration", DOUBLE, "rad/s²", "of the table at start and stop"),
+        optional("seconds", DOUBLE, "s", "planned duration"),
+        optional("temperature", DOUBLE, "K", "stated temperature of the instrument"),
+        optional("temperature_sigma", DOUBLE, "K", "its standard deviation, if stated"),
         Column("recorded", TEXT, "", "whole: rest on both sides is in the log; steady: it is not"),
-        Column(
-            "from_s", DOUBLE, "s", "start of the stated span, in the log's own time", nullable=True
-        ),
-        Column("to_s", DOUBLE, "s", "end of the stated span", nullable=True),
-        Column("from_row", INTEGER, "1", "first data row of the stated rows", nullable=True),
-        Column("to_row", INTEGER, "1", "data row after the last", nullable=True),
-        Column("label", TEXT, "", "the records with this label", nullable=True),
+        optional("from_s", DOUBLE, "s", "start of the stated span, in the log's own time"),
+        optional("to_s", DOUBLE, "s", "end of the stated span"),
+        optional("from_row", INTEGER, "1", "first data row of the stated rows"),
+        optional("to_row", INTEGER, "1", "data row after the last"),
+        optional("label", TEXT, "", "the records with this label"),
     ),
 )
 GUESSES = Table(
@@ -206,10 +208,10 @@ PUBLISHED = Table(
         SENSOR,
         QUANTITY,
         Column("value", DOUBLE, "as unit", "what others found for it"),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation, if stated", nullable=True),
+        optional("sigma", DOUBLE, "as unit", "its standard deviation, if stated"),
         Column("unit", TEXT, "", "unit of value and sigma, SI"),
         Column("source", TEXT, "", "where it is published"),
-        Column("window", DOUBLE, "rad", "angle of the window it is from, if stated", nullable=True),
-        Column("samples", DOUBLE, "1", "intervals of that window, if stated", nullable=True),
+        optional("window", DOUBLE, "rad", "angle of the window it is from, if stated"),
+        optional("samples", DOUBLE, "1", "intervals of that window, if stated"),
     ),
 )

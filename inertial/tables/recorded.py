@@ -1,7 +1,25 @@
 """What was recorded: samples, clocks, findings, masks, segments, blocks."""
 
-from inertial.tables.shared import AS_CHANNEL, AXIS, BODY, LOG, PHASES, RECORDS, SENSOR, channels
-from inertial.tables.table import DOUBLE, INTEGER, LABEL, SENTENCE, TEXT, TRUTH, WORD, Column, Table
+from inertial.tables.table import (
+    AS_CHANNEL,
+    AXIS,
+    BODY,
+    DOUBLE,
+    INTEGER,
+    LABEL,
+    LOG,
+    PHASES,
+    RECORDS,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    WORD,
+    Column,
+    Table,
+    channels,
+    optional,
+)
 from inertial.text.parameters import AXES
 
 SAMPLES = Table(
@@ -12,25 +30,15 @@ SAMPLES = Table(
         Column("record", INTEGER, "1", "number of the record in its log, refused ones counted"),
         Column("offset", INTEGER, "byte", "where its line begins in the file"),
         Column("line", INTEGER, "1", "number of its line, from 1"),
-        Column("time", DOUBLE, "s", "since the start of its clock", nullable=True),
-        Column("status", WORD, "", "status word of the instrument", nullable=True),
-        Column(
-            "mean_of",
-            DOUBLE,
-            "1",
-            "number of samples that this record is the mean of",
-            nullable=True,
-        ),
+        optional("time", DOUBLE, "s", "since the start of its clock"),
+        optional("status", WORD, "", "status word of the instrument"),
+        optional("mean_of", DOUBLE, "1", "number of samples that this record is the mean of"),
         *channels("specific force, angular rate"),
-        Column(
-            "table_angle",
-            DOUBLE,
-            "rad",
-            "as the table's encoder gives it, continuous over turns",
-            nullable=True,
+        optional(
+            "table_angle", DOUBLE, "rad", "as the table's encoder gives it, continuous over turns"
         ),
-        Column("temperature", DOUBLE, "K", "of the instrument", nullable=True),
-        Column("label", LABEL, "", "label that the plan selects by", nullable=True),
+        optional("temperature", DOUBLE, "K", "of the instrument"),
+        optional("label", LABEL, "", "label that the plan selects by"),
     ),
 )
 MEAN_SIGMAS = Table(
@@ -75,42 +83,33 @@ CLOCKS = Table(
         Column(
             "clock", TEXT, "", "GPS: shared by the logs; own: each log from its first sample; none"
         ),
-        Column("epoch_gps", DOUBLE, "s", "GPS time at time 0", nullable=True),
-        Column("began", DOUBLE, "s", "stamp of a clock of its own at time 0", nullable=True),
-        Column("recorded_on", TEXT, "", "UTC date of the first sample", nullable=True),
-        Column("from_s", DOUBLE, "s", "time of the first sample", nullable=True),
-        Column("to_s", DOUBLE, "s", "time of the last sample", nullable=True),
+        optional("epoch_gps", DOUBLE, "s", "GPS time at time 0"),
+        optional("began", DOUBLE, "s", "stamp of a clock of its own at time 0"),
+        optional("recorded_on", TEXT, "", "UTC date of the first sample"),
+        optional("from_s", DOUBLE, "s", "time of the first sample"),
+        optional("to_s", DOUBLE, "s", "time of the last sample"),
         Column("records", INTEGER, "1", "number of decoded records"),
         Column("to_record", INTEGER, "1", "number after that of the last decoded record, else 0"),
-        Column("interval", DOUBLE, "s", "median sample interval", nullable=True),
-        Column(
+        optional("interval", DOUBLE, "s", "median sample interval"),
+        optional(
             "integration_step",
             DOUBLE,
             "s",
             "mean sample interval: what a sample counts for in a sum over time",
-            nullable=True,
         ),
-        Column(
+        optional(
             "interval_sigma",
             DOUBLE,
             "s",
             "standard deviation of the interval of the regular clock; null: stamps are used",
-            nullable=True,
         ),
-        Column(
+        optional(
             "stamp_scatter",
             DOUBLE,
             "s",
             "rms of the stamps about the regular clock that is used instead; null: they are used",
-            nullable=True,
         ),
-        Column(
-            "shortest_gap",
-            DOUBLE,
-            "s",
-            "shortest gap that stamps which scatter show",
-            nullable=True,
-        ),
+        optional("shortest_gap", DOUBLE, "s", "shortest gap that stamps which scatter show"),
     ),
 )
 IMU_TYPES = Table(
@@ -128,13 +127,12 @@ CHANNEL_STATISTICS = Table(
         LOG,
         SENSOR,
         AXIS,
-        Column("resolution", DOUBLE, AS_CHANNEL, "smallest step of its readings", nullable=True),
-        Column(
+        optional("resolution", DOUBLE, AS_CHANNEL, "smallest step of its readings"),
+        optional(
             "noise",
             DOUBLE,
             AS_CHANNEL,
             "scatter of a reading about its neighbours, 1.4826/√2 × median of the absolute steps",
-            nullable=True,
         ),
         Column("unchanged_share", DOUBLE, "1", "share of readings equal to the one before"),
         Column(
@@ -143,8 +141,8 @@ CHANNEL_STATISTICS = Table(
             "1",
             "share of records in which the sensor repeats its readings, if all the time; else 0",
         ),
-        Column("smallest", DOUBLE, AS_CHANNEL, "smallest reading", BODY, nullable=True),
-        Column("largest", DOUBLE, AS_CHANNEL, "largest reading", BODY, nullable=True),
+        optional("smallest", DOUBLE, AS_CHANNEL, "smallest reading", BODY),
+        optional("largest", DOUBLE, AS_CHANNEL, "largest reading", BODY),
     ),
 )
 
@@ -156,16 +154,16 @@ FINDINGS = Table(
         Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
         Column("cause", TEXT, "", "what it is"),
         Column("mount", TEXT, "", "where there are several and one is concerned; else empty"),
-        Column("sensor", TEXT, "", "accel or gyro, where one is concerned", nullable=True),
-        Column("axis", TEXT, "", "x, y or z, where one is concerned", nullable=True),
-        Column("log", TEXT, "", "as in logs", nullable=True),
-        Column("manoeuvre", TEXT, "", "as in manoeuvres", nullable=True),
-        Column("from_s", DOUBLE, "s", "from, in the time of the log", nullable=True),
-        Column("to_s", DOUBLE, "s", "to, in the time of the log", nullable=True),
+        optional("sensor", TEXT, "", "accel or gyro, where one is concerned"),
+        optional("axis", TEXT, "", "x, y or z, where one is concerned"),
+        optional("log", TEXT, "", "as in logs"),
+        optional("manoeuvre", TEXT, "", "as in manoeuvres"),
+        optional("from_s", DOUBLE, "s", "from, in the time of the log"),
+        optional("to_s", DOUBLE, "s", "to, in the time of the log"),
         Column("count", INTEGER, "1", "how many equal ones this stands for"),
-        Column("size", DOUBLE, "as unit", "how large", nullable=True),
+        optional("size", DOUBLE, "as unit", "how large"),
         Column("unit", TEXT, "", "unit of size"),
-        Column("p_value", DOUBLE, "1", "chance of such a size if nothing is wrong", nullable=True),
+        optional("p_value", DOUBLE, "1", "chance of such a size if nothing is wrong"),
         Column("severity", INTEGER, "", "3 spoils a result, 2 weakens it, 1 is good to know"),
         Column("consequence", SENTENCE, "", "what it does to the result"),
         Column("action", SENTENCE, "", "what the pipeline did, or what the laboratory should do"),
@@ -178,8 +176,8 @@ MASKS = Table(
     (
         LOG,
         *RECORDS,
-        Column("sensor", TEXT, "", "accel or gyro where one channel is masked", nullable=True),
-        Column("axis", TEXT, "", "x, y or z where one channel is masked", nullable=True),
+        optional("sensor", TEXT, "", "accel or gyro where one channel is masked"),
+        optional("axis", TEXT, "", "x, y or z where one channel is masked"),
         Column("repeated", TRUTH, "", "they repeat other records: no time passes with them"),
         Column(
             "censored",
@@ -198,7 +196,7 @@ CLOSE_UPS = Table(
         LOG,
         Column("record", INTEGER, "1", "number of the record in its log"),
         Column("line", INTEGER, "1", "number of its line, from 1"),
-        Column("time", DOUBLE, "s", "as in samples", nullable=True),
+        optional("time", DOUBLE, "s", "as in samples"),
         *channels("as in samples"),
         Column("concerned", TRUTH, "", "it lies in the stretch that the finding is about"),
     ),
@@ -222,8 +220,8 @@ SEGMENTS = Table(
         Column("phase", TEXT, "", PHASES),
         LOG,
         *RECORDS,
-        Column("from_s", DOUBLE, "s", "time of its first record", nullable=True),
-        Column("to_s", DOUBLE, "s", "time of its last record", nullable=True),
+        optional("from_s", DOUBLE, "s", "time of its first record"),
+        optional("to_s", DOUBLE, "s", "time of its last record"),
     ),
 )
 PERFORMED = Table(
@@ -298,14 +296,8 @@ BLOCKS = Table(
         Column("phase", TEXT, "", PHASES),
         LOG,
         *RECORDS,
-        Column("time", DOUBLE, "s", "middle of the block", nullable=True),
-        Column(
-            "seconds",
-            DOUBLE,
-            "s",
-            "count × integration step: mean × seconds is a sum",
-            nullable=True,
-        ),
+        optional("time", DOUBLE, "s", "middle of the block"),
+        optional("seconds", DOUBLE, "s", "count × integration step: mean × seconds is a sum"),
         Column("count", DOUBLE, "1", "number of samples in the means"),
         Column(
             "missing_s",
@@ -314,20 +306,19 @@ BLOCKS = Table(
             "of a turn: time before it, since the block before, that is lost or masked; else 0",
         ),
         *channels("mean"),
-        Column("table_angle", DOUBLE, "rad", "mean angle of the table", nullable=True),
+        optional("table_angle", DOUBLE, "rad", "mean angle of the table"),
         *(
-            Column(
+            optional(
                 f"{what}_{edge}",
                 DOUBLE,
                 unit,
                 f"of a turn: {what} of the table by its encoder at the {place} of the block; none"
                 " where the encoder is not used",
-                nullable=True,
             )
             for what, unit in (("angle", "rad"), ("rate", "rad/s"))
             for edge, place in (("from", "beginning"), ("to", "end"))
         ),
-        Column("temperature", DOUBLE, "K", "mean temperature", nullable=True),
+        optional("temperature", DOUBLE, "K", "mean temperature"),
         Column("mask_share", DOUBLE, "1", "share of its records that are masked"),
     ),
 )
@@ -337,8 +328,8 @@ TRACES = Table(
     (
         LOG,
         *RECORDS,
-        Column("from_s", DOUBLE, "s", "time of the first record", nullable=True),
-        Column("to_s", DOUBLE, "s", "time of the last record", nullable=True),
+        optional("from_s", DOUBLE, "s", "time of the first record"),
+        optional("to_s", DOUBLE, "s", "time of the last record"),
         *channels("smallest", prefix="least_"),
         *channels("largest", prefix="most_"),
     ),

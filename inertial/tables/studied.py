@@ -1,7 +1,20 @@
 """Parameters by epochs, windows and angles, and the motion of the table."""
 
-from inertial.tables.shared import AXIS, BODY, METHOD, MOUNT, QUANTITY, SENSOR
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, Column, Table
+from inertial.tables.table import (
+    AXIS,
+    BODY,
+    DOUBLE,
+    INTEGER,
+    METHOD,
+    MOUNT,
+    QUANTITY,
+    SENSOR,
+    SENTENCE,
+    TEXT,
+    Column,
+    Table,
+    optional,
+)
 
 EPOCHS = Table(
     "epochs",
@@ -13,9 +26,9 @@ EPOCHS = Table(
         QUANTITY,
         Column("unit", TEXT, "", "unit of the parameter, SI"),
         Column("seconds", DOUBLE, "s", "end of the epoch, from the start of every rest"),
-        Column("single", DOUBLE, "as unit", "by this epoch alone", nullable=True),
+        optional("single", DOUBLE, "as unit", "by this epoch alone"),
         Column("single_sigma", DOUBLE, "as unit", "its sigma by white noise"),
-        Column("running_mean", DOUBLE, "as unit", "by all epochs up to this one", nullable=True),
+        optional("running_mean", DOUBLE, "as unit", "by all epochs up to this one"),
         Column("running_mean_sigma", DOUBLE, "as unit", "its sigma by white noise"),
     ),
 )
@@ -70,7 +83,7 @@ TIME_ANGLE = Table(
         Column("angle", DOUBLE, "rad", "turned so far, mean over some samples about this time"),
         Column("swing", DOUBLE, "rad", "half the range within them, what bends slowly left out"),
         Column("sigma", DOUBLE, "rad", "of the angle; at the end that of the whole angle"),
-        Column("set_angle", DOUBLE, "rad", "of the trapezoid that was set", nullable=True),
+        optional("set_angle", DOUBLE, "rad", "of the trapezoid that was set"),
     ),
 )
 MOTIONS = Table(
@@ -86,7 +99,7 @@ MOTIONS = Table(
         ),
         Column("value", DOUBLE, "as unit", "by time and angle"),
         Column("sigma", DOUBLE, "as unit", "its sigma"),
-        Column("set_value", DOUBLE, "as unit", "what was set", nullable=True),
+        optional("set_value", DOUBLE, "as unit", "what was set"),
         Column("unit", TEXT, "", "unit of these"),
     ),
 )
@@ -95,9 +108,7 @@ ENCODER = Table(
     3,
     (
         MOUNT,
-        Column(
-            "manoeuvre", TEXT, "", "a turn with the angle of the encoder; none: all", nullable=True
-        ),
+        optional("manoeuvre", TEXT, "", "a turn with the angle of the encoder; none: all"),
         Column(
             "quantity",
             TEXT,
@@ -108,16 +119,15 @@ ENCODER = Table(
             " dead_time: delay less low_pass; sine, cosine: error of the encoder with its angle"
             " times order; ripple: amplitude in the course of the encoder at the steady rate",
         ),
-        Column("order", DOUBLE, "1", "periods in a turn; none: not periodic", nullable=True),
+        optional("order", DOUBLE, "1", "periods in a turn; none: not periodic"),
         Column("value", DOUBLE, "as unit", "its value"),
         Column("sigma", DOUBLE, "as unit", "its sigma, enlarged where the residuals exceed noise"),
         Column("unit", TEXT, "", "unit of value and sigma"),
-        Column(
+        optional(
             "p_value",
             DOUBLE,
             "1",
             "of a ripple, without one; of all turns, that they have the value in common",
-            nullable=True,
         ),
     ),
 )
@@ -137,16 +147,10 @@ BANDWIDTHS = Table(
             " to rates; ramps: as the gyro alone reads them, response of gyro and drive together;"
             " noise: at rest, bandwidth of its white noise and not the response to an input",
         ),
-        Column(
-            "value", DOUBLE, "Hz", "of a first-order low pass, where it is certain", nullable=True
-        ),
-        Column("sigma", DOUBLE, "Hz", "its standard deviation", nullable=True),
-        Column(
-            "lower",
-            DOUBLE,
-            "Hz",
-            "lower limit, one-sided 95 %; by ramps that of the gyro alone",
-            nullable=True,
+        optional("value", DOUBLE, "Hz", "of a first-order low pass, where it is certain"),
+        optional("sigma", DOUBLE, "Hz", "its standard deviation"),
+        optional(
+            "lower", DOUBLE, "Hz", "lower limit, one-sided 95 %; by ramps that of the gyro alone"
         ),
         Column("turns", INTEGER, "1", "turns, each with two ramps; 0 by noise"),
         Column("reason", SENTENCE, "", "why there is neither a value nor a limit"),

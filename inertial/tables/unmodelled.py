@@ -1,8 +1,21 @@
 """The simulation and its unmodelled effects."""
 
 from inertial.tables.recorded import FINDINGS
-from inertial.tables.shared import BODY, LOG, MOUNT, PHASES, channels
-from inertial.tables.table import DOUBLE, INTEGER, SENTENCE, TEXT, TRUTH, Column, Table
+from inertial.tables.table import (
+    BODY,
+    DOUBLE,
+    INTEGER,
+    LOG,
+    MOUNT,
+    PHASES,
+    SENTENCE,
+    TEXT,
+    TRUTH,
+    Column,
+    Table,
+    channels,
+    optional,
+)
 
 # ---- The simulated readings and their residuals.
 
@@ -14,7 +27,7 @@ SIMULATED = Table(
         Column("phase", TEXT, "", PHASES),
         LOG,
         Column("record", INTEGER, "1", "record of the log; of a block the first"),
-        Column("time", DOUBLE, "s", "as in samples; of a block its middle", nullable=True),
+        optional("time", DOUBLE, "s", "as in samples; of a block its middle"),
         *channels("what the IMU should have read"),
         *channels("read less simulated", prefix="residual_"),
     ),
@@ -36,64 +49,54 @@ FIDELITY = Table(
 
 # ---- Unmodelled effects: findings, scores, parameters, detection limits, and structure.
 
-FINDING = Column("finding", TEXT, "", "id of the finding that names it", nullable=True)
+FINDING = optional("finding", TEXT, "", "id of the finding that names it")
 
 EFFECT_FINDINGS = Table(
     "effect_findings",
     5,
     (
         *FINDINGS.columns,
-        Column("verdict", TEXT, "", "found, one_of_class, law, unknown_structure", nullable=True),
-        Column(
-            "statistic",
-            DOUBLE,
-            "1",
-            "reduction of chi-squared by it beside the other causes",
-            nullable=True,
+        optional("verdict", TEXT, "", "found, one_of_class, law, unknown_structure"),
+        optional(
+            "statistic", DOUBLE, "1", "reduction of chi-squared by it beside the other causes"
         ),
-        Column("degrees", INTEGER, "1", "degrees of freedom of the statistic", nullable=True),
-        Column(
+        optional("degrees", INTEGER, "1", "degrees of freedom of the statistic"),
+        optional(
             "threshold",
             DOUBLE,
             "1",
             "the statistic from which an effect is named; none where it was not selected by it",
-            nullable=True,
         ),
-        Column("snr", DOUBLE, "1", "signal-to-noise ratio: √(statistic − degrees)", nullable=True),
-        Column(
+        optional("snr", DOUBLE, "1", "signal-to-noise ratio: √(statistic − degrees)"),
+        optional(
             "moves",
             DOUBLE,
             "1",
             "largest shift of a parameter by it, in sigma of that parameter, where it is known",
-            nullable=True,
         ),
-        Column(
+        optional(
             "split_manoeuvre",
             TEXT,
             "",
             "the further manoeuvre that best distinguishes the members of its class",
-            nullable=True,
         ),
-        Column(
+        optional(
             "split_snr",
             DOUBLE,
             "1",
             "signal-to-noise ratio with which that manoeuvre would distinguish them",
-            nullable=True,
         ),
-        Column(
+        optional(
             "split_stated",
             TRUTH,
             "",
             "whether the action states that manoeuvre, with the ratio if there is one",
-            nullable=True,
         ),
-        Column(
+        optional(
             "predictor",
             TEXT,
             "",
             "temperature: of means at several temperatures; none: of readings over time",
-            nullable=True,
         ),
     ),
 )
@@ -105,20 +108,18 @@ MEMBERS = Table(
         MOUNT,
         Column("rank", INTEGER, "1", "1 for the most probable effect of the class"),
         Column("effect", TEXT, "", "name in the catalogue of an effect that it may be"),
-        Column(
+        optional(
             "probability",
             DOUBLE,
             "1",
             "posterior probability, every effect being equally probable beforehand; none where"
             " probabilities were not compared",
-            nullable=True,
         ),
-        Column(
+        optional(
             "captured",
             DOUBLE,
             "1",
             "share of the signal of the effect of rank 1 that this one can mimic",
-            nullable=True,
         ),
     ),
 )
@@ -150,33 +151,31 @@ DETECTION_LIMITS = Table(
         MOUNT,
         Column("effect", TEXT, "", "name in the catalogue"),
         Column("parameter", TEXT, "", "name within the effect"),
-        Column("limit", DOUBLE, "as unit", "size that is detected with 5 sigma", nullable=True),
-        Column(
+        optional("limit", DOUBLE, "as unit", "size that is detected with 5 sigma"),
+        optional(
             "smallest",
             DOUBLE,
             "as unit",
             "the limit at that value of the scanned variable at which it is smallest",
-            nullable=True,
         ),
-        Column("largest", DOUBLE, "as unit", "and where it is largest", nullable=True),
+        optional("largest", DOUBLE, "as unit", "and where it is largest"),
         Column("unit", TEXT, "", "unit of the limits"),
-        Column(
+        optional(
             "moves",
             DOUBLE,
             "1",
             "by how many sigma an effect of the size `limit`, not named, moves a parameter at most",
-            nullable=True,
         ),
-        Column("moved_sensor", TEXT, "", "which one: its sensor, gyro or accel", nullable=True),
-        Column("moved_parameter", TEXT, "", "and its name, such as bias_x", nullable=True),
+        optional("moved_sensor", TEXT, "", "which one: its sensor, gyro or accel"),
+        optional("moved_parameter", TEXT, "", "and its name, such as bias_x"),
         Column(
             "reason",
             TEXT,
             "",
             "visible; or why there is none: not_excited, absorbed, only_together",
         ),
-        Column("explanation", SENTENCE, "", "why there is none, in words", nullable=True),
-        Column("remark", SENTENCE, "", "what else to know of it, in words", nullable=True),
+        optional("explanation", SENTENCE, "", "why there is none, in words"),
+        optional("remark", SENTENCE, "", "what else to know of it, in words"),
         Column("sentence", SENTENCE, "", "all of this in words"),
     ),
 )
@@ -189,41 +188,37 @@ SCORES = Table(
         Column("cause", SENTENCE, "", "its physical cause"),
         Column("sought_in", TEXT, "", "blocks, spectrum, noise or quality"),
         FINDING,
-        Column(
+        optional(
             "statistic",
             DOUBLE,
             "1",
             "reduction of chi-squared by it beside the named effects; none where it is not tested",
-            nullable=True,
         ),
-        Column(
+        optional(
             "degrees",
             INTEGER,
             "1",
             "degrees of freedom of the statistic; none where it is not tested",
-            nullable=True,
         ),
-        Column(
+        optional(
             "p_value",
             DOUBLE,
             "1",
             "probability of such a statistic by noise alone, all searches accounted for; none"
             " where it is not tested",
-            nullable=True,
         ),
         Column("named", TRUTH, "", "whether the effect is named"),
         Column(
             "verdict", TEXT, "", "found, one_of_class, law, unknown_structure; empty: not needed"
         ),
-        Column("snr", DOUBLE, "1", "signal-to-noise ratio of a named effect", nullable=True),
-        Column(
+        optional("snr", DOUBLE, "1", "signal-to-noise ratio of a named effect"),
+        optional(
             "scan_value",
             DOUBLE,
             "as scan_unit",
             "value of the scanned variable at which the statistic is largest",
-            nullable=True,
         ),
-        Column("scan_unit", TEXT, "", "unit of the scanned variable", nullable=True),
+        optional("scan_unit", TEXT, "", "unit of the scanned variable"),
         Column("sentence", SENTENCE, "", "the verdict in words"),
     ),
 )
@@ -236,29 +231,21 @@ EFFECTS = Table(
         FINDING,
         Column("effect", TEXT, "", "name in the catalogue"),
         Column("parameter", TEXT, "", "name within the effect"),
-        Column(
+        optional(
             "value",
             DOUBLE,
             "as unit",
             "estimate, fitted with all named effects; of those less what they are on average too"
             " large for having been selected by their size",
-            nullable=True,
         ),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation", nullable=True),
-        Column(
+        optional("sigma", DOUBLE, "as unit", "its standard deviation"),
+        optional(
             "least_squares",
             DOUBLE,
             "as unit",
             "the estimate without that correction, where it is by least squares",
-            nullable=True,
         ),
-        Column(
-            "detection_limit",
-            DOUBLE,
-            "as unit",
-            "size that is detected with 5 sigma",
-            nullable=True,
-        ),
+        optional("detection_limit", DOUBLE, "as unit", "size that is detected with 5 sigma"),
         Column("unit", TEXT, "", "unit of value, sigma and detection limit"),
         Column("meaning", SENTENCE, "", "what it is"),
     ),
@@ -285,9 +272,9 @@ LINES = Table(
             "1",
             "probability of such a peak by noise alone, the search accounted for",
         ),
-        Column("order", DOUBLE, "1", "periods per revolution of the table", nullable=True),
+        optional("order", DOUBLE, "1", "periods per revolution of the table"),
         FINDING,
-        Column("effect", TEXT, "", "effect that causes it; none: not significant", nullable=True),
+        optional("effect", TEXT, "", "effect that causes it; none: not significant"),
     ),
 )
 RANDOM_WALKS = Table(
@@ -302,9 +289,7 @@ RANDOM_WALKS = Table(
             "as unit",
             "random walk of the biases beside the named effects, beyond that by noise/terms",
         ),
-        Column(
-            "sigma", DOUBLE, "as unit", "its standard deviation, where it is known", nullable=True
-        ),
+        optional("sigma", DOUBLE, "as unit", "its standard deviation, where it is known"),
         Column("unit", TEXT, "", "rad/s/√s or m/s²/√s"),
         Column("finding", TEXT, "", "id of the finding that reports it"),
     ),
@@ -335,30 +320,27 @@ STRUCTURES = Table(
             "what the residuals are tested against: time, angle, rate, attitude, temperature, or"
             " change in time",
         ),
-        Column("sensor", TEXT, "", "gyro or accel, where it is clearest", nullable=True),
-        Column("axis", TEXT, "", "axis where it is clearest", BODY, nullable=True),
-        Column(
+        optional("sensor", TEXT, "", "gyro or accel, where it is clearest"),
+        optional("axis", TEXT, "", "axis where it is clearest", BODY),
+        optional(
             "scan_value",
             DOUBLE,
             "as scan_unit",
             "time of a change, frequency of an oscillation, or order of a ripple",
-            nullable=True,
         ),
-        Column("scan_unit", TEXT, "", "s, Hz, or cycles per revolution", nullable=True),
-        Column(
+        optional("scan_unit", TEXT, "", "s, Hz, or cycles per revolution"),
+        optional(
             "statistic",
             DOUBLE,
             "1",
             "reduction of chi-squared by the functions of the test; none where it is not possible",
-            nullable=True,
         ),
-        Column("degrees", INTEGER, "1", "degrees of freedom of the statistic", nullable=True),
-        Column(
+        optional("degrees", INTEGER, "1", "degrees of freedom of the statistic"),
+        optional(
             "p_value",
             DOUBLE,
             "1",
             "probability by noise alone, the search over channels and scan accounted for",
-            nullable=True,
         ),
         Column("detected", TRUTH, "", "below the significance level that all tests share"),
     ),

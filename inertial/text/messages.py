@@ -1,31 +1,32 @@
 """The sentences that a person reads: gettext, with values by name.
 
-    _("{count} records are missing before record {record}", count=12, record=4711)
+_("{count} records are missing before record {record}", count=12, record=4711)
 
-The English sentence is its own key. `messages.pot`, beside this file, lists all of them; `make
-docs` writes it anew, and a test fails where it lacks one. Another language is a file
-`<language>.po` beside it. A process speaks English unless it says `speak` before it imports what
-has sentences in it; then the sentences of the tables that it reads are in that language too.
+The English sentence is its own key. Another language is a file `<language>.po` beside this one, to
+which `make docs` adds what is new in the code; a test fails where it lacks a sentence. A process
+speaks English unless it says `speak` before it imports what has sentences in it; then the sentences
+of the tables that it reads are in that language too.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from gettext import GNUTranslations, NullTranslations
 from io import BytesIO
 from pathlib import Path
+from string import Formatter
 from typing import Any
 
-from inertial.text.recipes import Recipe, filled, remember, rendered, values_in
-
-CATALOGUE = Path(__file__).with_name("messages.pot")
+LANGUAGES = Path(__file__).parent
 ENGLISH = "en"
 NOTHING = "\u200b"  # in place of a word that another language does not have; "" is no translation
 LOCALES = {"en": "en", "zh": "zh-CN"}  # as a page states it
 
 
-def translations(language: str, folder: Path = CATALOGUE.parent) -> NullTranslations:
+def translations(language: str, folder: Path = LANGUAGES) -> NullTranslations:
     """The sentences in a language; those that it lacks stay English."""
     file = folder / f"{language}.po"
     if not file.exists():
@@ -128,3 +129,165 @@ def _said(recipe: Recipe) -> str:
         return filled(_translated(recipe.message[0]), recipe.values)
     one, many = recipe.message
     return filled(_chosen.ngettext(one, many, recipe.count), recipe.values)
+
+
+# ---- What sentences are made of: the message of the catalogue, and the values in it.
+#
+# Stages write their tables in English. Of each sentence the table keeps beside it from which
+# messages and values it was made (`needed`), so whoever reads the table can have it in another
+# language (`rendered`), and no stage runs again for it. A text that is put together from several
+# sentences is taken apart at the places where they are known to begin and to end.
+
+WORDS = re.compile(r"[A-Za-z]{2}")  # what has none is a number, a unit or a sign
+MOST_KNOWN = 100_000  # sentences; what a damaged log has more stays English
+WORD = re.compile(r"[A-Za-z0-9_]+")
+BESIDE = r"A-Za-z0-9_/\-"  # what a part of a longer word or identifier stands beside
+
+ENGLISH_WORD = re.compile(r"\b[a-z]{2,}\b")
+ONE_WORD = re.compile(r"[A-Za-z]+")
+ENDS, BEGINS = re.compile(r"(?<![\w.-])[a-z]+ $"), re.compile(r" [a-z]+(?![\w.-])")
+# (message, forms of its plural): the English is the key of the catalogue.
+Key = tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """One sentence: its message, singular first, the count that chose the form, and its values.
+
+    `values`: by what stands in the braces, as they stand in the sentence.
+    """
+
+    message: Key
+    values: Mapping[str, str] = field(default_factory=dict)
+    count: int | None = None
+    cut: bool = False  # its full stop is taken off
+
+
+_known: dict[str, Recipe] = {}
+_by_word: dict[str, list[str]] = {}  # the known sentences by the first word of each
+
+
+def values_in(message: str, values: Mapping[str, Any]) -> dict[str, str]:
+    """The values of a message, each as it stands in the sentence, by what its braces hold."""
+    found = {}
+    for _before, name, form, conversion in Formatter().parse(message):
+        if name is not None:
+            key = f"{name}!{conversion}" if conversion else name
+            key = f"{key}:{form}" if form else key
+            found[key] = f"{{{key}}}".format_map(values)
+    return found
+
+
+def filled(message: str, values: Mapping[str, str]) -> str:
+    """A message with values that stand by what its braces hold; unknown braces stay."""
+    parts = []
+    for before, name, form, conversion in Formatter().parse(message):
+        parts.append(before)
+        if name is not None:
+            key = f"{name}!{conversion}" if conversion else name
+            key = f"{key}:{form}" if form else key
+            parts.append(values.get(key, f"{{{key}}}"))
+    return "".join(parts)
+
+
+def remember(text: str, recipe: Recipe) -> None:
+    """`text` was made by this recipe; so was it with another first letter, or without its end."""
+    for start in (text[:1], text[:1].swapcase()):
+        _keep(start + text[1:], recipe)
+        if text.endswith(".") and len(text) > 1:
+            _keep(start + text[1:-1], replace(recipe, cut=True))
+
+
+def _keep(text: str, recipe: Recipe) -> None:
+    if text not in _known and len(_known) < MOST_KNOWN:
+        _known[text] = recipe
+        if WORDS.search(text):
+            _by_word.setdefault(WORD.findall(text)[0], []).append(text)
+
+
+def learn(stored: Mapping[str, Any]) -> None:
+    """What a table keeps of its sentences, as `needed` gave it."""
+    for text, (message, values, count, cut) in stored.items():
+        _keep(text, Recipe(tuple(message), values, count, cut))
+
+
+def needed(texts: Iterable[str]) -> dict[str, Any]:
+    """The recipes of these texts and of the values in them, for JSON."""
+    found: dict[str, Any] = {}
+    waiting = list(dict.fromkeys(texts))
+    while waiting:
+        for part in parts_of(waiting.pop()):
+            if part in _known and part not in found:
+                recipe = _known[part]
+                found[part] = [list(recipe.message), dict(recipe.values), recipe.count, recipe.cut]
+                waiting += recipe.values.values()
+    return found
+
+
+def rendered(text: str, in_language: Callable[[Recipe], str]) -> str:
+    """The text with every sentence in it that is known said by `in_language`."""
+    said = []
+    for part in parts_of(text):
+        recipe = _known.get(part)
+        if recipe is None:
+            said.append(part)
+        else:
+            values = {name: rendered(each, in_language) for name, each in recipe.values.items()}
+            sentence = in_language(replace(recipe, values=values))
+            said.append(sentence.rstrip(".。") if recipe.cut else sentence)
+    return "".join(said)
+
+
+def parts_of(text: str) -> Iterator[str]:
+    """The known sentences of a text, the longest first taken, and what is between them."""
+    if not WORDS.search(text):
+        yield text
+        return
+    if text in _known:
+        yield text
+        return
+    words = dict.fromkeys(WORD.findall(text))
+    within = [known for word in words for known in _by_word.get(word, ()) if known in text]
+    parts = [*_parts(text, sorted(within, key=len, reverse=True))]
+    if any(part not in _known and ENGLISH_WORD.search(part) for part in parts):
+        # Of a text from outside no word is a sentence: “a text of the laboratory”.
+        parts = _joined(parts)
+    yield from parts
+
+
+def _parts(text: str, candidates: list[str]) -> Iterator[str]:
+    for number, known in enumerate(candidates):
+        if known in text and (found := _alone(known).search(text)):
+            rest = candidates[number:]
+            if found.start():
+                yield from _parts(text[: found.start()], rest)
+            yield known
+            if found.end() < len(text):
+                yield from _parts(text[found.end() :], rest)
+            return
+    if text:
+        yield text
+
+
+def _joined(parts: list[str]) -> list[str]:
+    """Parts of one word that stand beside an English word that is no part, joined with it."""
+    joined: list[str] = []
+    for part in parts:
+        last = joined[-1] if joined else ""
+        unknown = last and last not in _known
+        if (
+            (unknown and ONE_WORD.fullmatch(part) and ENDS.search(last))
+            or (last and ONE_WORD.fullmatch(last) and part not in _known and BEGINS.match(part))
+            or (unknown and part not in _known)
+        ):
+            joined[-1] += part
+        else:
+            joined.append(part)
+    return joined
+
+
+def _alone(known: str) -> re.Pattern[str]:
+    """A known text that is no part of a longer word."""
+    before = rf"(?<![{BESIDE}])" if re.match(r"\w", known) else ""
+    after = rf"(?![{BESIDE}])" if re.search(r"\w$", known) else ""
+    return re.compile(before + re.escape(known) + after)

@@ -6,8 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from math import floor, isfinite, log10
 
-from inertial.text.messages import ENGLISH, THIN_SPACE, _, language, noun
-from inertial.text.recipes import Recipe, remember
+from inertial.text.messages import ENGLISH, THIN_SPACE, Recipe, _, language, noun, remember
 
 FIGURE_SPACE = "\u2007"  # as wide as a digit
 POINT_SPACE = "\u2008"  # as wide as a decimal point

@@ -15,8 +15,7 @@ from inertial.text.units import quantity
 from overviews.history.courses import figures
 from overviews.tables_of import made_from
 from overviews.units import Imu
-from stages.history.changes import Change, change, changes
-from stages.history.repeatability import Observed
+from stages.history.repeatability import Change, Observed, change, changes
 from stages.report import outline
 from stages.report.page import page
 from stages.report.sections.repeatability import SECTION as REPEATABILITY

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from inertial.campaign.effect_evidence import Moved, most_moved
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
-from inertial.campaign.external_reliability import Moved, most_moved
 from inertial.effects import KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.estimation.effect_information import whitening
 from inertial.model_selection.cause import (
@@ -30,10 +30,9 @@ from stages.criticism.bias_drift import drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import TableRow, finding_id, member_rows, parameter_row
 from stages.criticism.jump_not_testable import jumps_not_testable
-from stages.criticism.law_sentences import law_action
+from stages.criticism.laws import WithoutLaw, law_action
 from stages.criticism.selection import Selection
 from stages.criticism.shared_asymmetry import ASYMMETRY, shared_asymmetry
-from stages.criticism.without_law import WithoutLaw
 
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2

@@ -23,7 +23,7 @@ from inertial.text.parameters import sign_of
 from inertial.text.typography import capital
 from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
-from stages.criticism.law_sentences import law_sentence
+from stages.criticism.laws import law_sentence
 
 MIN_SEPARATION = 0.1  # sigma; below, which manoeuvre is the best says nothing
 

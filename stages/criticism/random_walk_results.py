@@ -17,9 +17,9 @@ from inertial.text.messages import _
 from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import quantity
 from stages.criticism.bias_drift import Walk
+from stages.criticism.drift_at_rest import Unsteady
 from stages.criticism.finding_rows import Row, TableRow, finding_id, member_rows, parameter_row
-from stages.criticism.unsteady_rests import Unsteady
-from stages.criticism.without_law import WithoutLaw
+from stages.criticism.laws import WithoutLaw
 
 WALK = "gyro_random_walk"
 WALK_UNITS = {"gyro": "rad/s/√s", "accel": "m/s²/√s"}

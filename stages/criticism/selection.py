@@ -1,13 +1,15 @@
 """The named effects of one mount, and the evidence on every effect of its block means."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.campaign.effect_evidence import deviance
 from inertial.campaign.equations import Campaign
-from inertial.campaign.shared_tilts import deviance
+from inertial.effects import CATALOGUE
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE as MIN_SHARE
 from inertial.model_selection import walk_odds
 from inertial.model_selection.cause import UNKNOWN_STRUCTURE, Cause, NamedCauses
 from inertial.model_selection.detection_limits import Visible
@@ -15,6 +17,7 @@ from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 from stages.criticism.bias_drift import biases_of_runs, drift_name, per_log_name
+from stages.criticism.finding_rows import TableRow
 
 
 @dataclass(frozen=True)
@@ -187,3 +190,48 @@ class Selection:
 def walk_name(number: int) -> str:
     """The name of the random walk of a sensor, gyros 0, accelerometers 1."""
     return f"{SENSORS[number]}_random_walk"
+
+
+# ---- Information of the campaign on effects too small to detect in it alone, for fleets.
+
+# Those without a scan mean the same in every campaign; one that has a single size, or is absent,
+# is a mistake in a statement.
+POOLED = tuple(
+    effect
+    for effect in CATALOGUE.values()
+    if effect.sought_in == "blocks" and effect.scan is None and effect.only is None
+)
+
+
+def pooled_evidence_rows(selection: Selection, mount: str) -> Iterator[TableRow]:
+    """Score and information of the pooled effects; named effects of other kinds are fitted.
+
+    Where the residuals exceed the noise also with the named effects, their size is what counts.
+    """
+    evidence = selection.evidence.observable()
+    if not evidence.sensors:
+        return
+    if selection.named.excesses:
+        evidence = evidence.scaled(selection.named.excesses)
+    place = {name: i for i, name in enumerate(evidence.names)}
+    own = {
+        name: (effect, parameter)
+        for effect in POOLED
+        for name, parameter in zip(effect.columns, effect.parameters, strict=True)
+        if name in place
+    }
+    pooled = [place[name] for name in own]
+    others = {i for cause in selection.named.causes for i in cause.columns} - set(pooled)
+    total = evidence.total.given(sorted(others)) if others else evidence.total
+    left, whole = np.diag(total.information), np.diag(evidence.total.information)
+    shown = {
+        i: of for i, of in zip(pooled, own.values(), strict=True) if left[i] > MIN_SHARE * whole[i]
+    }
+    for i, (effect, parameter) in shown.items():
+        row = {"mount": mount, "effect": effect.name, "parameter": parameter.name}
+        yield "score_vector", row | {"unit": parameter.unit, "score": float(total.right[i])}
+        for j, (with_effect, with_parameter) in shown.items():
+            information = float(total.information[i, j])
+            if j >= i and information:
+                column = {"with_effect": with_effect.name, "with_parameter": with_parameter.name}
+                yield "information_matrix", row | column | {"information": information}

@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import minimize_scalar
 
+from inertial.campaign.effect_evidence import deviance, deviances
 from inertial.campaign.equations import Campaign
-from inertial.campaign.shared_tilts import deviance, deviances
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed

@@ -18,9 +18,9 @@ from stages.criticism.bias_drift import random_walks_with_sigmas
 from stages.criticism.block_results import NAMED, BlockResults, unexplained_rows
 from stages.criticism.class_splitting import ExtendedCampaigns, ExtendedPlan, extended_plans
 from stages.criticism.declared import DECLARED
-from stages.criticism.drift_at_rest import select_beside_drift
+from stages.criticism.drift_at_rest import select_beside_drift, unsteady_rests
 from stages.criticism.finding_rows import Row, TableRow
-from stages.criticism.law_selection import with_laws
+from stages.criticism.laws import with_laws, without_law
 from stages.criticism.oscillation_removal import (
     shifts,
     shifts_by_steps,
@@ -29,16 +29,13 @@ from stages.criticism.oscillation_removal import (
 )
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations
-from stages.criticism.pooled_evidence import pooled_evidence_rows
 from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
-from stages.criticism.selection import Selection
+from stages.criticism.selection import Selection, pooled_evidence_rows
 from stages.criticism.set_position_scatter import select_beside_scatter
 from stages.criticism.step_results import step_rows
 from stages.criticism.temperature_findings import temperature_rows
-from stages.criticism.temperature_selection import select_with_temperature
-from stages.criticism.unsteady_rests import unsteady_rests
-from stages.criticism.without_law import without_law
+from stages.criticism.temperature_functions import select_with_temperature
 
 # Of the accepted probability of any false finding: what names effects, tests the residuals for
 # structure, compares them with the noise, searches the spectrum, and functions of temperature.

@@ -37,10 +37,10 @@ from stages.criticism.temperature_models import (
     SCALE,
     AxisModel,
     TemperatureDependence,
+    curve_rows,
     sweeps,
     temperature_dependences,
 )
-from stages.criticism.temperature_sweeps import curve_rows
 
 MIN_UPRIGHT = 0.99  # cosine from which an accelerometer is taken to be along the vertical
 CURVES = {1: _("a straight line"), 2: _("a parabola"), 3: _("a cubic")}

@@ -13,13 +13,12 @@ from inertial.formats.columns import column_reader
 from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.formats.columns.data_rows import Rows
 from inertial.signal.regular_clock import RegularClock, are_regular, regular_clock
-from inertial.signal.signed_counts import bits_without_sign, signed
+from inertial.signal.scale_factor import bits_without_sign, signed
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
-from stages.decode.decoded import Decoded, first_of, intervals_of, on_axis
-from stages.decode.table_angle import ANGLE_UNITS, Continuous
+from stages.decode.decoded import ANGLE_UNITS, Continuous, Decoded, first_of, intervals_of, on_axis
 
 # What a degree of a unit is in K, and its zero.
 KELVIN = {"degC": (1.0, ICE_POINT), "K": (1.0, 0.0), "degF": (5 / 9, ICE_POINT - 32 * 5 / 9)}

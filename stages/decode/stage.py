@@ -20,6 +20,7 @@ from stages.decode.declared import DECLARED
 from stages.decode.decoded import (
     Decoded,
     Pieces,
+    TableAngle,
     account_of,
     mean_sigma_rows,
     path_of,
@@ -31,7 +32,6 @@ from stages.decode.decoded import (
 from stages.decode.joined_log import JoinedLog, of_both_sensors
 from stages.decode.no_samples import no_samples
 from stages.decode.receiver_log import NO_EPOCH, ReceiverLog
-from stages.decode.table_angle import TableAngle
 
 AnyLog = ReceiverLog | ColumnLog | JoinedLog
 

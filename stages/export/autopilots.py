@@ -34,8 +34,16 @@ from stages.export.axis_correction import (
 )
 from stages.export.calibration import Calibration, Triad
 from stages.export.filter_noise import FilterNoise, filter_noise
-from stages.export.header import commented, effect_terms, mounts, origin, verdicts
-from stages.export.noise_sentences import explanation, not_measured, numbers
+from stages.export.header import (
+    commented,
+    effect_terms,
+    explanation,
+    mounts,
+    not_measured,
+    numbers,
+    origin,
+    verdicts,
+)
 from stages.export.temperature import (
     Cubic,
     ardupilot_values,

@@ -1,12 +1,13 @@
 """A calibration as it is exported: M and bias of both triads on every mount, and their context.
 
-    reading = M · truth + bias + effects(truth)
+reading = M · truth + bias + effects(truth)
     truth = M⁻¹ · (reading − bias − effects(truth))
 
 by the result that counts. An element that was not determined, or is not usable, is NaN here and
 null in the files, never 0 or 1.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import exp, isfinite
@@ -37,7 +38,7 @@ from inertial.estimation.triad import linear_names
 from inertial.physics import forward as physics
 from inertial.physics.forward import Sized, force_of, rate_of
 from inertial.physics.motion import stretches
-from inertial.tables import BODY, CHANNELS
+from inertial.tables import AXES, BODY, CHANNELS
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
 from stages.export.examples import Example
@@ -366,4 +367,46 @@ def temperature_of(blocks: pd.DataFrame) -> Row | None:
         "mean": float(np.average(kelvin, weights=count if count.any() else None)),
         "lowest": float(kelvin.min()),
         "highest": float(kelvin.max()),
+    }
+
+
+# ---- The measurement equation of three sensors as text, which C and Python evaluate alike.
+#
+# reading_x = M_xx * w_x + M_xy * w_y + M_xz * w_z + bias_x + <effect>.<parameter> * f_x + …
+
+TRUTH = {"accelerometer": "f", "gyroscope": "w"}  # what the three sensors feel
+
+
+def added_by(effect: EffectOfResult, kind: str) -> dict[str, str]:
+    """What an effect adds to the reading of each axis, by axis."""
+    sensor = SENSOR_OF[kind]
+    sums: dict[str, list[str]] = {}
+    for term in effect.effect.terms:
+        of, _unused, axis = term.channel.partition("_")
+        if of == sensor and term.parameter in effect.parameters:
+            factor = _qualified(term.factor, effect)
+            sums.setdefault(axis, []).append(f"{effect.effect.name}.{term.parameter} * {factor}")
+    return {axis: " + ".join(terms) for axis, terms in sums.items()}
+
+
+def _qualified(factor: str, effect: EffectOfResult) -> str:
+    """The factor with each constant under the name that it has in the file."""
+    for name in effect.constants:
+        factor = re.sub(rf"\b{name}\b", f"{effect.effect.name}.{name}", factor)
+    return factor
+
+
+def equations(kind: str, effects: list[EffectOfResult]) -> dict[str, str]:
+    """The reading of each axis as a function of what is sensed, time and temperature."""
+    truth = TRUTH[kind]
+    added = [added_by(effect, kind) for effect in effects]
+    return {
+        axis: " + ".join(
+            [
+                *(f"M_{axis}{other} * {truth}_{other}" for other in AXES),
+                f"bias_{axis}",
+                *(terms[axis] for terms in added if axis in terms),
+            ]
+        )
+        for axis in AXES
     }

@@ -23,12 +23,15 @@ from inertial.text.statements import (
     THIS_ITEM_ONLY,
     TRACEABILITY,
 )
-from stages.export.d_si import Value, add, add_line, add_real
 from stages.export.dcc_results import (
     NO_VALUES,
+    Value,
+    add,
     add_conformity,
     add_data,
+    add_line,
     add_noise,
+    add_real,
     add_result,
     add_rich,
     add_text,

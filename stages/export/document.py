@@ -24,8 +24,7 @@ from inertial.tables import BODY, CHANNEL_PARTS, OF_TRIAD
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.parameters import SENSOR_OF
-from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad
-from stages.export.equation import added_by, equations
+from stages.export.calibration import PARAMETERS, Calibration, Mount, Triad, added_by, equations
 from stages.export.examples import Example
 from stages.export.filter_noise import FilterNoise, filter_noise
 

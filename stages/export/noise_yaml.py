@@ -23,8 +23,16 @@ from stages.export.axis_correction import biases, cross_terms, remaining_errors,
 from stages.export.calibration import Calibration
 from stages.export.document import as_yaml
 from stages.export.filter_noise import FilterNoise, filter_noise
-from stages.export.header import commented, effect_terms, mounts, origin, verdicts
-from stages.export.noise_sentences import explanation, not_measured, numbers
+from stages.export.header import (
+    commented,
+    effect_terms,
+    explanation,
+    mounts,
+    not_measured,
+    numbers,
+    origin,
+    verdicts,
+)
 
 KINDS = ("accelerometer", "gyroscope")
 KEYS = (

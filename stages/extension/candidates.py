@@ -8,8 +8,8 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, JOINT
-from stages.extension.combinations import Combination
 from stages.extension.cross_validation import CrossValidation, Trainings, carrier
+from stages.extension.named_effects import Combination
 
 
 @dataclass(frozen=True)

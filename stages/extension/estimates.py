@@ -13,7 +13,7 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
 from inertial.estimation.least_squares import Estimate, System
-from inertial.estimation.switch_ons import covering
+from inertial.estimation.scatter_and_random_walk import covering
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
 from inertial.physics.effect import Effect
 from inertial.physics.motion import Motion
@@ -21,7 +21,7 @@ from inertial.tables import BODY, OF_TRIAD
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, STAGES
 from stages.extension.candidates import Candidate
-from stages.extension.selected_sizes import SelectedSizes
+from stages.extension.models import SelectedSizes
 
 # ---- The parameters of a model with effects, their covariance, and how well it fits.
 

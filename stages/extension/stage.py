@@ -16,7 +16,7 @@ from inertial.campaign.scatter_given_effects import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.estimation.least_squares import System
-from inertial.estimation.switch_ons import SwitchOns
+from inertial.estimation.scatter_and_random_walk import SwitchOns
 from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
@@ -30,18 +30,23 @@ from stages.extension.candidates import (
     normalised,
     sentence_of,
 )
-from stages.extension.combinations import combinations_of, compared
 from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved, unseen_components
-from stages.extension.form_of_laws import form_is_open
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
-from stages.extension.models import PRIOR_SIGMA, Models, given, models_of, with_columns
-from stages.extension.named_effects import NamedEffects, named_of
+from stages.extension.laws import form_is_open, proposed_rows
+from stages.extension.models import (
+    PRIOR_SIGMA,
+    Models,
+    SelectedSizes,
+    given,
+    models_of,
+    selected_sizes,
+    with_columns,
+)
+from stages.extension.named_effects import NamedEffects, combinations_of, compared, named_of
 from stages.extension.navigation_error import change_of, worth
-from stages.extension.proposed import proposed_rows
 from stages.extension.scanned_values import over_moments, with_scanned_values
-from stages.extension.selected_sizes import SelectedSizes, selected_sizes
 from stages.extension.temperature_shapes import with_shapes
 from stages.extension.warm_up import warm_up_rows
 

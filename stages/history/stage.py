@@ -17,12 +17,13 @@ from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from inertial.text.parameters import STAGES
 from stages.history.archive import Archive, Entry, results
-from stages.history.changes import change_rows, changes
 from stages.history.declared import DECLARED
 from stages.history.fencepost_error import off_by_a_sample
 from stages.history.repeatability import (
     UNKNOWN,
     Series,
+    change_rows,
+    changes,
     forecast_rows,
     jump_rows,
     jumps_of,

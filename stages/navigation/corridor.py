@@ -2,7 +2,7 @@
 
 Errors of the corrected readings are, per parameter, the change of the correction with its value, at
 the readings themselves: so M, bias and effects of every kind are one case. They grow as
-`inertial.physics.error_growth` says, the alignment with the same errors before them, so that what
+`inertial.physics.strapdown` says, the alignment with the same errors before them, so that what
 it absorbs is no error: of an accelerometer's bias at rest remains its upright part.
 """
 
@@ -18,15 +18,15 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, measurement_of
 from inertial.campaign.records import Row
 from inertial.estimation.noise_model import FLOOR_VARIANCE
-from inertial.physics.error_growth import (
+from inertial.physics.motion import stretches
+from inertial.physics.strapdown import (
     ATTITUDE,
     POSITION,
     VELOCITY,
     Growth,
+    Start,
     of_alignment,
 )
-from inertial.physics.motion import stretches
-from inertial.physics.strapdown import Start
 from inertial.sensors import SENSORS
 from inertial.tables import ACCEL, GYRO
 from inertial.text.parameters import BIAS, PARTS

@@ -12,7 +12,7 @@ import pandas as pd
 
 from inertial import tables
 from inertial.campaign.records import Row
-from inertial.physics.ideal_triad import at_steady_speed, in_free_fall
+from inertial.physics.forward import at_steady_speed, in_free_fall
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
 from inertial.tables.yaml_file import Key, YamlFile

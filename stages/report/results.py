@@ -10,9 +10,8 @@ from inertial.text import numbers, units
 from inertial.text.messages import _
 from inertial.text.parameters import EXTENDED, JOINT, MIXTURE, PARTS, SENSOR_OF, STAGES, sign_of
 from inertial.text.typography import capital
-from stages.report.linked import DECISION_TABLES
 from stages.report.outline import Tone
-from stages.report.tables import Record, Tables, once
+from stages.report.tables import DECISION_TABLES, Record, Tables, once
 from stages.report.words import SENSOR_OF_STAGE, sensor_of_stage, term, with_mount
 
 OF_ESTIMATES = ("parameters", "fit", "fit_manoeuvres")

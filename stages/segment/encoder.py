@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
-from inertial.campaign.encoder_jumps import Jump, JumpsOver
+from inertial.campaign.encoder import Jump, JumpsOver
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import ENCODER
 from inertial.tables import GYRO, STATIC_PHASES

@@ -7,7 +7,7 @@ import pandas as pd
 
 from inertial import tables
 from inertial.arrays import Array, Booleans, Integers
-from inertial.campaign.encoder_edges import EdgesOver
+from inertial.campaign.encoder import EdgesOver
 from inertial.campaign.masked_samples import Batch, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre, grouped
 from inertial.campaign.static_positions import ENCODER

@@ -38,18 +38,21 @@ from stages.segment.repair_readings import (
     scales_of,
     step_of,
 )
-from stages.segment.repaired_plan import at_other_rate, exchanged_back, place_of, turned_back
 from stages.segment.steps import (
     Step,
+    at_other_rate,
     axes_in_words,
     axes_step,
     count_size_step,
     exchange_in_words,
     exchange_step,
+    exchanged_back,
+    place_of,
     sense_in_words,
     sense_step,
     spans_in_words,
     spans_step,
+    turned_back,
     where,
 )
 from stages.segment.windows import Binned

@@ -22,13 +22,12 @@ from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
-from stages.segment import completeness, reduction, repair, turn_completeness
+from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
-from stages.segment.detection import ExaminationOfRests, compare
 from stages.segment.encoder import ByEncoder, EncoderJumps, plan_by_encoder, without_unused
 from stages.segment.located import Located
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
-from stages.segment.plan_and_recording import Recording, recorded_of
+from stages.segment.plan_and_recording import ExaminationOfRests, Recording, compare, recorded_of
 from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken
 from stages.segment.span_offsets import logs_in_doubt, moved_back, spans_off, whole_logs
@@ -271,12 +270,12 @@ def _turned(
         clipped = sums.clipped(stated.name).get("", np.zeros(6, bool))[3:]
         own = in_motion.get(stated.name, blocks.iloc[:0])
         given = (own, gaps, level, tolerance, clipped)
-        done = turn_completeness.turn(located, place, told.manoeuvre, *given)
+        done = completeness.turn(located, place, told.manoeuvre, *given)
         if done.complete and told.on_record is not None:
             told = told.from_rest_to_rest
-            done = turn_completeness.turn(located, place, told.manoeuvre, *given)
+            done = completeness.turn(located, place, told.manoeuvre, *given)
         if located.axes.gyro != AS_NAMED:
-            done, told = turn_completeness.by_other_axes(done), replace(told, used=False)
+            done, told = completeness.by_other_axes(done), replace(told, used=False)
         told_of[stated.name] = told
         performed[stated.name] = replace(done, sentence=f"{done.sentence} {told.remark}".rstrip())
     return performed, told_of

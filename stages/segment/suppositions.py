@@ -12,10 +12,8 @@ from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import AS_NAMED, PERMUTATIONS, Permutation
 from inertial.signal.misread_axes import determinant
 from inertial.tables import AXES
-from stages.segment.located import AS_PLANNED, Axes, Division, Located, locate
+from stages.segment.located import AS_PLANNED, Axes, Division, Located, earth_seen, locate
 from stages.segment.matching import MAX_WHOLE_DIFFERENCE, MIN_SCALE_RATIO, points
-from stages.segment.repaired_plan import turned_back
-from stages.segment.rest_readings import earth_seen
 from stages.segment.steps import (
     ALL_REVERSED,
     OWN_AXIS_SHARE,
@@ -26,6 +24,7 @@ from stages.segment.steps import (
     exchange_step,
     sense_step,
     senses_by_axis,
+    turned_back,
 )
 
 MAX_EXCHANGED = 4  # manoeuvres of a log for which an exchange with every other one is tried

@@ -14,8 +14,8 @@ from inertial.estimation.bandwidth import Bandwidth, by_noise, first_order, spre
 from inertial.estimation.time_angle import Valued
 from inertial.tables import AXES, CHANNELS, GYRO
 from inertial.text.messages import _
-from stages.studies.encoder_rows import mean_of
 from stages.studies.table_motion import MAX_DELAY_STEPS
+from stages.studies.turn_rows import mean_of
 
 MIN_COSINE = 1 - 1e-9  # between the axis of a turn and that of a gyro
 MIN_SPREAD_SIGMAS = -3.0  # of a variance: below, the drive overshoots, and there is no limit

@@ -12,7 +12,7 @@ from inertial.campaign.solution import scatter_by_mount
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
-from stages.studies import encoder_rows, motion_rows
+from stages.studies import turn_rows
 from stages.studies.bandwidths import bandwidths, of_ramps
 from stages.studies.declared import DECLARED
 from stages.studies.epochs import rests_of, studied
@@ -51,7 +51,7 @@ def studies(
     encoded = set(blocks.loc[blocks["table_angle"].notna(), "manoeuvre"]) if len(blocks) else set()
     for r in (r for found in turns.values() for r in found):
         wanted[r.plan.name] = records_of(r.plan, segments, moving=True)
-        wanted[encoder_rows.with_rests(r.plan.name)] = records_of(r.plan, segments)
+        wanted[turn_rows.with_rests(r.plan.name)] = records_of(r.plan, segments)
     read = samples_in(samples, wanted, masks, Repairs(channel_repairs))
 
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
@@ -65,19 +65,19 @@ def studies(
         whole = [
             (r, read[name])
             for r in turns[data.mount]
-            if (name := encoder_rows.with_rests(r.plan.name)) in read
+            if (name := turn_rows.with_rests(r.plan.name)) in read
         ]
         encoder = [
             row
             for r, stretch in whole
             if r.plan.name in encoded
-            for row in encoder_rows.of_turn(data, r, stretch, times[r.plan.name])
+            for row in turn_rows.of_turn(data, r, stretch, times[r.plan.name])
         ]
-        common = list(encoder_rows.together(data, encoder))
+        common = list(turn_rows.together(data, encoder))
         _add(rows, {"encoder": [*common, *encoder]})
         ramps = {r.plan.name: of_ramps(data, r, stretch) for r, stretch in whole}
         _add(rows, {"bandwidths": list(bandwidths(data, encoder, ramps, spectra))})
-        harmonics = encoder_rows.harmonics_of(common)
+        harmonics = turn_rows.harmonics_of(common)
         for r in turns[data.mount]:
             name = r.plan.name
             found = motion_of(data, r, read[name], times[name], gyros, between, harmonics)
@@ -112,8 +112,8 @@ def _of_turns(
     """Time and angle of each turn, and the windows of each pair."""
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for motion in motions.values():
-        rows["time_angle"] += motion_rows.angles(motion)
-        rows["motions"] += motion_rows.numbers(motion)
+        rows["time_angle"] += turn_rows.angles(motion)
+        rows["motions"] += turn_rows.numbers(motion)
     for found in pairs_of(motions):
         pair = pair_of(data, found, list(motions.values()), gyros)
         whole = pair.whole(data)

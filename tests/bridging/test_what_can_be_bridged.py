@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from z_turns import STEP
 
-from stages.segment.turn_completeness import MAX_MISSING_RUN, MIN_STEADY_S, missing_of
+from stages.segment.completeness import MAX_MISSING_RUN, MIN_STEADY_S, missing_of
 
 
 def blocks(*stretches: tuple[str, float, float, bool]) -> pd.DataFrame:

@@ -25,9 +25,9 @@ from ruamel.yaml import YAML
 
 from commands.design import for_campaign
 from commands.design.__main__ import SHARE, source_plans
-from commands.design.campaign_text import new_campaign
 from commands.design.for_campaign import Splitting, classes_of
 from commands.design.from_nothing import Designed, best, foreseen_of
+from commands.design.printed import new_campaign
 from commands.design.turntable import instrument, turntable
 from commands.design.visits import possible
 from inertial.campaign.foreseen import session_seconds

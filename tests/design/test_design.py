@@ -11,12 +11,18 @@ from drawn_campaigns import densities, least, planned
 from ruamel.yaml import YAML
 
 from commands.design import __main__ as design
-from commands.design.campaign_text import new_campaign, with_more
-from commands.design.for_campaign import FORESEEN_RIGHT, Class, Splitting
+from commands.design.for_campaign import (
+    FORESEEN_RIGHT,
+    NAMES,
+    Class,
+    Splitting,
+    reach,
+    wanted_sigmas,
+)
 from commands.design.from_nothing import best, foreseen_of
+from commands.design.printed import new_campaign, with_more
 from commands.design.turntable import instrument, turntable
 from commands.design.visits import Visit, items_of, plan_of, possible
-from commands.design.wanted import NAMES, reach, wanted_sigmas
 from inertial.campaign.foreseen import Pace, foreseen, session_seconds, sigmas, stated_noise
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import known_of, manoeuvres_of

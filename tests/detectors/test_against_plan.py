@@ -14,7 +14,7 @@ import pandas as pd
 import pytest
 
 import laboratory
-from inertial.detectors.manoeuvre_missing import ManoeuvreMissing, TurningPointOnce
+from inertial.detectors.manoeuvres_against_plan import ManoeuvreMissing, TurningPointOnce
 from inertial.signal.axis_permutations import PERMUTATIONS, Permutation, read_as_other_axes
 from inertial.signal.misread_axes import determinant
 

@@ -8,8 +8,7 @@ from moved_by_hand import CORNERS, EDGES, FACES, FINE, RATE, attitudes, by_hand
 from on_a_table import recorded
 from recorded_by_hand import assert_told
 
-from inertial.detectors.dead_axis import DeadAxis
-from inertial.signal.free_rotation import FreeRotation
+from inertial.detectors.dead_axis import DeadAxis, FreeRotation
 
 GRAVITY = 9.80665
 DRAWS = range(12)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from inertial.campaign.encoder_jumps import largest_jump
+from inertial.campaign.encoder import largest_jump
 from inertial.detectors.encoder_against_plan import EncoderAngles, EncoderScale
 
 ARC_SECOND = np.pi / 648_000

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from inertial.signal.outliers import running_median
+from inertial.detectors.spike import running_median
 from inertial.signal.runs import joined, runs
 
 

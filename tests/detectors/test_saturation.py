@@ -5,8 +5,7 @@ import pytest
 from on_a_table import BIAS, RATE, carried, profile, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, GRAVITY, INTERVAL, NOISE, assert_told
 
-from inertial.detectors.saturation import Saturation
-from inertial.signal.piled_readings import _by_the_other_side, pile_at_top
+from inertial.detectors.saturation import Saturation, _by_the_other_side, pile_at_top
 from inertial.signal.runs import MAX_LOST_RUN
 
 

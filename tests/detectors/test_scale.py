@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from recorded_by_hand import COUNTS, GRAVITY, assert_told, given, log, piece, rest, seen, stamps
 
-from inertial.detectors.gravity_error import GravityError
+from inertial.detectors.stated_against_gravity import GravityError
 from inertial.detectors.temperatures import TemperatureDrift, WrongTemperatureUnit
 from inertial.detectors.wrong_scale_factor import WrongScaleFactor
 from inertial.physics.site import gravity_at, is_refuted, latitude_of

@@ -18,10 +18,16 @@ from recorded_by_hand import (
 from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
 from inertial.detectors.gap import Gap
+from inertial.detectors.receiver_statements import StatusInvalid
 from inertial.detectors.repeated_records import Duplicate, HeldRecord
-from inertial.detectors.stamp_faults import ClockStep, TimeBackwards, TimeStandsStill
-from inertial.detectors.stamps_misstated import RateOff, WrongDay, WrongTimeUnit
-from inertial.detectors.status_invalid import StatusInvalid
+from inertial.detectors.stamp_faults import (
+    ClockStep,
+    RateOff,
+    TimeBackwards,
+    TimeStandsStill,
+    WrongDay,
+    WrongTimeUnit,
+)
 
 OF_TIME = (
     Duplicate(),

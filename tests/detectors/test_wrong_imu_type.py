@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from recorded_by_hand import INTERVAL, assert_told, log, piece, rest, stamps
 
-from inertial.detectors.wrong_imu_type import IMU_TYPES, WrongImuType
+from inertial.detectors.receiver_statements import IMU_TYPES, WrongImuType
 
 KVH, KVH_TOO, FSAS, EPSON = 33, 16, 13, 41
 

@@ -6,7 +6,7 @@ import pytest
 import test_catalogue
 
 from inertial.effects import CATALOGUE, LAWS
-from stages.extension.proposed import text_of
+from stages.extension.laws import text_of
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,8 @@ import pytest
 from hidden_plans import PLANS
 
 import laboratory
-from inertial.campaign.effect_evidence import evidence
+from inertial.campaign.effect_evidence import evidence, shared_tilts
 from inertial.campaign.observations import campaign_of
-from inertial.campaign.shared_tilts import shared_tilts
 from inertial.effects import CATALOGUE
 from inertial.sensors import SENSORS
 

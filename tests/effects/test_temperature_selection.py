@@ -27,7 +27,7 @@ from inertial.estimation.temperature import (
 from inertial.physics.drift import delay
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import stretches
-from stages.criticism.temperature_selection import select_with_temperature, temperature_models
+from stages.criticism.temperature_functions import select_with_temperature, temperature_models
 from tests.expressions import value_of
 
 G = 9.8
@@ -55,7 +55,6 @@ def found(plan: plans.Plan, seed: int, hidden: soaks.Hidden) -> dict[str, Temper
 
 
 # ---- hidden, and found
-
 
 CUBIC = (1e-5 * G, 3e-7 * G, 6e-9 * G)  # m/s² per K, K², K³ about the middle
 SLOPE = 2e-5  # 1/K
@@ -375,7 +374,6 @@ def test_a_knot_is_told_from_a_parabola_and_a_cubic(shape, is_knot):
 
 
 # ---- what the model adds to a reading
-
 
 KNOTS = {
     f"{function}{side}": ICE_POINT + at + off

@@ -17,8 +17,8 @@ from scipy import stats
 
 from inertial.effects import KNOWN
 from stages.export.calibration import NOT_USABLE, Calibration
-from stages.export.d_si import unit
 from stages.export.dcc import Stated, dcc
+from stages.export.dcc_results import unit
 from stages.export.document import document
 from tests.export.made_up import EVIL, calibration, mount, moving_mount, named, with_terms
 

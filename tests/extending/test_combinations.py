@@ -7,8 +7,7 @@ import pytest
 
 from inertial.effects import CATALOGUE
 from stages.extension.candidates import candidates_of, normalised
-from stages.extension.combinations import combinations_of, compared
-from stages.extension.named_effects import Member, NamedClass
+from stages.extension.named_effects import Member, NamedClass, combinations_of, compared
 
 
 def of_class(finding: str, **probability: float) -> NamedClass:

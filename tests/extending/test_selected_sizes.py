@@ -7,9 +7,8 @@ from inertial.estimation.effect_information import EffectInformation
 from inertial.estimation.least_squares import Estimate
 from inertial.model_selection.size_after_selection import selected
 from inertial.physics.effect import Effect, Parameter
-from stages.extension.models import SensorEvidence
+from stages.extension.models import SensorEvidence, selected_sizes
 from stages.extension.named_effects import Member, NamedClass
-from stages.extension.selected_sizes import selected_sizes
 
 
 class Hidden(Effect):

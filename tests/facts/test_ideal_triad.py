@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from commands.theory import PAGE, page
-from inertial.physics.ideal_triad import at_steady_speed, in_free_fall
+from inertial.physics.forward import at_steady_speed, in_free_fall
 from inertial.physics.site import normal_gravity
 
 RATE = 7.292115e-5  # rad/s

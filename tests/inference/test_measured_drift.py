@@ -5,10 +5,10 @@ import pytest
 from inference.walking import DEGREE_PER_HOUR, EARTH, TILT, UNIT, campaign
 from scipy.integrate import quad
 
-from inertial.estimation.bias_instability import wave, waves_within
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.elimination import EquationBlock
 from inertial.estimation.gyroscopes import fit, joint
+from inertial.estimation.noise_model import wave, waves_within
 from inertial.estimation.random_walk import (
     COMMON_CLOCK,
     NO_DRIFT,

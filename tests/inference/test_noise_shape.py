@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.signal import butter, freqz, lfilter
 
+from inertial.detectors.spike import Channel
 from inertial.estimation.periodic_in_time import pooled, strongest
 from inertial.estimation.spectrum import WHITE, noise_shape
-from inertial.signal.outliers import Channel
 
 RATE, SAMPLES = 100.0, 3600
 

@@ -9,11 +9,11 @@ from scipy.stats import chi2
 
 from inertial.estimation import accelerometers
 from inertial.estimation.accelerometers import Reference, StaticForce
+from inertial.estimation.effect_information import Sensitivities
 from inertial.estimation.elimination import EquationBlock, eliminate
 from inertial.estimation.gyroscopes import fit as fit_gyroscopes
 from inertial.estimation.gyroscopes import joint, linearisation_at, linearised
 from inertial.estimation.random_walk import Stretch, with_drifts
-from inertial.estimation.sensitivities import Sensitivities
 
 G, GRAVITY_SIGMA = 9.7936174, 1e-6
 NOISE = 0.0064 / 60  # m/s/√s

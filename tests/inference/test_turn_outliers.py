@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from inertial.estimation.turn_outliers import off_rate, off_ratio
+from inertial.campaign.recorded_turns import off_rate, off_ratio
 
 RATES = np.radians([10.0, -10, 30, -30, 60, -60])
 SIGMA = np.full(6, 1e-6)

@@ -10,7 +10,6 @@ from inertial.estimation.angle_windows import (
     noise_of,
     scale_and_bias,
 )
-from inertial.estimation.averaging_epochs import Formula, in_epochs, spread
 from inertial.estimation.time_angle import (
     Errors,
     plateau,
@@ -20,6 +19,7 @@ from inertial.estimation.time_angle import (
     time_angle,
 )
 from inertial.physics.motion import Profile
+from stages.studies.epochs import Formula, in_epochs, spread
 
 STEP = 0.01
 RATE, ACCELERATION = np.radians(10), np.radians(5)

@@ -22,7 +22,7 @@ from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.scatter_given_effects import PRIOR_SIZE, likely_walk, scattered
 from inertial.estimation.probability import chi2_sf, f_isf, f_sf
-from inertial.estimation.scatter_by_hand import Scatter, likeliest
+from inertial.estimation.scatter_and_random_walk import Scatter, likeliest
 from inertial.physics.effect import Effect
 from stages.criticism.effect_selection import evidence_of, scatter_tests_of
 

@@ -10,10 +10,9 @@ from navigation_error import DENSITY, RATE, SECONDS, demonstration
 from noise_draws import INTERVAL, drawn
 
 from inertial.estimation.allan import AllanSums
-from inertial.estimation.multiresolution import Powers
+from inertial.estimation.multiresolution import Powers, WelchSums, segment_for
 from inertial.estimation.noise_model import TERMS, NoiseModel
 from inertial.estimation.noise_terms import noise_terms
-from inertial.estimation.welch import WelchSums, segment_for
 
 matplotlib.use("Agg")
 COLOURS = ("#4477aa", "#228833", "#ccbb44", "#ee6677", "#aa3377")

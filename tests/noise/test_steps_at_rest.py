@@ -6,7 +6,7 @@ import chain
 import numpy as np
 import pytest
 
-from stages.noise.steps_at_rest import CLEAR, QUIET, Course, Step, of_one_manoeuvre
+from stages.noise.static_stretches import CLEAR, QUIET, Course, Step, of_one_manoeuvre
 
 RESTS, SAMPLES = 6, 4000
 

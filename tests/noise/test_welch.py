@@ -4,8 +4,8 @@ import numpy as np
 from noise_simulation import noise
 from scipy.signal import welch
 
+from inertial.estimation.multiresolution import WelchSums, segment_for
 from inertial.estimation.noise_model import NoiseModel
-from inertial.estimation.welch import WelchSums, segment_for
 
 INTERVAL = 0.02
 

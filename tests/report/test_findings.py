@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from stages.report.sections import evidence, findings
+from stages.report.sections import findings
 from tests.report import synthetic, synthetic_faults
 from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import GAP_FINDING, RINGING_FINDING
@@ -105,7 +105,7 @@ def test_a_storm_of_findings_keeps_the_page_light() -> None:
     )
     found = shown(made | diagnosed(made))
     pictures = sum(html.count('role="img"') for html in found.values())
-    assert pictures == evidence.MOST_PICTURES
+    assert pictures == findings.MOST_PICTURES
     assert max(len(html.encode()) for html in found.values()) < 40_000
 
 

@@ -13,9 +13,8 @@ import pytest
 from inertial import tables
 from inertial.effects import CATALOGUE
 from stages.report.sections import unmodelled_effects
-from stages.report.sections.effect_sentences import Tested
+from stages.report.sections.effect_sentences import TOO_LARGE, Tested, observable, possible
 from stages.report.sections.effect_tables import THERE_OR_NOT, detection_limits
-from stages.report.sections.possible_sizes import TOO_LARGE, observable, possible
 from tests.report import synthetic, synthetic_unmodelled
 from tests.report.synthetic_diagnosis import diagnosed
 from tests.report.synthetic_values import Held, rows_as

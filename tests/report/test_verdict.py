@@ -11,7 +11,7 @@ import pytest
 
 from inertial import tables
 from stages.report.sections import certificate, verdict
-from stages.report.sizes import how_large, size_in_words
+from stages.report.words import how_large, size_in_words
 from tests.report import synthetic, synthetic_faults, synthetic_unmodelled
 from tests.report.synthetic_diagnosis import SENTENCES
 from tests.report.synthetic_values import GAP_FINDING, rows_as

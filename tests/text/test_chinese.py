@@ -17,11 +17,11 @@ from babel.messages.pofile import read_po
 from inertial.tables import FINDINGS
 from inertial.tables.parquet import Writer
 from inertial.text import messages
-from inertial.text.messages import CATALOGUE, _, plural, speak
+from inertial.text.messages import LANGUAGES, _, plural, speak
 from inertial.text.numbers import counted
 from inertial.text.typography import CHINESE, columns_of, typeset, wrapped
 
-FILE = CATALOGUE.with_name("zh.po")
+FILE = LANGUAGES / "zh.po"
 # What is the same in both languages: names of parameters, units, parts of files.
 SAME = {"IMU", "ppm", "s", "ms²", "PDF", "Kalibr (imu.yaml)", "positions", "{seconds:.1f} s"}
 
@@ -57,8 +57,6 @@ def holes(text: str) -> set[tuple[str, str | None, str | None]]:
 
 def test_every_message_is_translated() -> None:
     every = translated()
-    with CATALOGUE.open("rb") as file:
-        assert {forms(m)[0] for m in every} == {forms(m)[0] for m in read_po(file) if m.id}
     missing = [forms(m)[0] for m in every if not all(forms(m)[1])]
     assert not missing, "translate what `make docs` added to zh.po"
     alike = {english[0] for english, own in map(forms, every) if english[0] == own[0]}

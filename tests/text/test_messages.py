@@ -10,7 +10,7 @@ from babel.messages.catalog import Catalog
 from babel.messages.extract import extract_from_dir
 from babel.messages.pofile import read_po, write_po
 
-from inertial.text.messages import CATALOGUE, translations
+from inertial.text.messages import LANGUAGES, translations
 
 ROOT = Path(__file__).parents[2]
 KEYWORDS = {"_": None, "plural": (1, 2), "counted": (2,)}
@@ -36,8 +36,9 @@ def calls() -> Iterator[tuple[str, ast.Call]]:
 
 
 @pytest.mark.slow
-def test_the_catalogue_has_every_sentence_of_the_code_and_no_other() -> None:
-    with CATALOGUE.open("rb") as file:
+@pytest.mark.parametrize("translation", sorted(LANGUAGES.glob("*.po")), ids=lambda file: file.stem)
+def test_a_translation_has_every_sentence_of_the_code_and_no_other(translation: Path) -> None:
+    with translation.open("rb") as file:
         listed = {message.id for message in read_po(file) if message.id}
     found = written()
     assert len(found) > 300

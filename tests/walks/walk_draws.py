@@ -31,11 +31,11 @@ from inertial.estimation.random_walk import NO_DRIFT
 from inertial.tables.code import code_of, hash_of
 from laboratory import Recording
 from stages.criticism.bias_drift import HalfWave, drift_name
-from stages.criticism.law_selection import with_laws
+from stages.criticism.laws import with_laws
 from stages.criticism.residual_structure import structure_tests
 from stages.criticism.selection import Selection
 from stages.criticism.stage import BLOCKS_SHARE, STRUCTURE_SHARE, TEMPERATURE_SHARE
-from stages.criticism.temperature_selection import select_with_temperature
+from stages.criticism.temperature_functions import select_with_temperature
 
 Document = dict[str, Any]
 

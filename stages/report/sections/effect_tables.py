@@ -22,8 +22,13 @@ from stages.report.results import (
     symbol,
     written,
 )
-from stages.report.sections.effect_sentences import Tested
-from stages.report.sections.possible_sizes import LARGEST_SHARE, TOO_LARGE, largest, possible
+from stages.report.sections.effect_sentences import (
+    LARGEST_SHARE,
+    TOO_LARGE,
+    Tested,
+    largest,
+    possible,
+)
 from stages.report.tables import Record, Tables
 from stages.report.words import count_in_words, with_mount
 

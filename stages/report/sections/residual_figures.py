@@ -18,11 +18,10 @@ from inertial.text.numbers import p_is, shortened
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, ICE_POINT, MICRO_G, Unit
 from stages.report import drawing
 from stages.report.drawing import Array
-from stages.report.linked import gains
 from stages.report.outline import Figure
 from stages.report.sections.effect_sentences import FITTED, HELD_OUT, about_effect
 from stages.report.sections.effect_tables import SMOOTH, TESTS, channel, place
-from stages.report.tables import Record, Tables, once
+from stages.report.tables import Record, Tables, gains, once
 
 UNIT = {"gyro": DEGREES_PER_HOUR, "accel": MICRO_G}
 MOST_NAMES = 24  # manoeuvres whose names have room below each other

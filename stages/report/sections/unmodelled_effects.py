@@ -12,7 +12,6 @@ from inertial.text.numbers import p_is, shortened, significant
 from inertial.text.parameters import JOINT
 from inertial.text.typography import capital
 from stages.report import outline
-from stages.report.linked import CAUSE_TABLES, GAIN_TABLES, decisions, effect_causes, gains
 from stages.report.results import RESULT_TABLES, shifts
 from stages.report.sections import effect_tables, periodic_figures, residual_figures
 from stages.report.sections.effect_sentences import (
@@ -26,6 +25,7 @@ from stages.report.sections.effect_sentences import (
     grade_of,
     kind_of,
     largest_shift,
+    limits_of,
     name_of,
     reductions,
     summary,
@@ -33,10 +33,18 @@ from stages.report.sections.effect_sentences import (
     tested_effects,
     worth,
 )
+from stages.report.sections.effect_sentences import observable as is_observable
 from stages.report.sections.findings import FINDING_TABLES, cause_of_finding, title_of
-from stages.report.sections.possible_sizes import limits_of
-from stages.report.sections.possible_sizes import observable as is_observable
-from stages.report.tables import Record, Tables, once
+from stages.report.tables import (
+    CAUSE_TABLES,
+    GAIN_TABLES,
+    Record,
+    Tables,
+    decisions,
+    effect_causes,
+    gains,
+    once,
+)
 from stages.report.words import count_in_words
 
 POSITION = "table_position_error"  # what an effect of the accelerometers may look like

@@ -30,8 +30,8 @@ from stages.report.sections.findings import (
     spoils,
     title_of,
 )
-from stages.report.sizes import how_large
 from stages.report.tables import Record, Tables, once
+from stages.report.words import how_large
 
 SIMULATED = _(
     "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
