@@ -13,6 +13,7 @@ import numpy as np
 from inertial.arrays import Array, Integers
 from inertial.campaign.equations import Campaign
 from inertial.campaign.hypotheses import MAX_CARRYING
+from inertial.estimation.triad import linear_names
 from inertial.model_selection.cause import UNKNOWN_STRUCTURE
 from inertial.model_selection.structure_tests import (
     TESTS,
@@ -157,6 +158,30 @@ def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
     return tuple(left_out)
 
 
+def _moved_by(fitted: TestedFit, sensor: str, carried: Sequence[str]) -> float | None:
+    """The largest shift of a parameter by the manoeuvres that carry a structure, in its sigma.
+
+    Without them there is none, so what the parameters then are differs by what it does to them, and
+    by noise. None where no few carry it, or where not all are determined without.
+    """
+    if not carried:
+        return None
+    campaign, effects = fitted.campaign, fitted.named
+    others = set(campaign.manoeuvres).difference(carried)
+    systems = [
+        campaign.system(sensor, effects, PRIOR_SIGMA, only)
+        for only in (None if fitted.only is None else set(fitted.only), others)
+    ]
+    whole, without = (None if one is None else one.solve_shared() for one in systems)
+    if whole is None or without is None:
+        return None
+    twelve = range(len(linear_names()))
+    if not (whole.determined[twelve] <= without.determined[twelve]).all():
+        return None
+    sigma = np.sqrt(np.diag(whole.covariance)[twelve])
+    return float(np.max(np.abs(without.values[twelve] - whole.values[twelve]) / sigma))
+
+
 def _explained(fitted: TestedFit, test: Structure) -> float:
     """The reduction of χ² by a structure of this shape, its amplitude estimated again."""
     chosen, values = test.values
@@ -296,6 +321,7 @@ CONSEQUENCE = _(
     "The joint result stands as it is: no effect by name is added to it for this "
     "sensor, and its sigmas do not allow for the structure."
 )
+MOVES = _(" With and without {manoeuvres} a parameter differs by {moves} σ at most.")
 ACTION = _("Inspect the picture of the residuals for what they depend on.")
 ACTION_IF_CARRIED = _("Look at the picture of the residuals; record {manoeuvres} again.")
 DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is known
@@ -364,6 +390,9 @@ def _finding(
     if consistent:
         names = _(" and ").join(in_words(name) for name in consistent)
         sentence.append(ONLY_CONSISTENT.format(effects=names))
+    consequence, moves = CONSEQUENCE, _moved_by(tested.fitted, sensor, carried)
+    if moves is not None:
+        consequence += MOVES.format(manoeuvres=listed(carried), moves=significant(moves, 2))
     identifier = finding_id(f"{CAUSE}/{sensor}", mount)
     yield (
         "findings",
@@ -378,11 +407,12 @@ def _finding(
             "p_value": best.p_value,
             "severity": 2,
             "sentence": " ".join(sentence),
-            "consequence": CONSEQUENCE,
+            "consequence": consequence,
             "action": action,
             "verdict": UNKNOWN_STRUCTURE,
             "statistic": best.statistic,
             "degrees": best.degrees,
+            "moves": moves,
             "snr": snr_of(best.statistic, best.degrees),
         },
     )
