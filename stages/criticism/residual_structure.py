@@ -158,7 +158,9 @@ def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
     return tuple(left_out)
 
 
-def _moved_by(fitted: TestedFit, sensor: str, carried: Sequence[str]) -> float | None:
+def moved_by(
+    campaign: Campaign, sensor: str, carried: Sequence[str], effects: Sequence[Effect] = ()
+) -> float | None:
     """The largest shift of a parameter by the manoeuvres that carry a structure, in its sigma.
 
     Without them there is none, so what the parameters then are differs by what it does to them, and
@@ -166,12 +168,8 @@ def _moved_by(fitted: TestedFit, sensor: str, carried: Sequence[str]) -> float |
     """
     if not carried:
         return None
-    campaign, effects = fitted.campaign, fitted.named
     others = set(campaign.manoeuvres).difference(carried)
-    systems = [
-        campaign.system(sensor, effects, PRIOR_SIGMA, only)
-        for only in (None if fitted.only is None else set(fitted.only), others)
-    ]
+    systems = [campaign.system(sensor, effects, PRIOR_SIGMA, only) for only in (None, others)]
     whole, without = (None if one is None else one.solve_shared() for one in systems)
     if whole is None or without is None:
         return None
@@ -390,9 +388,7 @@ def _finding(
     if consistent:
         names = _(" and ").join(in_words(name) for name in consistent)
         sentence.append(ONLY_CONSISTENT.format(effects=names))
-    consequence, moves = CONSEQUENCE, _moved_by(tested.fitted, sensor, carried)
-    if moves is not None:
-        consequence += MOVES.format(manoeuvres=listed(carried), moves=significant(moves, 2))
+    moves = moved_by(tested.fitted.campaign, sensor, carried, tested.fitted.named)
     identifier = finding_id(f"{CAUSE}/{sensor}", mount)
     yield (
         "findings",
@@ -407,7 +403,7 @@ def _finding(
             "p_value": best.p_value,
             "severity": 2,
             "sentence": " ".join(sentence),
-            "consequence": consequence,
+            "consequence": consequence(carried, moves),
             "action": action,
             "verdict": UNKNOWN_STRUCTURE,
             "statistic": best.statistic,
@@ -420,6 +416,13 @@ def _finding(
     for rank, manoeuvre in enumerate(carried, 1):
         row = {"finding": identifier, "mount": mount, "rank": rank, "manoeuvre": manoeuvre}
         yield "structure_manoeuvres", row
+
+
+def consequence(carried: Sequence[str], moves: float | None) -> str:
+    """What a structure does that few manoeuvres carry; `moves`: see `moved_by`."""
+    if moves is None:
+        return CONSEQUENCE
+    return CONSEQUENCE + MOVES.format(manoeuvres=listed(carried), moves=significant(moves, 2))
 
 
 def _description(test: Structure) -> str:

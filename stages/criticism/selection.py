@@ -21,6 +21,18 @@ from stages.criticism.finding_rows import TableRow
 
 
 @dataclass(frozen=True)
+class OffManoeuvre:
+    """A manoeuvre that alone carries several effects, `members`.
+
+    `drops`: of χ² by them and their degrees of freedom, by sensor that shows them.
+    """
+
+    manoeuvre: str
+    drops: Mapping[str, tuple[float, int]]
+    members: tuple[str, ...]
+
+
+@dataclass(frozen=True)
 class Selection:
     """The named effects of one mount, and the evidence on every effect.
 
@@ -30,7 +42,7 @@ class Selection:
     `SearchedEffect.candidates`; `limits`: the detection limits;
     `rivals`: by effect the random walk that is as likely, and the log odds of the effect;
     `of_structure`: by effect of both sensors that is not significant without the sensor whose
-    residuals have a structure, that sensor.
+    residuals have a structure, that sensor; `off`: the manoeuvre without which it is selected.
     """
 
     campaign: Campaign
@@ -42,6 +54,7 @@ class Selection:
     limits: Sequence[Visible]
     rivals: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     of_structure: Mapping[str, str] = field(default_factory=dict)
+    off: OffManoeuvre | None = None
 
     def prior(self, effect: SearchedEffect) -> Array:
         """The share of each value of a scan: that of its range which is nearest to it."""

@@ -21,6 +21,7 @@ from stages.criticism.declared import DECLARED
 from stages.criticism.drift_at_rest import select_beside_drift, unsteady_rests
 from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.laws import with_laws, without_law
+from stages.criticism.one_manoeuvre import off_rows, select_beside_one_manoeuvre
 from stages.criticism.oscillation_removal import (
     shifts,
     shifts_by_steps,
@@ -88,8 +89,17 @@ def _of_mount(
         tested = structure_tests(effects.campaign, effects.fitted, degrees, levels[1])
         return with_laws(effects, tested, campaign, in_blocks, *levels, degrees)
 
+    def carried_by_several(campaign: Campaign) -> tuple[Selection, Tested]:
+        return select_beside_one_manoeuvre(
+            selected(campaign),
+            campaign,
+            selected,
+            partial(_without, data=replace(data, blocks=quiet)),
+            lambda one: structure_tests(one, [], degrees, levels[1]),
+        )
+
     (selection, tested, campaign), scatter = select_beside_scatter(
-        measured, lambda one: select_beside_drift(one, selected, levels[0]), levels[0]
+        measured, lambda one: select_beside_drift(one, carried_by_several, levels[0]), levels[0]
     )
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
@@ -134,10 +144,23 @@ def _of_mount(
         "gyro" in lawful,
         mount,
     )
+    yield from off_rows(selection, tested, mount)
     yield from structure_rows(tested, lawless.reported_structures, mount)
     yield from unexplained_rows(selection, lawless, level * UNEXPLAINED_SHARE, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)
     yield from pooled_evidence_rows(selection, mount)
+
+
+def _without(campaign: Campaign, manoeuvre: str, data: CampaignData) -> Campaign:
+    """The campaign without a manoeuvre, all else equal."""
+    other = campaign_of(replace(data, blocks=data.blocks[data.blocks["manoeuvre"] != manoeuvre]))
+    return replace(
+        other,
+        solution=campaign.solution,
+        position_sigma=campaign.position_sigma,
+        axis_sigma=campaign.axis_sigma,
+        drifts=campaign.drifts,
+    )
 
 
 def _with(plan: Callable[[], ExtendedPlan], data: CampaignData) -> Campaign:
