@@ -31,6 +31,8 @@ from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
 from stages.criticism.finding_rows import TableRow, finding_id, member_rows, parameter_row
 from stages.criticism.jump_not_testable import jumps_not_testable
 from stages.criticism.laws import WithoutLaw, law_action
+from stages.criticism.one_manoeuvre import carrier_of_excess
+from stages.criticism.residual_structure import ACTION_IF_CARRIED, moved_by
 from stages.criticism.selection import Selection
 from stages.criticism.shared_asymmetry import ASYMMETRY, shared_asymmetry
 
@@ -45,6 +47,7 @@ UNEXPLAINED = _(
     "The residuals of the {sensors} are {ratio:.1f} times as large as noise, and no "
     "effect of the catalogue explains it."
 )
+WITHOUT = _(" Without {manoeuvre} they are not.")
 SCATTER = _("The joint estimate allows for it as a scatter between manoeuvres.")
 MAX_LISTED = 2  # manoeuvres at which a jump may be
 LATER = _("{first}, or later up to {last}")
@@ -355,6 +358,12 @@ def unexplained_rows(
         if p_value * len(PLURAL) >= level or rest <= MIN_EXCESS * degrees:
             continue
         ratio = float(np.sqrt(rest / degrees))
+        campaign, effects = selection.campaign, selection.fitted
+        carrier = carrier_of_excess(campaign, sensor, effects)
+        sentence, action = UNEXPLAINED.format(sensors=PLURAL[sensor], ratio=ratio), INSPECT
+        if carrier is not None:
+            sentence += WITHOUT.format(manoeuvre=carrier)
+            action = ACTION_IF_CARRIED.format(manoeuvres=carrier)
         yield (
             "findings",
             {
@@ -367,8 +376,9 @@ def unexplained_rows(
                 "unit": "sigma",
                 "p_value": p_value,
                 "severity": 2,
-                "sentence": UNEXPLAINED.format(sensors=PLURAL[sensor], ratio=ratio),
+                "sentence": sentence,
                 "consequence": SCATTER,
-                "action": INSPECT,
+                "action": action,
+                "moves": carrier and moved_by(campaign, sensor, [carrier], effects),
             },
         )

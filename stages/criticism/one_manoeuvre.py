@@ -104,6 +104,19 @@ def _drops(
     return drops
 
 
+def carrier_of_excess(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> str | None:
+    """The only manoeuvre without which the residuals of a sensor are no larger than noise."""
+    every = set(campaign.manoeuvres_of(sensor))
+    chances = dict.fromkeys(sorted(every), 0.0)
+    for name in chances:
+        others = set(campaign.manoeuvres) - {name}
+        if (system := campaign.system(sensor, effects, PRIOR_SIGMA, others)) is not None:
+            rest = system.solve_shared()
+            chances[name] = float(chi2_sf(rest.chi_squared, max(rest.degrees, 1)))
+    carriers = [name for name, chance in chances.items() if chance > MIN_CHANCE]
+    return carriers[0] if len(carriers) == 1 else None
+
+
 def off_rows(selection: Selection, tested: Tested, mount: str) -> Iterator[TableRow]:
     """The finding of each sensor that a manoeuvre is off, where no structure says so."""
     off = selection.off

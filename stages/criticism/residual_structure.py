@@ -321,7 +321,9 @@ CONSEQUENCE = _(
 )
 MOVES = _(" With and without {manoeuvres} a parameter differs by {moves} σ at most.")
 ACTION = _("Inspect the picture of the residuals for what they depend on.")
-ACTION_IF_CARRIED = _("Look at the picture of the residuals; record {manoeuvres} again.")
+ACTION_IF_CARRIED = _(
+    "Look at the picture of the residuals; record again, or leave out of the plan, {manoeuvres}."
+)
 DESCRIPTIONS = {  # by the kind of the test, and whether a value of a scan is known
     ("time", True): _("about {axis} they oscillate in time, every {period} s"),
     ("time", False): _("about {axis} they drift smoothly with time"),
