@@ -12,6 +12,22 @@ from inertial.text.messages import _
 
 
 @dataclass(frozen=True)
+class SignChange:
+    """Gyro `axis` (0, 1, 2) changes its sign between two manoeuvres, one after the other.
+
+    later: whether it is reversed from `after` on, else up to `before`; logs: those in which it is;
+    parted: whether it changes in one of them.
+    """
+
+    axis: int
+    before: str
+    after: str
+    later: bool
+    logs: Sequence[str]
+    parted: bool
+
+
+@dataclass(frozen=True)
 class Misread:
     """A sensor with exchanged or reversed axes; `log` is empty where all logs have it so.
 
@@ -19,6 +35,7 @@ class Misread:
     repair: id of its repair; undone: whether that is applied. rivals: the ids of others that
     explain as much, each with what would have to be true, in words. spans: of half a second, in
     which the gyros turn gravity as the accelerometers see it only so; 0: the plan shows it.
+    change: where it begins, or ends, to be so; None where it is so all along.
     """
 
     sensor: str
@@ -29,6 +46,7 @@ class Misread:
     undone: bool = False
     rivals: Sequence[tuple[str, str]] = ()
     spans: int = 0
+    change: SignChange | None = None
 
 
 @dataclass(frozen=True)

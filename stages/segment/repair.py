@@ -18,7 +18,7 @@ from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import AS_NAMED, Permutation, composed
 from inertial.signal.detector import Given
 from inertial.signal.misread_axes import determinant
-from inertial.signal.plan_detector import Misread, Rescaled, Reversed, SpansOff, Swapped
+from inertial.signal.plan_detector import Misread, Rescaled, Reversed, SignChange, SpansOff, Swapped
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from inertial.text.typography import capital
@@ -38,6 +38,7 @@ from stages.segment.repair_readings import (
     scales_of,
     step_of,
 )
+from stages.segment.sign_changes import sign_changes
 from stages.segment.steps import (
     Step,
     at_other_rate,
@@ -138,6 +139,7 @@ class _Campaign:
         self._by_gravity = False  # whether gravity shows the gyros to be as they are named
         self._gravity_turns = False  # whether it shows what they are named by at all
         self._rivals: dict[str, list[tuple[str, str]]] = {}
+        self._changes: dict[str, SignChange] = {}  # by repair
         self._explain()
 
     def _explain(self) -> None:
@@ -154,6 +156,7 @@ class _Campaign:
             self._reversed,
             self._spans_off,
             self._rivals,
+            self._changes,
         )
         found = (self._plan, self._level, self._explained)
         return SetRight(*found, self._rows, self._channels, undone)
@@ -306,9 +309,20 @@ class _Campaign:
             if alike and not turned and each.axes.in_place and not self._gravity_turns:
                 condition += f"; {UPENDED}"
             rival = turned or both or each.sensor in rivals
+            logs = self._basis.logs
+            if each.sensor == "gyro" and not rival:
+                found = (self._plan, self._level, each.axes, self._basis.earth_rate)
+                for change in sign_changes(explained.located, *found):
+                    self._changes[step.id] = change
+                    logs = [] if change.parted or each.axes.moved > 1 else change.logs
+            if not logs:
+                continue  # it is both in one log: no repair of that is right
+            if step.id in self._changes:
+                each = replace(each, change=self._changes[step.id])
+                condition = axes_in_words(each)
             if self._decide(step, condition, explained.fitting, rival=rival):
                 self._misread.append(replace(each, undone=True))
-                yield from self._axes(step, each, each.axes)
+                yield from self._axes(step, each, each.axes, logs)
 
     def _axes_of_logs(self, explained: ExplainedRecording) -> Iterator[Row]:
         """Axes that are others in single logs."""
@@ -323,10 +337,13 @@ class _Campaign:
             condition = axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
             if self._decide(step, condition, explained.fitting, each.log, rival=turned or unsure):
                 self._misread.append(replace(each, undone=True))
-                yield from self._axes(step, each, composed(each.axes, common.inverse))
+                logs = self._logs(each.log)
+                yield from self._axes(step, each, composed(each.axes, common.inverse), logs)
 
-    def _axes(self, step: Step, misread: Misread, axes: Permutation) -> Iterator[Row]:
-        for log in self._logs(misread.log):
+    def _axes(
+        self, step: Step, misread: Misread, axes: Permutation, logs: Sequence[str]
+    ) -> Iterator[Row]:
+        for log in logs:
             for i, axis in enumerate(tables.AXES):
                 source, sign = tables.AXES[axes.sources[i]], float(axes.signs[i])
                 yield _channel(step.id, log, misread.sensor, axis, source, sign)
@@ -351,7 +368,8 @@ class _Campaign:
 
     def set_axes_by_gravity(self) -> None:
         """Axes of one sensor that the other one contradicts, whatever the plan says."""
-        if any(row["state"] not in APPLIED for row in self._rows if row["repair"] != "count_size"):
+        others = (row["state"] for row in self._rows if row["repair"] != "count_size")
+        if self._changes or any(state not in APPLIED for state in others):
             return
         found = misread_by_gravity(self._binned, self._level)
         words = {each.repair: axes_in_words(each) for each in found}
@@ -360,7 +378,7 @@ class _Campaign:
         for each in chosen:
             step, rival = step_of(each), len(chosen) > 1
             if self._decide(step, words[step.id], rival=rival, finding=chosen[0].repair):
-                channels += self._axes(step, each, each.axes)
+                channels += self._axes(step, each, each.axes, self._logs(each.log))
         if chosen:
             rivals = [(other.repair, words[other.repair]) for other in chosen[1:]]
             self._misread.append(replace(chosen[0], undone=bool(channels), rivals=rivals))

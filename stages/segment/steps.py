@@ -117,9 +117,15 @@ def axes_in_words(misread: Misread) -> str:
     words = _(
         "of the {sensor}, {where}, {axes}",
         sensor=PLURAL[misread.sensor],
-        where=where(misread.log),
+        where=where(misread.log) if misread.change is None else _("in a part of the logs"),
         axes=reads_in_words(misread.axes),
     )
+    if misread.change is not None:
+        words += (
+            _(", from {manoeuvre} on", manoeuvre=misread.change.after)
+            if misread.change.later
+            else _(", up to {manoeuvre}", manoeuvre=misread.change.before)
+        )
     if misread.sensor == "accel" and misread.axes == ALL_REVERSED:
         words += _(", or the log tells gravity in place of specific force, which is the same")
     return words
