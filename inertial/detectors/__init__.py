@@ -19,6 +19,7 @@ from inertial.detectors.manoeuvres_against_plan import (
     RestsDivided,
     ShortRest,
     TurningPointOnce,
+    WrongMark,
     WrongSpans,
 )
 from inertial.detectors.misread_axes_and_signs import (
@@ -129,6 +130,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     SampleRateByTurns(),
     TableRateByGravity(),
     WrongSpans(),
+    WrongMark(),
     ManoeuvreSwapped(),
     ManoeuvreMissing(),
     WrongDirection(),

@@ -126,6 +126,25 @@ class SpansOff:
 
 
 @dataclass(frozen=True)
+class MarksOff:
+    """Marks of the plan that contradict its turns, for nothing moved between the manoeuvres.
+
+    names: the manoeuvres whose marks are taken for wrong; pair: one that is right, and one of
+    these, of one course; off: rad, by how much at most; decided: whether the earth's rate at rest
+    shows which are right; undecided: whether nothing does. repair: id of its repair; undone:
+    whether that is applied.
+    """
+
+    names: Sequence[str]
+    pair: tuple[str, str]
+    off: float
+    decided: bool
+    undecided: bool
+    repair: str = ""
+    undone: bool = False
+
+
+@dataclass(frozen=True)
 class StaticMeans:
     """The n rests of the manoeuvres of a plan, one after the other, those of turns too.
 
@@ -175,7 +194,7 @@ class Recorded:
     misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of
     the gyros that were undone, restated: rates of the plan. reversed: turns that are taken the
     other way. divided: the rests of each still stretch that only the plan divides.
-    spans_off: stated spans that are off by one time.
+    spans_off: stated spans that are off by one time. marks_off: marks that turns contradict.
     tolerance: accepted difference of an angle or a rate from the plan's, 1.
     """
 
@@ -230,6 +249,7 @@ class Recorded:
     reversed: Sequence[Reversed] = ()
     divided: Sequence[Sequence[str]] = ()
     spans_off: Sequence[SpansOff] = ()
+    marks_off: Sequence[MarksOff] = ()
 
     @property
     def explained(self) -> set[str]:

@@ -18,6 +18,7 @@ from inertial.signal.detector import Detector, Event, Given, Log
 from inertial.signal.gravity_turned import rate_of_gravity
 from inertial.signal.plan_detector import (
     Deviation,
+    MarksOff,
     Misread,
     PlanDetector,
     Recorded,
@@ -57,6 +58,7 @@ class Undone:
     spans_off: Sequence[SpansOff] = ()
     rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
     changes: Mapping[str, SignChange] = field(default_factory=dict)
+    marks_off: Sequence[MarksOff] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,6 +166,7 @@ def recorded_of(
         restated=undone.restated,
         reversed=undone.reversed,
         spans_off=undone.spans_off,
+        marks_off=undone.marks_off,
         divided=[names for located in explained.located for names in located.divided],
     )
 

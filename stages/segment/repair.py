@@ -18,7 +18,15 @@ from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import AS_NAMED, Permutation, composed
 from inertial.signal.detector import Given
 from inertial.signal.misread_axes import determinant
-from inertial.signal.plan_detector import Misread, Rescaled, Reversed, SignChange, SpansOff, Swapped
+from inertial.signal.plan_detector import (
+    MarksOff,
+    Misread,
+    Rescaled,
+    Reversed,
+    SignChange,
+    SpansOff,
+    Swapped,
+)
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from inertial.text.typography import capital
@@ -26,6 +34,7 @@ from stages.segment.located import AS_PLANNED
 from stages.segment.plan_and_recording import Undone
 from stages.segment.recording_explanations import (
     ExplainedRecording,
+    by_mounting,
     explained_of,
     in_order,
     misread_in,
@@ -39,6 +48,7 @@ from stages.segment.repair_readings import (
     step_of,
 )
 from stages.segment.sign_changes import sign_changes
+from stages.segment.stated_marks import marks_off, with_marks
 from stages.segment.steps import (
     Step,
     at_other_rate,
@@ -48,6 +58,7 @@ from stages.segment.steps import (
     exchange_in_words,
     exchange_step,
     exchanged_back,
+    marks_in_words,
     place_of,
     sense_in_words,
     sense_step,
@@ -68,7 +79,8 @@ class Basis:
 
     earth_rate : rad/s, its part upwards; given : of the campaign; counts : by sensor and log, m/s
     and rad, what a count is; logs : all of them; tolerance : of rates and angles, 1; refused:
-    whether none is to be applied; accepted : ids of those that the laboratory confirms.
+    whether none is to be applied; accepted : ids of those that the laboratory confirms; heading :
+    rad, azimuth of the table's zero mark, None where it is not known.
     """
 
     earth_rate: float
@@ -78,6 +90,7 @@ class Basis:
     tolerance: float
     refused: bool
     accepted: Collection[str]
+    heading: float | None = None
 
     def state(self, step: Step, *, rival: bool = False) -> str:
         """Whether a repair is applied, confirmed, refused, or the rival of another."""
@@ -120,6 +133,7 @@ def set_right(
     campaign.set_axes_and_names()
     campaign.set_axes_by_gravity()
     campaign.set_rates()
+    campaign.set_marks()
     return campaign.result()
 
 
@@ -136,6 +150,7 @@ class _Campaign:
         self._restated: list[Rescaled] = []
         self._reversed: list[Reversed] = []
         self._spans_off: list[SpansOff] = []
+        self._marks_off: list[MarksOff] = []
         self._by_gravity = False  # whether gravity shows the gyros to be as they are named
         self._gravity_turns = False  # whether it shows what they are named by at all
         self._rivals: dict[str, list[tuple[str, str]]] = {}
@@ -157,6 +172,7 @@ class _Campaign:
             self._spans_off,
             self._rivals,
             self._changes,
+            self._marks_off,
         )
         found = (self._plan, self._level, self._explained)
         return SetRight(*found, self._rows, self._channels, undone)
@@ -295,7 +311,7 @@ class _Campaign:
     def _axes_everywhere(self, explained: ExplainedRecording) -> Iterator[Row]:
         """Axes that are others in all logs."""
         axes = explained.everywhere
-        turned = _by_mounting(explained)
+        turned = by_mounting(explained)
         rivals = {
             sensor
             for sensor, own in unlike(axes, AS_PLANNED)
@@ -408,6 +424,21 @@ class _Campaign:
             self._plan_again(at_other_rate(self._plan, restated.ratio, restated.names))
             self._explain()
 
+    # ---- marks of the plan
+
+    def set_marks(self) -> None:
+        """Marks that the plan states, and its own turns contradict."""
+        basis, step = self._basis, Step("stated_marks", "stated_marks", "gyro")
+        found = (self._explained.located, self._plan, basis.heading, basis.earth_rate)
+        off, marks = marks_off(*found)
+        if off is None:
+            return
+        undone = self._decide(step, marks_in_words(off), rival=off.undecided)
+        self._marks_off.append(replace(off, repair=step.id, undone=undone))
+        if undone:
+            self._plan_again(with_marks(self._plan, marks))
+            self._explain()
+
 
 APPLIED = ("applied", "confirmed")
 
@@ -451,26 +482,3 @@ def _channel(repair: str, log: str, sensor: str, axis: str, from_axis: str, fact
         "from_axis": from_axis,
         "factor": factor,
     }
-
-
-def _by_mounting(explained: ExplainedRecording) -> bool:
-    """Whether the axes of both sensors may be right, and the IMU is mounted otherwise.
-
-    Both triads are then turned alike; where only one is seen, the other one may be.
-    """
-    axes = explained.everywhere
-    turned = axes.accel if axes.accel != AS_NAMED else axes.gyro
-    if turned == AS_NAMED or determinant(turned) < 0:
-        return False
-    if axes.accel == axes.gyro:
-        return True
-    turns = any(
-        located.place(m) is not None
-        for located in explained.located
-        for m in located.plan
-        if m.do == "turn"
-    )
-    ups = any(m.up is not None for located in explained.located for m in located.plan)
-    if axes.gyro == AS_NAMED:
-        return not turns and not any(explained.gyro_signs)
-    return axes.accel == AS_NAMED and not ups
