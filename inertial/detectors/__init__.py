@@ -19,9 +19,9 @@ from inertial.detectors.manoeuvres_against_plan import (
     RestsDivided,
     ShortRest,
     TurningPointOnce,
-    WrongMark,
     WrongSpans,
 )
+from inertial.detectors.marks_against_plan import WrongMark
 from inertial.detectors.misread_axes_and_signs import (
     AxisSwap,
     AxisSwapAgainstPlan,

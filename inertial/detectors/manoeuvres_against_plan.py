@@ -1,6 +1,6 @@
 """Rests and spans of a log that are not as planned: short, shifted, missing, in others' places."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -8,7 +8,6 @@ from inertial.arrays import Array
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import (
     Deviation,
-    MarksOff,
     PlanDetector,
     Recorded,
     SpansOff,
@@ -64,72 +63,6 @@ class WrongSpans(PlanDetector):
                 repair=off.repair,
             ),
         )
-
-
-class WrongMark(PlanDetector):
-    """Two marks of the plan that contradict the angle turned between them.
-
-    After a turn by 180° the mark is opposite, and with it north; after whole turns it is where it
-    was. Between the two manoeuvres nothing moves, as the gyros show, so one of the marks is wrong.
-
-    Cause: the mark of one manoeuvre was copied to the next one. The earth's rate is taken off in
-    the wrong direction, by up to twice its horizontal part.
-    """
-
-    name = "wrong_mark"
-    source = "rotation of a direction: what stands still in the room turns by −θ in the body"
-    unit = "rad"
-    severity = 3
-    sensor = "gyro"
-
-    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for off in recorded.marks_off:
-            number, repair = len(off.names), off.repair
-            yield Deviation(None, "", off.off, self.sensor, count=number, facts=off, repair=repair)
-
-    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
-        off: MarksOff = deviation.facts
-        right, wrong = off.pair
-        if off.decided:
-            why = _(
-                "The earth's rate, as the gyros read it at rest, shows which of them are right."
-            )
-        elif off.undecided:
-            why = _("Which of them are right neither the plan nor the gyros show.")
-        else:
-            why = _("The most of the marks, where nothing moved between them, are taken for right.")
-        sentence = plural(
-            "The plan states the mark of {names} {off}° from where the turns leave it: between "
-            "{right} and {wrong}, as an example, nothing moves but by the angles of the plan, and "
-            "so one of their marks is wrong. {why}",
-            "The plan states the marks of {names} up to {off}° from where the turns leave them: "
-            "between {right} and {wrong}, as an example, nothing moves but by the angles of the "
-            "plan, and so one of their marks is wrong. {why}",
-            deviation.count,
-            names=", ".join(off.names),
-            off=fixed(float(np.degrees(off.off)), 0),
-            right=right,
-            wrong=wrong,
-            why=why,
-        )
-        consequence = _(
-            "Used as stated, the horizontal part of the earth's rate would be taken off in the "
-            "wrong direction, in each sample of the turns."
-        )
-        action = (
-            _(
-                "The marks are taken from where the turns leave them, on this condition. Correct "
-                "them in the plan, or confirm it by accept: [{repair}].",
-                repair=off.repair,
-            )
-            if off.undone
-            else _(
-                "Nothing is set right. Correct the marks in the plan; or confirm those of the "
-                "first manoeuvres by accept: [{repair}].",
-                repair=off.repair,
-            )
-        )
-        return Description(sentence, consequence, action)
 
 
 class ShortRest(PlanDetector):
@@ -217,23 +150,45 @@ class ManoeuvreMissing(PlanDetector):
 
     Cause: it was not done, not recorded, or the plan has it in the wrong place. Nothing determines
     what it alone would determine. Where nothing need move between two rests they are one, and
-    nothing is lost; where a tumble goes back that is as planned.
+    nothing is lost; where a tumble goes back that is as planned. A position of which nothing was
+    recorded is told once, by the first manoeuvre of it.
     """
 
     name = "manoeuvre_missing"
     source = "S0: a log that was not written whole"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        told = set[int]()
         for i, name in enumerate(recorded.name):
-            if not recorded.found[i] and name not in recorded.explained:
+            if not recorded.found[i] and name not in recorded.explained and i not in told:
                 if _one_rest_with(recorded, i) is None:
-                    yield self.of(recorded, i, None, sensor=None)
+                    not_done = _position_not_done(recorded, i)
+                    told |= {*not_done}
+                    own = {"count": len(not_done), "facts": not_done} if not_done else {}
+                    yield self.of(recorded, i, None, sensor=None, **own)
                 elif not _turning_point(recorded, i):
                     yield self.of(recorded, i, None, sensor=None, severity=1)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None  # it is a manoeuvre that is missing
+        if deviation.facts:
+            return Description(
+                _(
+                    "Nothing of the position {position} is in {log}: {names} were not found where "
+                    "the plan has them.",
+                    position=recorded.position[i],
+                    log=recorded.log[i],
+                    names=", ".join(recorded.name[k] for k in deviation.facts),
+                ),
+                _("They are left out; the others are used.")
+                + "".join(
+                    f" {left}"
+                    for k in _unlike(recorded, deviation.facts)
+                    if (left := _left(recorded, k))
+                ),
+                _("Correct the plan, or record it."),
+            )
         return Description(
             recorded.said[i] + _instead(recorded, i),
             _("It is left out; the others are used. {recorded}", recorded=_left(recorded, i)),
@@ -271,6 +226,27 @@ class TurningPointOnce(PlanDetector):
             _("Nothing is lost."),
             _("Nothing need be done."),
         )
+
+
+def _position_not_done(recorded: Recorded, i: int) -> list[int]:
+    """The manoeuvres of the position of one, if it has several in that log, and none was found."""
+    own = [k for k, position in enumerate(recorded.position) if position == recorded.position[i]]
+    lost = [
+        not recorded.found[k]
+        and recorded.name[k] not in recorded.explained
+        and recorded.log[k] == recorded.log[i]
+        and _one_rest_with(recorded, k) is None
+        for k in own
+    ]
+    return own if len(own) > 1 and all(lost) else []
+
+
+def _unlike(recorded: Recorded, own: Sequence[int]) -> list[int]:
+    """The first rest and the first turn among manoeuvres."""
+    return [
+        next(k for k in own if recorded.do[k] == do)
+        for do in dict.fromkeys(recorded.do[k] for k in own)
+    ]
 
 
 def _one_rest_with(recorded: Recorded, i: int) -> int | None:
