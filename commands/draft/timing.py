@@ -150,7 +150,7 @@ def timing_of(
     if np.median(positive) < 0.5 * ticks:
         why += _("; stamps come in bursts: the rate is their number in the whole time")
     wraps_at = None if dated else _period(counters)
-    if dated and max(float(own.max()) for own in counters) < DAY:
+    if dated and min(float(own.min()) for own in counters) < DAY:
         why, wraps_at = _("it holds the time of the day"), round(DAY * 1e9)
     elif wraps_at is not None:
         why += _("; it begins again after {period} ticks", period=wraps_at)

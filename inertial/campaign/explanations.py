@@ -226,6 +226,10 @@ EXPLANATIONS = (
         (*PERFORMANCE, "wrong_scale_factor", "manoeuvre_swapped", "gravity_error"),
         same_sensor,
     ),
+    # North, and with it the earth's rate, is taken in another direction than it is.
+    Explanation(
+        ("wrong_mark",), (*MISFITS, "gyro_drift", "gyro_random_walk", "heading_error"), same_sensor
+    ),
     Explanation(("wrong_scale_factor", "wrong_imu_type"), ("noise_above_data_sheet",), same_sensor),
     Explanation(("manoeuvre_swapped",), PERFORMANCE, same_log),
     # A clock that is set, or runs wrong, by what its stamps then look like.

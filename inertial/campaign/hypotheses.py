@@ -232,6 +232,7 @@ _CAUSE_OF_REPAIR = {
     "exchanged_manoeuvres": "manoeuvre_swapped",
     "stated_rate": "wrong_rate",
     "stated_spans": "wrong_spans",
+    "stated_marks": "wrong_mark",
 }
 
 

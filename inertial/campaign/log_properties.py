@@ -34,6 +34,7 @@ class Stated:
     clocks, ranges, imu_types : tables; of each log the type of IMU in its messages
     angle_sigma, rate_sigma : of the angle of a turn, rad, and of its rate, relative; the latter
         NaN where it is not stated
+    heading : rad, azimuth of the table's zero mark, None where it is not known
     """
 
     given: Given
@@ -43,6 +44,7 @@ class Stated:
     imu_types: pd.DataFrame
     angle_sigma: float
     rate_sigma: float
+    heading: float | None = None
 
     def logs(
         self, statistics: pd.DataFrame, windows: Mapping[str, Windows] | None = None
@@ -72,7 +74,8 @@ def stated_by(
     up, sigma = quantities["earth_rate_up"].number, quantities["turn_angle"].scatter
     assumed = known.set_index("quantity")["assumed"]["turn_rate"]
     rate_sigma = np.nan if assumed else quantities["turn_rate"].scatter
-    return Stated(given, up, clocks, ranges, imu_types, sigma, rate_sigma)
+    heading = quantities["heading"].value
+    return Stated(given, up, clocks, ranges, imu_types, sigma, rate_sigma, heading)
 
 
 def given_by(

@@ -21,6 +21,7 @@ from inertial.detectors.manoeuvres_against_plan import (
     TurningPointOnce,
     WrongSpans,
 )
+from inertial.detectors.marks_against_plan import WrongMark
 from inertial.detectors.misread_axes_and_signs import (
     AxisSwap,
     AxisSwapAgainstPlan,
@@ -129,6 +130,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     SampleRateByTurns(),
     TableRateByGravity(),
     WrongSpans(),
+    WrongMark(),
     ManoeuvreSwapped(),
     ManoeuvreMissing(),
     WrongDirection(),

@@ -1,6 +1,6 @@
 """Rests and spans of a log that are not as planned: short, shifted, missing, in others' places."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -150,23 +150,45 @@ class ManoeuvreMissing(PlanDetector):
 
     Cause: it was not done, not recorded, or the plan has it in the wrong place. Nothing determines
     what it alone would determine. Where nothing need move between two rests they are one, and
-    nothing is lost; where a tumble goes back that is as planned.
+    nothing is lost; where a tumble goes back that is as planned. A position of which nothing was
+    recorded is told once, by the first manoeuvre of it.
     """
 
     name = "manoeuvre_missing"
     source = "S0: a log that was not written whole"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        told = set[int]()
         for i, name in enumerate(recorded.name):
-            if not recorded.found[i] and name not in recorded.explained:
+            if not recorded.found[i] and name not in recorded.explained and i not in told:
                 if _one_rest_with(recorded, i) is None:
-                    yield self.of(recorded, i, None, sensor=None)
+                    not_done = _position_not_done(recorded, i)
+                    told |= {*not_done}
+                    own = {"count": len(not_done), "facts": not_done} if not_done else {}
+                    yield self.of(recorded, i, None, sensor=None, **own)
                 elif not _turning_point(recorded, i):
                     yield self.of(recorded, i, None, sensor=None, severity=1)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         i = deviation.at
         assert i is not None  # it is a manoeuvre that is missing
+        if deviation.facts:
+            return Description(
+                _(
+                    "Nothing of the position {position} is in {log}: {names} were not found where "
+                    "the plan has them.",
+                    position=recorded.position[i],
+                    log=recorded.log[i],
+                    names=", ".join(recorded.name[k] for k in deviation.facts),
+                ),
+                _("They are left out; the others are used.")
+                + "".join(
+                    f" {left}"
+                    for k in _unlike(recorded, deviation.facts)
+                    if (left := _left(recorded, k))
+                ),
+                _("Correct the plan, or record it."),
+            )
         return Description(
             recorded.said[i] + _instead(recorded, i),
             _("It is left out; the others are used. {recorded}", recorded=_left(recorded, i)),
@@ -204,6 +226,27 @@ class TurningPointOnce(PlanDetector):
             _("Nothing is lost."),
             _("Nothing need be done."),
         )
+
+
+def _position_not_done(recorded: Recorded, i: int) -> list[int]:
+    """The manoeuvres of the position of one, if it has several in that log, and none was found."""
+    own = [k for k, position in enumerate(recorded.position) if position == recorded.position[i]]
+    lost = [
+        not recorded.found[k]
+        and recorded.name[k] not in recorded.explained
+        and recorded.log[k] == recorded.log[i]
+        and _one_rest_with(recorded, k) is None
+        for k in own
+    ]
+    return own if len(own) > 1 and all(lost) else []
+
+
+def _unlike(recorded: Recorded, own: Sequence[int]) -> list[int]:
+    """The first rest and the first turn among manoeuvres."""
+    return [
+        next(k for k in own if recorded.do[k] == do)
+        for do in dict.fromkeys(recorded.do[k] for k in own)
+    ]
 
 
 def _one_rest_with(recorded: Recorded, i: int) -> int | None:

@@ -9,6 +9,7 @@ from inertial.signal.plan_detector import (
     Deviation,
     Misread,
     Recorded,
+    SignChange,
     confirming,
     rivals_in_words,
 )
@@ -31,6 +32,7 @@ def deviation(misread: Misread, recorded: Recorded) -> Deviation:
         misread.log,
         float(len(misread.explains)),
         misread.sensor,
+        None if misread.change is None else AXES[misread.change.axis],
         first=first,
         after=after,
         from_s=min(times, default=None),
@@ -56,7 +58,15 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
             "The manoeuvres are found by the right axes; the data are not changed. Correct "
             "the axes of the instrument, or the columns, and run it again."
         )
-    if misread.undone:
+    if misread.change is not None and not misread.undone:
+        action = _(
+            "Nothing is set right, for within a log the moment is not known. See what changed "
+            "between {before} and {after}; turn the sign in the log, or give each part a log of "
+            "its own, and run it again.",
+            before=misread.change.before,
+            after=misread.change.after,
+        )
+    elif misread.undone:
         action = _(
             "The readings are set right before the estimation, on this condition. Correct the axes "
             "of the instrument, or the columns; or confirm it by accept: [{repair}].",
@@ -71,6 +81,8 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
 
 def _sentence(misread: Misread, recorded: Recorded) -> str:
     """Which axes are others, and what shows it."""
+    if misread.change is not None:
+        return _of_a_change(misread, misread.change)
     sensor = PLURAL[misread.sensor]
     where = _("in {log}", log=misread.log) if misread.log else "in all logs"
     if misread.spans:
@@ -99,8 +111,26 @@ def _sentence(misread: Misread, recorded: Recorded) -> str:
     )
 
 
+def _of_a_change(misread: Misread, change: SignChange) -> str:
+    """Where a sign changes, and what shows it."""
+    return _(
+        "The sign of the {axis} gyro changes between {before} and {after}: the turns ({names}) "
+        "read the other way, and what it reads at rest, its bias and the earth's rate, is the "
+        "negative on one side of what it is on the other.",
+        axis=AXES[change.axis],
+        before=change.before,
+        after=change.after,
+        names=", ".join(misread.explains[:MAX_NAMES]),
+    )
+
+
 def _consequence_in_all_logs(misread: Misread) -> str:
     sensor, axes = PLURAL[misread.sensor], _in_the_matrix(misread.axes)
+    if misread.change is not None and not misread.undone:
+        return _(
+            "The turns give no parameters of the gyros: set right in all of the recording, the "
+            "manoeuvres on the other side would be reversed in their place."
+        )
     if misread.undone:
         return _(
             "Taken as they are named, the {sensor} would give {axes}; the biases would be "

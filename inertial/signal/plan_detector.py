@@ -12,6 +12,22 @@ from inertial.text.messages import _
 
 
 @dataclass(frozen=True)
+class SignChange:
+    """Gyro `axis` (0, 1, 2) changes its sign between two manoeuvres, one after the other.
+
+    later: whether it is reversed from `after` on, else up to `before`; logs: those in which it is;
+    parted: whether it changes in one of them.
+    """
+
+    axis: int
+    before: str
+    after: str
+    later: bool
+    logs: Sequence[str]
+    parted: bool
+
+
+@dataclass(frozen=True)
 class Misread:
     """A sensor with exchanged or reversed axes; `log` is empty where all logs have it so.
 
@@ -19,6 +35,7 @@ class Misread:
     repair: id of its repair; undone: whether that is applied. rivals: the ids of others that
     explain as much, each with what would have to be true, in words. spans: of half a second, in
     which the gyros turn gravity as the accelerometers see it only so; 0: the plan shows it.
+    change: where it begins, or ends, to be so; None where it is so all along.
     """
 
     sensor: str
@@ -29,6 +46,7 @@ class Misread:
     undone: bool = False
     rivals: Sequence[tuple[str, str]] = ()
     spans: int = 0
+    change: SignChange | None = None
 
 
 @dataclass(frozen=True)
@@ -108,6 +126,25 @@ class SpansOff:
 
 
 @dataclass(frozen=True)
+class MarksOff:
+    """Marks of the plan that contradict its turns, for nothing moved between the manoeuvres.
+
+    names: the manoeuvres whose marks are taken for wrong; pair: one that is right, and one of
+    these, of one course; off: rad, by how much at most; decided: whether the earth's rate at rest
+    shows which are right; undecided: whether nothing does. repair: id of its repair; undone:
+    whether that is applied.
+    """
+
+    names: Sequence[str]
+    pair: tuple[str, str]
+    off: float
+    decided: bool
+    undecided: bool
+    repair: str = ""
+    undone: bool = False
+
+
+@dataclass(frozen=True)
 class StaticMeans:
     """The n rests of the manoeuvres of a plan, one after the other, those of turns too.
 
@@ -157,7 +194,7 @@ class Recorded:
     misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of
     the gyros that were undone, restated: rates of the plan. reversed: turns that are taken the
     other way. divided: the rests of each still stretch that only the plan divides.
-    spans_off: stated spans that are off by one time.
+    spans_off: stated spans that are off by one time. marks_off: marks that turns contradict.
     tolerance: accepted difference of an angle or a rate from the plan's, 1.
     """
 
@@ -212,6 +249,7 @@ class Recorded:
     reversed: Sequence[Reversed] = ()
     divided: Sequence[Sequence[str]] = ()
     spans_off: Sequence[SpansOff] = ()
+    marks_off: Sequence[MarksOff] = ()
 
     @property
     def explained(self) -> set[str]:

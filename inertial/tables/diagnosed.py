@@ -28,7 +28,7 @@ REPAIRS = Table(
             TEXT,
             "",
             "gravity, axes, signs, count_size, sense_of_table, other_way_up, exchanged_manoeuvres,"
-            " stated_rate, stated_spans",
+            " stated_rate, stated_spans, stated_marks",
         ),
         Column(
             "state",

@@ -47,6 +47,7 @@ NAMES = {
     "time_stands_still": _("time stands still"),
     "wrong_angle": _("turn that goes too far"),
     "wrong_direction": _("wrong direction"),
+    "wrong_mark": _("marks that contradict the turns"),
     "wrong_spans": _("spans by another clock"),
     "wrong_rate": _("wrong rate"),
     "unexplained": _("unexplained"),

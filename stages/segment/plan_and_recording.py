@@ -18,11 +18,13 @@ from inertial.signal.detector import Detector, Event, Given, Log
 from inertial.signal.gravity_turned import rate_of_gravity
 from inertial.signal.plan_detector import (
     Deviation,
+    MarksOff,
     Misread,
     PlanDetector,
     Recorded,
     Rescaled,
     Reversed,
+    SignChange,
     SpansOff,
     StaticMeans,
     Swapped,
@@ -45,6 +47,7 @@ class Undone:
     """What was set right, for the findings that tell of it; as in Recorded.
 
     rivals : for the id of a repair that is not applied those of others that explain as much.
+    changes : for that of one of signs, which is not applied, where these change.
     """
 
     misread: Sequence[Misread] = ()
@@ -54,6 +57,8 @@ class Undone:
     reversed: Sequence[Reversed] = ()
     spans_off: Sequence[SpansOff] = ()
     rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
+    changes: Mapping[str, SignChange] = field(default_factory=dict)
+    marks_off: Sequence[MarksOff] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +109,10 @@ def recorded_of(
     warm = by_manoeuvre.mean().where(mostly).to_dict()
     places = [parts.get(m.name) or _instead(m, where[m.name]) for m in plan]
     swapped = [in_order(exchanged, plan) for exchanged in explained.exchanged]
+    misread = [
+        replace(_beside(each, undone), change=undone.changes.get(each.repair))
+        for each in misread_in(plan, explained)
+    ]
     jumps = [recording.jumps.get(m.name, Jump()) for m in plan]
     first, after, from_s, to_s = np.array(places).reshape(-1, 4).T
     return Recorded(
@@ -151,12 +160,13 @@ def recorded_of(
         stated_temperature=_numbers([m.temperature for m in plan]),
         temperature_sigma=_numbers([m.temperature_sigma for m in plan]),
         gyro_signs=explained.gyro_signs,
-        misread=[*undone.misread, *(_beside(each, undone) for each in misread_in(plan, explained))],
+        misread=[*undone.misread, *misread],
         swapped=[*undone.swapped, *(_beside(each, undone) for each in swapped)],
         rescaled=undone.rescaled,
         restated=undone.restated,
         reversed=undone.reversed,
         spans_off=undone.spans_off,
+        marks_off=undone.marks_off,
         divided=[names for located in explained.located for names in located.divided],
     )
 

@@ -8,11 +8,13 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import (
+    AS_NAMED,
     PERMUTATIONS,
     Permutation,
     read_as_other_axes,
     simplicity,
 )
+from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import Misread, Swapped
 from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA
 from stages.segment.located import (
@@ -229,6 +231,29 @@ def _differs(m: Manoeuvre, sensor: str, axes: Permutation) -> bool:
     of_gyro = m.about if m.do == "turn" else None
     direction = m.up if sensor == "accel" else of_gyro
     return direction is not None and not np.allclose(axes.of(direction), direction)
+
+
+def by_mounting(explained: ExplainedRecording) -> bool:
+    """Whether the axes of both sensors may be right, and the IMU is mounted otherwise.
+
+    Both triads are then turned alike; where only one is seen, the other one may be.
+    """
+    axes = explained.everywhere
+    turned = axes.accel if axes.accel != AS_NAMED else axes.gyro
+    if turned == AS_NAMED or determinant(turned) < 0:
+        return False
+    if axes.accel == axes.gyro:
+        return True
+    turns = any(
+        located.place(m) is not None
+        for located in explained.located
+        for m in located.plan
+        if m.do == "turn"
+    )
+    ups = any(m.up is not None for located in explained.located for m in located.plan)
+    if axes.gyro == AS_NAMED:
+        return not turns and not any(explained.gyro_signs)
+    return axes.accel == AS_NAMED and not ups
 
 
 # ---- Logs whose sensors have other axes than those of the rest of the campaign.

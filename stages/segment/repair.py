@@ -18,7 +18,15 @@ from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import AS_NAMED, Permutation, composed
 from inertial.signal.detector import Given
 from inertial.signal.misread_axes import determinant
-from inertial.signal.plan_detector import Misread, Rescaled, Reversed, SpansOff, Swapped
+from inertial.signal.plan_detector import (
+    MarksOff,
+    Misread,
+    Rescaled,
+    Reversed,
+    SignChange,
+    SpansOff,
+    Swapped,
+)
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from inertial.text.typography import capital
@@ -26,6 +34,7 @@ from stages.segment.located import AS_PLANNED
 from stages.segment.plan_and_recording import Undone
 from stages.segment.recording_explanations import (
     ExplainedRecording,
+    by_mounting,
     explained_of,
     in_order,
     misread_in,
@@ -38,6 +47,8 @@ from stages.segment.repair_readings import (
     scales_of,
     step_of,
 )
+from stages.segment.sign_changes import sign_changes
+from stages.segment.stated_marks import marks_off, with_marks
 from stages.segment.steps import (
     Step,
     at_other_rate,
@@ -47,6 +58,7 @@ from stages.segment.steps import (
     exchange_in_words,
     exchange_step,
     exchanged_back,
+    marks_in_words,
     place_of,
     sense_in_words,
     sense_step,
@@ -67,7 +79,8 @@ class Basis:
 
     earth_rate : rad/s, its part upwards; given : of the campaign; counts : by sensor and log, m/s
     and rad, what a count is; logs : all of them; tolerance : of rates and angles, 1; refused:
-    whether none is to be applied; accepted : ids of those that the laboratory confirms.
+    whether none is to be applied; accepted : ids of those that the laboratory confirms; heading :
+    rad, azimuth of the table's zero mark, None where it is not known.
     """
 
     earth_rate: float
@@ -77,6 +90,7 @@ class Basis:
     tolerance: float
     refused: bool
     accepted: Collection[str]
+    heading: float | None = None
 
     def state(self, step: Step, *, rival: bool = False) -> str:
         """Whether a repair is applied, confirmed, refused, or the rival of another."""
@@ -119,6 +133,7 @@ def set_right(
     campaign.set_axes_and_names()
     campaign.set_axes_by_gravity()
     campaign.set_rates()
+    campaign.set_marks()
     return campaign.result()
 
 
@@ -135,9 +150,11 @@ class _Campaign:
         self._restated: list[Rescaled] = []
         self._reversed: list[Reversed] = []
         self._spans_off: list[SpansOff] = []
+        self._marks_off: list[MarksOff] = []
         self._by_gravity = False  # whether gravity shows the gyros to be as they are named
         self._gravity_turns = False  # whether it shows what they are named by at all
         self._rivals: dict[str, list[tuple[str, str]]] = {}
+        self._changes: dict[str, SignChange] = {}  # by repair
         self._explain()
 
     def _explain(self) -> None:
@@ -154,6 +171,8 @@ class _Campaign:
             self._reversed,
             self._spans_off,
             self._rivals,
+            self._changes,
+            self._marks_off,
         )
         found = (self._plan, self._level, self._explained)
         return SetRight(*found, self._rows, self._channels, undone)
@@ -292,7 +311,7 @@ class _Campaign:
     def _axes_everywhere(self, explained: ExplainedRecording) -> Iterator[Row]:
         """Axes that are others in all logs."""
         axes = explained.everywhere
-        turned = _by_mounting(explained)
+        turned = by_mounting(explained)
         rivals = {
             sensor
             for sensor, own in unlike(axes, AS_PLANNED)
@@ -306,9 +325,20 @@ class _Campaign:
             if alike and not turned and each.axes.in_place and not self._gravity_turns:
                 condition += f"; {UPENDED}"
             rival = turned or both or each.sensor in rivals
+            logs = self._basis.logs
+            if each.sensor == "gyro" and not rival:
+                found = (self._plan, self._level, each.axes, self._basis.earth_rate)
+                for change in sign_changes(explained.located, *found):
+                    self._changes[step.id] = change
+                    logs = [] if change.parted or each.axes.moved > 1 else change.logs
+            if not logs:
+                continue  # it is both in one log: no repair of that is right
+            if step.id in self._changes:
+                each = replace(each, change=self._changes[step.id])
+                condition = axes_in_words(each)
             if self._decide(step, condition, explained.fitting, rival=rival):
                 self._misread.append(replace(each, undone=True))
-                yield from self._axes(step, each, each.axes)
+                yield from self._axes(step, each, each.axes, logs)
 
     def _axes_of_logs(self, explained: ExplainedRecording) -> Iterator[Row]:
         """Axes that are others in single logs."""
@@ -323,10 +353,13 @@ class _Campaign:
             condition = axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
             if self._decide(step, condition, explained.fitting, each.log, rival=turned or unsure):
                 self._misread.append(replace(each, undone=True))
-                yield from self._axes(step, each, composed(each.axes, common.inverse))
+                logs = self._logs(each.log)
+                yield from self._axes(step, each, composed(each.axes, common.inverse), logs)
 
-    def _axes(self, step: Step, misread: Misread, axes: Permutation) -> Iterator[Row]:
-        for log in self._logs(misread.log):
+    def _axes(
+        self, step: Step, misread: Misread, axes: Permutation, logs: Sequence[str]
+    ) -> Iterator[Row]:
+        for log in logs:
             for i, axis in enumerate(tables.AXES):
                 source, sign = tables.AXES[axes.sources[i]], float(axes.signs[i])
                 yield _channel(step.id, log, misread.sensor, axis, source, sign)
@@ -351,7 +384,8 @@ class _Campaign:
 
     def set_axes_by_gravity(self) -> None:
         """Axes of one sensor that the other one contradicts, whatever the plan says."""
-        if any(row["state"] not in APPLIED for row in self._rows if row["repair"] != "count_size"):
+        others = (row["state"] for row in self._rows if row["repair"] != "count_size")
+        if self._changes or any(state not in APPLIED for state in others):
             return
         found = misread_by_gravity(self._binned, self._level)
         words = {each.repair: axes_in_words(each) for each in found}
@@ -360,7 +394,7 @@ class _Campaign:
         for each in chosen:
             step, rival = step_of(each), len(chosen) > 1
             if self._decide(step, words[step.id], rival=rival, finding=chosen[0].repair):
-                channels += self._axes(step, each, each.axes)
+                channels += self._axes(step, each, each.axes, self._logs(each.log))
         if chosen:
             rivals = [(other.repair, words[other.repair]) for other in chosen[1:]]
             self._misread.append(replace(chosen[0], undone=bool(channels), rivals=rivals))
@@ -388,6 +422,21 @@ class _Campaign:
             why = _("the plan states another rate than the table was set to")
             self._restated.append(Rescaled(restated.ratio, why, "", restated.names, step.id))
             self._plan_again(at_other_rate(self._plan, restated.ratio, restated.names))
+            self._explain()
+
+    # ---- marks of the plan
+
+    def set_marks(self) -> None:
+        """Marks that the plan states, and its own turns contradict."""
+        basis, step = self._basis, Step("stated_marks", "stated_marks", "gyro")
+        found = (self._explained.located, self._plan, basis.heading, basis.earth_rate)
+        off, marks = marks_off(*found)
+        if off is None:
+            return
+        undone = self._decide(step, marks_in_words(off), rival=off.undecided)
+        self._marks_off.append(replace(off, repair=step.id, undone=undone))
+        if undone:
+            self._plan_again(with_marks(self._plan, marks))
             self._explain()
 
 
@@ -433,26 +482,3 @@ def _channel(repair: str, log: str, sensor: str, axis: str, from_axis: str, fact
         "from_axis": from_axis,
         "factor": factor,
     }
-
-
-def _by_mounting(explained: ExplainedRecording) -> bool:
-    """Whether the axes of both sensors may be right, and the IMU is mounted otherwise.
-
-    Both triads are then turned alike; where only one is seen, the other one may be.
-    """
-    axes = explained.everywhere
-    turned = axes.accel if axes.accel != AS_NAMED else axes.gyro
-    if turned == AS_NAMED or determinant(turned) < 0:
-        return False
-    if axes.accel == axes.gyro:
-        return True
-    turns = any(
-        located.place(m) is not None
-        for located in explained.located
-        for m in located.plan
-        if m.do == "turn"
-    )
-    ups = any(m.up is not None for located in explained.located for m in located.plan)
-    if axes.gyro == AS_NAMED:
-        return not turns and not any(explained.gyro_signs)
-    return axes.accel == AS_NAMED and not ups

@@ -288,7 +288,7 @@ def plan_as_taken(stated: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFra
     for name in (*places, "angle", "rate", "rate_sigma"):
         values = pd.Series([getattr(m, name) for m in plan], dtype=object)
         table[name] = values.where(values.notna(), None)
-    for name in ("up", "about"):
+    for name in ("up", "mark", "about"):
         vectors = [getattr(m, name) for m in plan]
         for i, axis in enumerate(AXES):
             table[f"{name}_{axis}"] = [None if vector is None else vector[i] for vector in vectors]

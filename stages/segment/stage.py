@@ -102,6 +102,7 @@ def segment(
         angle_tolerance,
         repairs == "refuse",
         set(confirmed.accepted["repair"]),
+        stated.heading,
     )
     made = _set_right(samples, plan, basis, stated.clocks, Masks(examined.masks))
     confirmed.refuse_unknown(made.rows)

@@ -9,9 +9,9 @@ from inertial.campaign.records import Manoeuvre
 from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.misread_axes import reads_in_words
-from inertial.signal.plan_detector import Misread, SpansOff, Swapped
+from inertial.signal.plan_detector import MarksOff, Misread, SpansOff, Swapped
 from inertial.tables import AXES
-from inertial.text.messages import _
+from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed
 
 BY_GRAVITY = "by-gravity"  # the end of a repair's id that gravity shows, whatever the plan says
@@ -117,9 +117,15 @@ def axes_in_words(misread: Misread) -> str:
     words = _(
         "of the {sensor}, {where}, {axes}",
         sensor=PLURAL[misread.sensor],
-        where=where(misread.log),
+        where=where(misread.log) if misread.change is None else _("in a part of the logs"),
         axes=reads_in_words(misread.axes),
     )
+    if misread.change is not None:
+        words += (
+            _(", from {manoeuvre} on", manoeuvre=misread.change.after)
+            if misread.change.later
+            else _(", up to {manoeuvre}", manoeuvre=misread.change.before)
+        )
     if misread.sensor == "accel" and misread.axes == ALL_REVERSED:
         words += _(", or the log tells gravity in place of specific force, which is the same")
     return words
@@ -153,6 +159,16 @@ def spans_in_words(off: SpansOff) -> str:
         else _("the spans stated in {log} are {time} s early by its clock")
     )
     return words.format(log=off.log, time=fixed(abs(off.late), 1))
+
+
+def marks_in_words(off: MarksOff) -> str:
+    """That marks are where the turns before have brought them."""
+    return plural(
+        "in {names} the mark is not where the plan states it, but where the turns leave it",
+        "in {names} the marks are not where the plan states them, but where the turns leave them",
+        len(off.names),
+        names=", ".join(off.names),
+    )
 
 
 def sense_in_words(turns: OtherSense, own: Sequence[Manoeuvre]) -> str:

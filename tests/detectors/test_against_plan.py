@@ -1,5 +1,6 @@
 """Campaigns of the simulated laboratory that are not what their plan says."""
 
+import json
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -467,6 +468,26 @@ def test_what_a_log_of_several_has_in_the_place_of_a_rest_is_told():
     assert "In its place the log rests 180° from there, with −z up." in missing["sentence"]
 
 
+def test_a_position_that_was_not_done_is_told_once():
+    document = chain.short(handling={"still_s": 10, "change_s": 10})
+    plan = document["campaign"]["plan"]
+    y_up = [one for one in plan if one["id"] in ("y-up", "y-forward", "y-backward")]
+    document["campaign"]["plan"] = [one for one in plan if one not in y_up]
+
+    def edit(text: str) -> str:
+        lines = [f"- {json.dumps(one | {'position': 'y-up'})}\n" for one in y_up]
+        (first,) = [line for line in text.splitlines(keepends=True) if "id: z-up," in line]
+        return text.replace(first, "".join("  " + line for line in lines) + first)
+
+    for one in plan:
+        one["log"] = "session.asc"
+    (finding,) = found_in(run(document, edit)).to_dict("records")
+    assert (finding["cause"], finding["manoeuvre"]) == ("manoeuvre_missing", "y-up")
+    assert finding["count"] == 3
+    assert "y-up, y-forward, y-backward were not found" in finding["sentence"]
+    assert "No other turn is about y" in finding["consequence"]
+
+
 def test_two_planned_rests_that_are_one_in_the_log_lose_nothing():
     """As where a tumble goes back, and nothing need move before the first rest of the way back."""
 
@@ -484,6 +505,7 @@ def test_where_a_tumble_goes_back_one_rest_is_what_is_planned(tumble, severities
     up = np.tile([0.0, 0.6, 0.8], (3, 1))
     recorded = SimpleNamespace(
         name=["07", "back-07", "turn"],
+        position=["07", "back-07", "turn"],
         do=["rest", "rest", "turn"],
         log=["one.csv"] * 3,
         found=np.array([True, False, True]),

@@ -123,6 +123,24 @@ def test_dates_with_the_day_or_the_month_first(stamps, decoded):
     np.testing.assert_allclose(results["decode/samples"]["time"], [0.0, 1.0, 45_000.5], atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("stamps", "seconds"),
+    [
+        (
+            ["23:59:59.5", "00:00:00.5", "00:00:01", "23:59:59", "00:00:00"],
+            [0, 1, 1.5, 86_399.5, 86_400.5],
+        ),
+        # Less than half a day back is no midnight, and a date goes on by itself.
+        (["12:00:01", "12:00:00", "12:00:02"], [0, -1, 1]),
+        (["2026-03-02T23:00:00", "2026-03-02T01:00:00"], [0, -79_200]),
+    ],
+)
+def test_the_time_of_the_day_goes_on_over_midnight(stamps, seconds, decoded):
+    layout = f"{{kind: columns, delimiter: ',', {NUMBERED}, time: {{column: 1, unit: iso8601}}}}"
+    time = decoded(rows(stamps), layout)["decode/samples"]["time"]
+    np.testing.assert_allclose(time, seconds, atol=1e-9)
+
+
 def test_seconds_since_1970_are_counted_from_the_first(decoded):
     stamps = [f"{1535630275.916451 + n * 0.01:.6f}" for n in range(5)]
     layout = f"{{kind: columns, delimiter: ',', {NUMBERED}, time: {{column: 1, unit: s}}}}"

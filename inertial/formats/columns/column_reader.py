@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Integers
 from inertial.formats.account import Account, RefusedLine
 from inertial.formats.columns import text_reader
-from inertial.formats.columns.column_layout import ticks_per_second
+from inertial.formats.columns.column_layout import ISO_8601, ticks_per_second
 from inertial.formats.columns.data_rows import Reading, Rows
 from inertial.formats.columns.text_lines import CHUNK_BYTES
 from inertial.formats.containers import container
@@ -23,6 +23,8 @@ from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 
 __all__ = ["Reading", "Rows", "read"]
+
+DAY = 86_400 * 10**9  # ns
 
 
 def read(
@@ -41,8 +43,12 @@ def read(
         readings = text_reader.read(path, layout, chunk_bytes)
     else:
         readings = container.read(path, layout, _opening(file_type))
-    wraps_at = (layout.get("time") or {}).get("wraps_at")
-    yield from readings if wraps_at is None else _unwrapped(readings, wraps_at)
+    time = layout.get("time") or {}
+    if (wraps_at := time.get("wraps_at")) is not None:
+        readings = _unwrapped(readings, wraps_at)
+    elif time.get("unit") == ISO_8601:
+        readings = _over_midnight(readings)
+    yield from readings
 
 
 def _unwrapped(readings: Iterable[Reading], wraps_at: int) -> Iterator[Reading]:
@@ -53,6 +59,25 @@ def _unwrapped(readings: Iterable[Reading], wraps_at: int) -> Iterator[Reading]:
             last = np.unwrap(np.append(last, ticks), period=wraps_at)[len(last) :]
             reading = replace(reading, records=replace(reading.records, ticks=last))
             last = last[-1:]
+        yield reading
+
+
+def _over_midnight(readings: Iterable[Reading]) -> Iterator[Reading]:
+    """The same with times of the day, in ns and without a date, that go on over midnight.
+
+    There they go back by nearly a day; what goes back by less than half of one does not go on.
+    """
+    last: Array | Integers = np.zeros(0, np.int64)
+    days = 0  # so far
+    for reading in readings:
+        ticks = reading.records.ticks
+        if ticks is not None and len(ticks):
+            from_last = np.append(last if len(last) else ticks[:1], ticks)
+            alone = ((from_last >= 0) & (from_last < DAY)).all()
+            begun = (np.diff(from_last) < -DAY // 2) & alone
+            since = days + np.cumsum(begun)
+            last, days = ticks[-1:], int(since[-1])
+            reading = replace(reading, records=replace(reading.records, ticks=ticks + DAY * since))
         yield reading
 
 

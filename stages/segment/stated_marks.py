@@ -1,0 +1,203 @@
+"""Marks of a plan that its own turns contradict: where nothing moved between two manoeuvres.
+
+A turn about the vertical takes the mark, which stands still in the room, to another direction in
+the body: turned by −θ about the axis, if θ is its angle. The manoeuvre after it begins where it
+ends, so its mark follows, unless the table moved between the two; that the gyros show.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from inertial.arrays import Array
+from inertial.campaign.records import Manoeuvre
+from inertial.physics.motion import cross, turned
+from inertial.physics.site import EARTH_RATE
+from inertial.signal.plan_detector import MarksOff
+from stages.segment.located import AS_PLANNED, Located
+from stages.segment.steps import OWN_AXIS_SHARE
+
+MIN_OFF = np.radians(5)  # by less a mark may be noted roughly
+MAX_MOVED = np.radians(3)  # about the vertical in a rest: more is a motion of its own
+MAX_TURN_DIFFERENCE = 0.02  # of the planned angle, by which a turn may be another one
+MIN_GAIN = 25.0  # of chi-squared, by which the earth's rate at rest decides between two marks
+
+
+@dataclass(frozen=True, eq=False)
+class _Link:
+    """A manoeuvre of a course: its mark turned back to the start of that, (3,).
+
+    turns : since the start, each an axis and an angle, rad
+    """
+
+    m: Manoeuvre
+    mark: Array
+    turns: Sequence[tuple[Array, float]]
+
+
+@dataclass(frozen=True)
+class _Course:
+    """Manoeuvres one after another between which nothing moved; rests: of all of them.
+
+    Of each rest the mean rate and its sigma, (3,), rad/s, and the turns since the start.
+    """
+
+    links: Sequence[_Link]
+    rests: Sequence[tuple[Array, Array, Sequence[tuple[Array, float]]]]
+
+    @property
+    def marks(self) -> list[tuple[Array, list[_Link]]]:
+        """The marks that are stated, each with who states it: the most first, then the earliest."""
+        groups: list[tuple[Array, list[_Link]]] = []
+        for link in self.links:
+            alike = [own for mark, own in groups if mark @ link.mark > np.cos(MIN_OFF)]
+            if alike:
+                alike[0].append(link)
+            else:
+                groups.append((link.mark, [link]))
+        return sorted(groups, key=lambda group: -len(group[1]))
+
+    def misfit(self, mark: Array, heading: float, level: float) -> float:
+        """Chi-squared of what the gyros read at rest, with a bias of their own; rad, rad/s."""
+        up = self.links[0].m.up
+        assert up is not None
+        north = np.cos(heading) * mark + np.sin(heading) * cross(up, mark)
+        left = np.array([rate - level * _forward(north, by) for rate, _sigma, by in self.rests])
+        weights = 1 / np.array([sigma for _rate, sigma, _by in self.rests]) ** 2
+        known = np.isfinite(left) & np.isfinite(weights)
+        left, weights = np.where(known, left, 0.0), np.where(known, weights, 0.0)
+        total = weights.sum(axis=0)
+        bias = np.divide((weights * left).sum(axis=0), total, where=total > 0, out=np.zeros(3))
+        return float((weights * (left - bias) ** 2).sum())
+
+
+def marks_off(
+    located: Sequence[Located],
+    plan: Sequence[Manoeuvre],
+    heading: float | None,
+    earth_rate: float,
+) -> tuple[MarksOff | None, Mapping[str, Array]]:
+    """The marks that turns contradict, and by manoeuvre those that follow, (3,); none: None.
+
+    Where the heading is known, the earth's rate at the rests decides which of the marks are right;
+    else the most of each course do. `MarksOff.undecided` where neither does.
+
+    Parameters
+    ----------
+    heading : rad, azimuth of the zero mark; earth_rate : rad/s, its part upwards
+    """
+    stated = {m.name: m for m in plan}
+    courses = [course for one in located for course in _courses(one, stated)]
+    courses = [course for course in courses if len(course.marks) > 1]
+    if not courses:
+        return None, {}
+    gain = 0.0  # of chi-squared, by the marks of the most
+    if heading is not None and earth_rate:
+        level = float(np.sqrt(EARTH_RATE**2 - earth_rate**2))
+        for course in courses:
+            first, second = (course.misfit(mark, heading, level) for mark, _ in course.marks[:2])
+            gain += second - first
+    majority = all(len(c.marks[0][1]) > len(c.marks[1][1]) for c in courses)
+    decided = abs(gain) > MIN_GAIN
+    best = 1 if decided and gain < 0 else 0
+    follow: dict[str, Array] = {}
+    pairs: list[tuple[str, str]] = []
+    for course in courses:
+        mark, right = course.marks[best]
+        for k, link in enumerate(course.links):
+            if link not in right:
+                follow[link.m.name] = _forward(mark, link.turns)
+                beside = [n for n, one in enumerate(course.links) if one in right]
+                near = min(beside, key=lambda n: (abs(n - k), n))
+                pairs.append((course.links[near].m.name, link.m.name))
+    off = max(_between(m.mark, follow[m.name]) for m in plan if m.name in follow)
+    undecided = not (decided or majority)
+    return MarksOff(list(follow), pairs[0], off, decided, undecided), follow
+
+
+def with_marks(plan: Sequence[Manoeuvre], marks: Mapping[str, Array]) -> list[Manoeuvre]:
+    """The plan with the marks, by manoeuvre, that its turns leave."""
+    return [replace(m, mark=marks[m.name]) if m.name in marks else m for m in plan]
+
+
+def _between(mark: Array | None, other: Array) -> float:
+    assert mark is not None
+    return float(np.arccos(np.clip(mark @ other, -1.0, 1.0)))
+
+
+def _forward(direction: Array, turns: Sequence[tuple[Array, float]]) -> Array:
+    """A direction of the room in body axes after some turns."""
+    for about, angle in turns:
+        direction = turned(direction, about, angle)
+    return direction
+
+
+def _courses(located: Located, stated: Mapping[str, Manoeuvre]) -> Iterator[_Course]:
+    """The courses of a window, where all in it is by the axes as they are named."""
+    if located.axes != AS_PLANNED:
+        return
+    found = [
+        (place, stated[m.name]) for m in located.plan if (place := located.place(m)) is not None
+    ]
+    course: list[tuple[int, Manoeuvre]] = []
+    for one in sorted(found, key=lambda each: each[0]):
+        if course and not _joined(located, course[-1], one):
+            yield _course(located, course)
+            course = []
+        course = [*course, one] if _is_marked(one[1]) else []
+    if course:
+        yield _course(located, course)
+
+
+def _is_marked(m: Manoeuvre) -> bool:
+    """Whether up and mark are known of a rest, or of a turn by an angle about the vertical."""
+    if m.up is None or m.mark is None or m.do not in ("rest", "turn"):
+        return False
+    whole = m.recorded == "whole" and bool(m.angle)
+    return m.do == "rest" or (whole and abs(float(m.axis @ m.up)) > OWN_AXIS_SHARE)
+
+
+def _joined(located: Located, one: tuple[int, Manoeuvre], other: tuple[int, Manoeuvre]) -> bool:
+    """Whether nothing moved from the end of a manoeuvre to the beginning of another."""
+    (place, m), (after, behind) = one, other
+    still = range(place + (m.do == "turn"), after + (behind.do == "rest"))
+    if len(still) != 1 or not _is_marked(behind) or m.mount != behind.mount:
+        return False
+    seen = located.observed[still[0]]
+    up, next_up = m.up, behind.up
+    assert up is not None and next_up is not None  # both are marked
+    moved = float(np.nan_to_num(seen.turned) @ up)
+    as_planned = m.do == "rest" or abs(located.ratio(m, m) - 1) < MAX_TURN_DIFFERENCE
+    same_up = up @ next_up > np.cos(MIN_OFF)
+    quiet = not seen.moves and abs(moved) < MAX_MOVED
+    return bool(quiet and as_planned and same_up)
+
+
+def _course(located: Located, course: Sequence[tuple[int, Manoeuvre]]) -> _Course:
+    links, turns = list[_Link](), list[tuple[Array, float]]()
+    rests: dict[int, Sequence[tuple[Array, float]]] = {}
+    for place, m in course:
+        mark = _level(m)
+        for about, angle in reversed(turns):
+            mark = turned(mark, about, -angle)
+        links.append(_Link(m, mark, list(turns)))
+        if m.do == "rest":
+            rests[place] = list(turns)
+            continue
+        rests[place - 1] = list(turns)
+        turns.append((m.axis, m.angle or 0.0))
+        rests[place + 1] = list(turns)
+    seen = [
+        (located.observed[place], by)
+        for place, by in sorted(rests.items())
+        if 0 <= place < len(located.observed) and not located.observed[place].moves
+    ]
+    return _Course(links, [(one.rate, one.unsure, by) for one, by in seen])
+
+
+def _level(m: Manoeuvre) -> Array:
+    """The horizontal direction of a mark, (3,), unit vector."""
+    assert m.up is not None and m.mark is not None
+    mark = m.mark - m.up * (m.up @ m.mark)
+    return np.asarray(mark / np.linalg.norm(mark))

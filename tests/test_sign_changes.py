@@ -1,0 +1,77 @@
+"""A gyro whose sign changes in the course of a campaign is not set right where it was right."""
+
+from typing import Any
+
+import chain
+import pytest
+from test_repairs import flip, in_one_log
+
+BIAS = 1.1e-4  # rad/s, 23 °/h, of the y gyro: against 10.6 °/h of the earth's rate across
+TURNS = ("y-forward", "y-backward", "y-down-forward", "y-down-backward")
+
+
+def fourteen_logs() -> dict[str, Any]:
+    """The short campaign with turns about −y too: no two logs exchanged explain four turns."""
+    document = chain.short()
+    document["truth"]["gyro"]["bias_rad_s"][1] = BIAS
+    plan = document["campaign"]["plan"]
+    for m in [m for m in plan if m["id"] in TURNS]:
+        name = m["id"].replace("y-", "y-down-")
+        plan.append({**m, "id": name, "up": "-y", "log": f"{name}.asc"})
+    return document
+
+
+def recorded(first: str, until: str) -> chain.Results:
+    """The short campaign, the y gyro reversed from one manoeuvre on, each in a log of its own."""
+    document = fourteen_logs()
+    names = [m["id"] for m in document["campaign"]["plan"]]
+    document["faults"] = [flip("gyro", "y", f"{name}.asc") for name in names[names.index(first) :]]
+    return chain.in_memory_of(document, until)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", ["y-down", "x-forward"])
+def test_only_the_logs_are_set_right_in_which_a_gyro_is_reversed(first):
+    results = recorded(first, "gyroscope")
+    names = list(results["segment/manoeuvres"]["manoeuvre"])
+    reversed_in = {f"{name}.asc" for name in names[names.index(first) :]}
+    channels = results["segment/channel_repairs"]
+    assert set(channels["log"]) == reversed_in
+    (repair,) = results["segment/repairs"].to_dict("records")
+    assert (repair["id"], repair["state"]) == ("signs/gyro", "applied")
+    assert f"from {first} on" in repair["sentence"]
+    (finding,) = results["segment/findings"].to_dict("records")
+    assert (finding["cause"], finding["axis"]) == ("sign_flip", "y")
+    before = names[names.index(first) - 1]
+    assert f"between {before} and {first}" in finding["sentence"]
+    assert ", ".join(TURNS) in finding["sentence"]
+    value = results.parameters("gyroscope").loc["bias_y"]
+    assert abs(value["value"] - BIAS) < 4 * value["sigma"]
+
+
+@pytest.mark.slow
+def test_a_gyro_that_is_reversed_all_along_is_so_in_all_logs_whatever_its_bias():
+    results = recorded("x-up", "gyroscope")
+    (finding,) = results["segment/findings"].to_dict("records")
+    assert "in all logs" in finding["sentence"]
+    assert len(set(results["segment/channel_repairs"]["log"])) == 14
+    value = results.parameters("gyroscope").loc["bias_y"]
+    assert abs(value["value"] - BIAS) < 4 * value["sigma"]
+
+
+@pytest.mark.slow
+def test_nothing_is_set_right_where_a_gyro_changes_its_sign_within_a_log():
+    document = fourteen_logs()
+    in_one_log(document)
+    # So much noise that no two records show the change by themselves.
+    document["noise"]["angle_random_walk_deg_sqrt_h"] = 0.15
+    segments = chain.in_memory_of(document, "segment")["segment/segments"].set_index("manoeuvre")
+    # At rest, for in motion a single record shows it, and before what is used of the rest.
+    line = int(segments.loc["z-up", "from_record"]) - 20
+    document["faults"] = [{"flip": {**flip("gyro", "y", "session.asc")["flip"], "line": line}}]
+    results = chain.in_memory_of(document, "segment")
+    assert len(results["segment/channel_repairs"]) == 0 == len(results["segment/repairs"])
+    found = results["segment/findings"]
+    (finding,) = found[found["cause"] == "sign_flip"].to_dict("records")
+    assert "changes between y-down and z-up" in finding["sentence"]
+    assert "Nothing is set right" in finding["action"]
