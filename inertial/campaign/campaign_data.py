@@ -192,7 +192,7 @@ def campaigns_of(campaign_tables: CampaignTables) -> list[CampaignData]:
     shared = shared and _time_goes_on(tables.blocks)
     result, whole = [], manoeuvres_of(tables.manoeuvres)
     blocks = _since_first_sample(tables.blocks, clocks)
-    switched_on = switch_on_times(whole, clocks, blocks)
+    switched_on = switch_on_times(whole, clocks, blocks) if shared else {}
     for mount, plan in by_mount(whole):
         data = CampaignData(
             plan,

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 
-from inertial.campaign.explanations import JUMPS, explains, rank
+from inertial.campaign.explanations import JUMPS, RESTARTS, explains, rank
 from inertial.campaign.hypotheses import MAX_CARRYING, MODEL, Hypothesis
 from inertial.campaign.records import Row
 
@@ -50,7 +50,9 @@ def compete(hypotheses: Sequence[Hypothesis]) -> Iterator[ExplainedFindings]:
 
 def _of_all_sensors(root: Hypothesis, own: Sequence[Hypothesis]) -> Hypothesis:
     """A cause that changes the biases of both sensors at once concerns both."""
-    others = [one for one in own if {root.cause, one.cause} == JUMPS and one is not root]
+    others = [
+        one for one in own if {root.cause, one.cause} in (JUMPS, RESTARTS) and one is not root
+    ]
     if not others:
         return root
     members = (root.cause, *(one.cause for one in others))

@@ -54,7 +54,8 @@ EffectKeys = tuple[EffectKey, ...]
 def _prior_sigmas(effects: Sequence[Effect], prior_sigma: float) -> dict[str, float]:
     """Prior sigmas of the parameters of effects, by column; `prior_sigma`: in typical sizes."""
     return {
-        f"{effect.label}.{parameter.name}": prior_sigma * parameter.typical
+        f"{effect.label}.{parameter.name}": effect.prior_sigma(parameter)
+        or prior_sigma * parameter.typical
         for effect in effects
         for parameter in effect.parameters
     }

@@ -172,6 +172,7 @@ def motion_of(
         senses=unknown,
         tumbled=np.zeros((n, 3)),
         square=rate**2,
+        log_time=np.full(n, np.nan),
     )
 
 

@@ -69,6 +69,16 @@ def same_time(cause: Hypothesis, other: Hypothesis) -> bool:
     return apart < MAX_APART_SIGMAS * hypot(cause.time[1], other.time[1])
 
 
+def at_the_gaps(cause: Hypothesis, gaps: Hypothesis) -> bool:
+    """At all gaps of a log, none of which cuts a manoeuvre; of a jump: at the only one."""
+    if not cause.named or gaps.manoeuvres:
+        return False
+    if cause.cause in RESTARTS:
+        return bool(gaps.row["count"] == cause.row["count"])
+    vague = cause.time is not None and cause.time[1] > MAX_VAGUE_S
+    return gaps.row["count"] == 1 and not vague and same_time(cause, gaps)
+
+
 def by_single_readings(cause: Hypothesis, other: Hypothesis) -> bool:
     """In a manoeuvre, of whose turn readings here and there lack little."""
     whole = other.cause in ("incomplete_turn", "wrong_angle") and _size(other) > MAX_OF_READINGS
@@ -173,6 +183,7 @@ POSITION_OFF = ("table_position_error", "table_axis_error")
 MAX_TILT_S = 4.0  # s: what turns for longer in a rest creeps
 MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
 JUMPS = frozenset({"gyro_bias_jump", "accel_bias_jump"})
+RESTARTS = frozenset({"gyro_restarts", "accel_restarts"})
 MAX_APART_SIGMAS = 3.0  # of two times of one event
 MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with any other
 MAX_ANGLE_RATIO = 2.0  # of one rotation as two stages have it: a rest shows two components of three
@@ -192,13 +203,7 @@ class Explanation:
 EXPLANATIONS = (
     # Readings that are no readings of this motion: the manoeuvre looks other than planned.
     Explanation(
-        (
-            "saturation",
-            "impact",
-            *LOST_RECORDS,
-            "status_invalid",
-            "clock_step",
-        ),
+        ("saturation", "impact", *LOST_RECORDS, "status_invalid", "clock_step"),
         PERFORMANCE,
         same_manoeuvre,
     ),
@@ -220,6 +225,8 @@ EXPLANATIONS = (
         same_sensor,
     ),
     Explanation(("copied_log",), (*PERFORMANCE, *OF_TRIADS, "gap", "time_backwards"), same_log),
+    # Where the IMU was switched off and on, nothing is recorded meanwhile.
+    Explanation(tuple(JUMPS | RESTARTS), ("gap",), at_the_gaps),
     # Axes, signs, units: they change everything that their sensor reads.
     Explanation(
         ("axis_swap", "sign_flip", "wrong_scale_factor", "wrong_imu_type", "wrong_direction"),
@@ -318,6 +325,8 @@ def is_same_event(cause: Hypothesis, other: Hypothesis) -> bool:
     A shift of the IMU in its fixture stands for the rest in which it
     tilts; of two sensors the one whose time is known better stands for both.
     """
+    if {cause.cause, other.cause} == RESTARTS and cause.named and other.named:
+        return cause.id < other.id
     if not same_time(cause, other) or not cause.named:
         return False
     if cause.cause in MOUNTINGS and other.cause == TABLE_MOVING:

@@ -218,12 +218,13 @@ class CampaignMotions:
         runs = runs_of(dict.fromkeys(m.log for m in data.plan), data.clocks, data.shared_clock)
         self._runs = {m.name: float(runs[m.log]) for m in data.plan}
         self._switched_on = {m.name: data.switched_on.get(m.switch_on, 0.0) for m in data.plan}
+        self._switches_per_log = not data.shared_clock and _switches_per_log(data.plan)
         self._at_rest: dict[tuple[str, float], Motion] = {}
 
     def at_rest(self, position: StaticPosition) -> Motion:
         """A static position as one stretch."""
-        name, time = position.manoeuvre.name, position.mean_of(position.time)
-        time = time if self._data.shared_clock else np.nan
+        name, log_time = position.manoeuvre.name, position.mean_of(position.time)
+        time = log_time if self._data.shared_clock else np.nan
         later = AFTER if position.part.phase == "rest-after" else 0.0
         place = (name, position.angle)  # all pieces of a position have one attitude
         if place not in self._at_rest:
@@ -232,6 +233,7 @@ class CampaignMotions:
         return replace(
             self._at_rest[place],
             time=np.array([time]),
+            log_time=np.array([log_time if self._switches_per_log else np.nan]),
             seconds=np.array([position.seconds.sum()]),
             switched_on=np.array([self._switched_on[name]]),
             visit=np.array([self._visits[name] + later]),
@@ -269,6 +271,7 @@ class CampaignMotions:
         peaks, senses = self._on_the_way(name, len(time))
         return replace(
             motion,
+            log_time=blocks.time if self._switches_per_log else np.full(len(time), np.nan),
             switched_on=np.full(len(time), self._switched_on[name]),
             visit=np.full(len(time), self._visits[name] + MOVING),
             position=np.full(len(time), self._places[name]),
@@ -285,6 +288,12 @@ class CampaignMotions:
         both = (unknown, unknown) if done is None else (done.peaks, done.senses)
         peaks, senses = (np.tile(each, (count, 1)) for each in both)
         return peaks, senses
+
+
+def _switches_per_log(plan: Sequence[Manoeuvre]) -> bool:
+    """Whether every log after the first begins with a stated switch-on, and has no other."""
+    parts = {(m.log, m.switch_on) for m in plan}
+    return len(parts) == len({log for log, _ in parts}) == len({on for _, on in parts})
 
 
 def positions_of(plan: Sequence[Manoeuvre]) -> list[str]:

@@ -51,6 +51,7 @@ from inertial.effects.lever_arm import LeverArm
 from inertial.effects.mounting_shift import MountingShift
 from inertial.effects.mounting_slip import MountingSlip
 from inertial.effects.oscillation import Oscillation
+from inertial.effects.restarts import Restarts
 from inertial.effects.size_effect import SizeEffect
 from inertial.effects.table_angle_scale import TableAngleScale
 from inertial.effects.table_axis_error import TableAxisError
@@ -142,11 +143,16 @@ TEMPERATURE_MODELS: dict[str, TemperatureModel] = {
 OF_TEMPERATURE_CYCLES: dict[str, Effect] = {
     effect.name: effect for effect in (ThermalHysteresis("gyro"), ThermalHysteresis("accel"))
 }
+# Searched beside the catalogue where the recording has several gaps.
+AT_GAPS: dict[str, Effect] = {
+    effect.name: effect for effect in (Restarts("gyro"), Restarts("accel"))
+}
 # Searched only where no effect of the catalogue explains what remains.
 LAWS: dict[str, Law] = every_law()
 KNOWN: dict[str, Effect] = {
     **CATALOGUE,
     **TEMPERATURE_MODELS,
     **OF_TEMPERATURE_CYCLES,
+    **AT_GAPS,
     **LAWS,
 }

@@ -78,9 +78,10 @@ class Ramp(Drift):
 class WarmUp(Drift):
     """Reading += b exp(−t/τ), with t since the first sample or the last switch-on; τ is scanned.
 
-    Told from an even drift by slowing down. Only logs with a common clock show it. Switched on
-    earlier by T, the amplitude at the first sample is exp(−T/τ) of the whole. After each stated
-    switch-on it is the same again, as of an instrument that has cooled down between.
+    Told from an even drift by slowing down. Only logs with a common clock show it, or logs that
+    each begin with a switch-on. Switched on earlier by T, the amplitude at the first sample is
+    exp(−T/τ) of the whole. After each stated switch-on it is the same again, as of an instrument
+    that has cooled down between.
 
     `switched_on`: when it was switched on again, s since the first sample, where the motion does
     not have it.
@@ -92,14 +93,18 @@ class WarmUp(Drift):
     source = "IEEE Std 528-2019, 'warm-up time'"
     scan = Scan("tau", "s", _("time constant of the settling"), smooth=True)
 
+    def blind(self, motion: Motion) -> str:
+        return "" if np.isfinite(motion.running).all() else NO_CLOCK
+
     def grid(self, motion: Motion) -> Array:
         return np.geomspace(*SETTLING_TIMES, SETTLING_CANDIDATES)
 
     def course(self, motion: Motion) -> Array:
-        on, at = motion.switched_on, np.array([0.0, *self.switched_on])
+        running, at = motion.running, np.array([0.0, *self.switched_on])
         if self.switched_on:
             on = at[np.clip(np.searchsorted(at, motion.time, side="right") - 1, 0, None)]
-        return decayed(motion.time - on, motion.seconds, self.value(motion))
+            running = motion.time - on
+        return decayed(running, motion.seconds, self.value(motion))
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
         again = self.switched_on or np.unique(motion.switched_on[motion.switched_on > 0])

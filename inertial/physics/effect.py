@@ -279,6 +279,10 @@ class Effect(ABC):
         """The largest size of a parameter that is considered, in its unit."""
         return self.largest
 
+    def prior_sigma(self, parameter: Parameter) -> float | None:
+        """What is known beforehand of the size of a parameter, in its unit; none: nothing."""
+        return None
+
     @property
     def label(self) -> str:
         """Its name, and the value of the nonlinear parameter where it has one."""

@@ -127,7 +127,8 @@ class Motion:
     manoeuvre; `senses`: (n, 3), ±1, in which it last turned about each axis on that way. These four
     are NaN where they are not known. `tumbled`: (n, 3), rad, the angle through which a tumble has
     turned the table to the position since its start, along its axis; else 0. `square`: (n,),
-    rad²/s², the mean of the squared rate.
+    rad²/s², the mean of the squared rate. `log_time`: (n,), s since the first sample of its log
+    where each log begins with a switch-on, NaN where that is not so.
     """
 
     time: Array
@@ -149,6 +150,12 @@ class Motion:
     senses: Array
     tumbled: Array
     square: Array
+    log_time: Array
+
+    @property
+    def running(self) -> Array:
+        """Time since the last switch-on, or since the first sample, (n,), s; NaN if not known."""
+        return np.where(np.isfinite(self.time), self.time - self.switched_on, self.log_time)
 
     @property
     def omega(self) -> Array:
@@ -234,6 +241,7 @@ def turning(
         *(np.full((n, 3), np.nan),) * 3,
         np.zeros((n, 3)),
         rate**2 + (acceleration * seconds) ** 2 / 12,  # as constant as the acceleration is
+        np.full(n, np.nan),
     )
 
 
@@ -253,6 +261,7 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         *(unknown, unknown, unknown),
         np.zeros((n, 3)),
         zero,
+        np.full(n, np.nan),
     )
 
 

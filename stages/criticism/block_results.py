@@ -7,7 +7,8 @@ import numpy as np
 from inertial.campaign.effect_evidence import Moved, most_moved
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
-from inertial.effects import KNOWN, LAWS, TEMPERATURE_MODELS
+from inertial.effects import AT_GAPS, KNOWN, LAWS, TEMPERATURE_MODELS
+from inertial.effects.restarts import Restarts
 from inertial.estimation.effect_information import whitening
 from inertial.model_selection.cause import (
     FOUND,
@@ -33,6 +34,7 @@ from stages.criticism.jump_not_testable import jumps_not_testable
 from stages.criticism.laws import WithoutLaw, law_action
 from stages.criticism.one_manoeuvre import carrier_of_excess
 from stages.criticism.residual_structure import ACTION_IF_CARRIED, moved_by
+from stages.criticism.restarts import first_after
 from stages.criticism.selection import Selection
 from stages.criticism.shared_asymmetry import ASYMMETRY, shared_asymmetry
 
@@ -173,6 +175,9 @@ class BlockResults:
             return sentences.ACTION_WITHOUT_LAW
         if cause.effect in LAWS:
             return law_action(cause.effect, self.mount)
+        if isinstance(effect := self.selection.families.get(cause.effect, (None,))[0], Restarts):
+            manoeuvres = first_after(self.campaign, effect.times)
+            return sentences.action_against_restarts(manoeuvres)
         if cause.effect == "latitude_error":
             known = np.arcsin(self.campaign.solution.site.earth_up / EARTH_RATE)
             return sentences.action_against_latitude(known + (parameters[0].value or 0.0))
@@ -193,6 +198,10 @@ class BlockResults:
             sentence = sentences.per_log_sentence(cause, difference, sigma, UNITS[sensor])
             covered = self.campaign.by_hand is not None and not self._long_runs()
             size = (cause.snr, "sigma") if covered else (difference, UNITS[sensor])
+        elif isinstance(effect, Restarts):
+            numbers = (*self._between_runs(cause), UNITS[sensor])
+            sentence = sentences.restarts_sentence(cause, sensor, effect.times, *numbers)
+            size = numbers[0], UNITS[sensor]
         else:
             sentence = sentences.cause_sentence(cause, effect, parameters, self._places(effect))
             size = cause.snr, "sigma"
@@ -203,7 +212,7 @@ class BlockResults:
                 "mount": self.mount,
                 "cause": cause.effect,
                 "sensor": sensor,
-                "count": 1,
+                "count": len(effect.times) if isinstance(effect, Restarts) else 1,
                 "size": size[0],
                 "unit": size[1],
                 "p_value": cause.p_value,
@@ -330,7 +339,7 @@ class BlockResults:
             scan = effect.scan
             sigma = self.selection.scan_sigma(self.causes[effect.name]) if scan.between else None
             parameters.append(Estimated(scan.name, scan.unit, scan.meaning, effect.at, sigma))
-        elif effect.name in TEMPERATURE_MODELS or effect.name in LAWS:
+        elif effect.name in {**TEMPERATURE_MODELS, **AT_GAPS, **LAWS}:
             parameters += [
                 Estimated(one.name, one.unit, one.meaning, one.value)
                 for one in effect.constants(self.campaign.motion)

@@ -17,6 +17,7 @@ from inertial.model_selection.detection_limits import (
 from inertial.physics.effect import Effect
 from inertial.physics.setting_in import Jump
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, p_is, plus_minus, significant
 from inertial.text.parameters import sign_of
@@ -51,6 +52,12 @@ ACTION_OF_JUMP = _(
     "manoeuvre after it; else find what changed then. Later readings have the value before the "
     "jump and the jump together, which the export holds where the result includes them."
 )
+ACTION_OF_RESTARTS = _(
+    "If the IMU was switched off and on at these gaps, state power_cycle: true in {manoeuvres}: "
+    "then the report says how well the biases repeat. Else find what changed there. Later readings "
+    "have the value before a gap and what is added at it together, which the export holds where "
+    "the result includes them."
+)
 ACTION_OF_LATITUDE = _(
     "By the gyros the table stands at {latitude}°: correct latitude_deg, from which the earth's "
     "rate and normal gravity follow; or heading_deg, if that is uncertain."
@@ -73,6 +80,16 @@ PER_LOG = {
     ),
     "accel_bias_per_log": _(
         "The biases of the accelerometers differ from run to run, by up to {size}.{others}"
+    ),
+}
+RESTARTS = {
+    "gyro": _(
+        "The biases of the gyros are others after gaps of the recording, at {times} s, by up to "
+        "{size}: there the IMU was probably switched off and on.{others}"
+    ),
+    "accel": _(
+        "The biases of the accelerometers are others after gaps of the recording, at {times} s, by "
+        "up to {size}: there the IMU was probably switched off and on.{others}"
     ),
 }
 DRIFT = _("The biases drift in a way that no effect of the catalogue explains{nearest}.")
@@ -102,12 +119,30 @@ SPLIT_TOO_WEAK = _(
 
 def per_log_sentence(cause: Cause, difference: float, sigma: float, si: str) -> str:
     """Of biases that differ from run to run; `difference`: the largest, in its SI unit `si`."""
-    others = _others(cause)
-    unit = quantity("bias", si).laboratory
     return PER_LOG[cause.effect].format(
-        size=f"{plus_minus(unit.of(difference), unit.of(sigma))} {unit.name}",
-        others=_(" Or it is {others}.", others=_(" or ").join(others)) if others else "",
+        size=_difference(difference, sigma, si), others=_or_others(cause)
     )
+
+
+def restarts_sentence(
+    cause: Cause, sensor: str, times: Sequence[float], difference: float, sigma: float, si: str
+) -> str:
+    """Of biases that differ after gaps at some times, s; `difference`: as in `per_log_sentence`."""
+    return RESTARTS[sensor].format(
+        times=listed([fixed(time, 1) for time in times]),
+        size=_difference(difference, sigma, si),
+        others=_or_others(cause),
+    )
+
+
+def _difference(difference: float, sigma: float, si: str) -> str:
+    unit = quantity("bias", si).laboratory
+    return f"{plus_minus(unit.of(difference), unit.of(sigma))} {unit.name}"
+
+
+def _or_others(cause: Cause) -> str:
+    others = _others(cause)
+    return _(" Or it is {others}.", others=_(" or ").join(others)) if others else ""
 
 
 def cause_sentence(
@@ -174,6 +209,11 @@ def action_against(effect: Effect | None, *, timed: bool = True) -> str:
     if effect.terms:
         return ACTION
     return ACTION_WITHOUT_TERMS.format(stays=effect.stays)
+
+
+def action_against_restarts(manoeuvres: Sequence[str]) -> str:
+    """What to do where biases change at gaps; `manoeuvres`: the first after each."""
+    return ACTION_OF_RESTARTS.format(manoeuvres=listed(manoeuvres))
 
 
 def action_against_latitude(latitude: float) -> str:

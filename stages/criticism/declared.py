@@ -7,6 +7,7 @@ from inertial.tables.declared import Declared, From
 DECLARED = Declared(
     reads={
         "simulated": From("simulation", tables.SIMULATED),
+        "gaps": From("quality", tables.GAPS),
         **RECORDED,
         **FITTED,
     },

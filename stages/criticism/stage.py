@@ -32,6 +32,7 @@ from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations
 from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
+from stages.criticism.restarts import restarts_of
 from stages.criticism.selection import Selection, pooled_evidence_rows
 from stages.criticism.set_position_scatter import select_beside_scatter
 from stages.criticism.step_results import step_rows
@@ -47,6 +48,7 @@ SPECTRUM_SHARE, TEMPERATURE_SHARE = 0.1, 0.1
 def criticism(
     mounts: Sequence[CampaignData],
     simulated: Stream,
+    gaps: pd.DataFrame,
     *,
     level: float,
     lowest_hz: float,
@@ -57,7 +59,7 @@ def criticism(
     """
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
-        for table, row in _of_mount(data, simulated, level, lowest_hz):
+        for table, row in _of_mount(data, simulated, gaps, level, lowest_hz):
             rows[table].append(row)
     return {
         name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
@@ -68,7 +70,7 @@ def criticism(
 
 
 def _of_mount(
-    data: CampaignData, simulated: Stream, level: float, lowest_hz: float
+    data: CampaignData, simulated: Stream, gaps: pd.DataFrame, level: float, lowest_hz: float
 ) -> Iterator[TableRow]:
     """Oscillations are removed first: in block means they would be taken for other effects."""
     mount, degrees = data.mount, data.noise.degrees
@@ -79,6 +81,7 @@ def _of_mount(
     quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
     measured = campaign_of(replace(data, blocks=quiet))
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
+    in_blocks += restarts_of(measured, gaps, data.clocks)
     levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
 
     def selected(campaign: Campaign) -> tuple[Selection, Tested]:

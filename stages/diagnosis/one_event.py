@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
-from inertial.campaign.explanations import JUMPS
+from inertial.campaign.explanations import JUMPS, RESTARTS
 from inertial.campaign.hypotheses import MOUNTINGS, STEP_IN_TURN, TABLE_MOVING, Hypothesis
 from inertial.campaign.records import Row, clocks_of, rows_of
 from inertial.sensors import PLURAL
@@ -45,8 +45,10 @@ def with_consequences(row: Row, cause: Cause, sentences: Mapping[str, str]) -> R
 def _same_event(cause: Cause) -> Iterator[Hypothesis]:
     for member in cause.members:
         for each in member.consequences:
-            alike = {each.cause, cause.main.cause} == JUMPS
+            alike = {each.cause, cause.main.cause} in (JUMPS, RESTARTS)
             moved = cause.main.cause in MOUNTINGS and each.cause == TABLE_MOVING
+            gap = each.cause == "gap" and cause.main.cause in JUMPS | RESTARTS
+            alike = alike or gap
             if each.id != cause.main.id and (alike or moved or each.cause == STEP_IN_TURN):
                 yield each
 

@@ -8,6 +8,7 @@ from inertial.campaign.effect_sizes import sizes_of_result
 from inertial.campaign.hypotheses import Findings
 from inertial.campaign.records import Row, rows_of
 from inertial.effects import KNOWN, TEMPERATURE_MODELS
+from inertial.effects.restarts import Restarts
 from inertial.text.parameters import AXES
 from stages.diagnosis.causes import Size
 from stages.diagnosis.sensor_results import SensorResult
@@ -74,6 +75,8 @@ def sizes(effects: Iterable[Row]) -> dict[str, Size]:
     for row in effects:
         effect = KNOWN.get(row["effect"])
         scanned = effect is not None and effect.scan is not None and effect.scan.name
+        if isinstance(effect, Restarts):  # by how much runs differ, of which each is but one
+            continue
         if row["finding"] and row["sigma"] and row["parameter"] not in (scanned, *PLACES):
             by_finding.setdefault(row["finding"], []).append(row)
     return {finding: _size(rows) for finding, rows in by_finding.items()}

@@ -129,7 +129,8 @@ def solved(
         for parameter in effect.parameters:
             label = f"{effect.label}.{parameter.name}"
             place = system.column("effect", label)
-            if place is not None and (estimate.determined[place] or label in candidate.absorbed):
+            known = label in candidate.absorbed or effect.prior_sigma(parameter)
+            if place is not None and (estimate.determined[place] or known):
                 places.append(place)
                 effects.append(effect.name)
                 name = f"{effect.name}.{parameter.name}"

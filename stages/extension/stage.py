@@ -46,6 +46,7 @@ from stages.extension.models import (
 )
 from stages.extension.named_effects import NamedEffects, combinations_of, compared, named_of
 from stages.extension.navigation_error import change_of, worth
+from stages.extension.restarts import with_spreads
 from stages.extension.scanned_values import over_moments, with_scanned_values
 from stages.extension.temperature_shapes import with_shapes
 from stages.extension.warm_up import warm_up_rows
@@ -176,7 +177,8 @@ class Extension:
 
     def _of_blocks(self) -> Iterator[tuple[str, Any]]:
         campaign = self._campaign()
-        classes = compared(campaign.with_random_walks(self.random_walks), self.named.classes)
+        walking = campaign.with_random_walks(self.random_walks)
+        classes = compared(walking, with_spreads(walking, self.named.classes))
         combinations = combinations_of(classes)
         every = {e.label: e for c in combinations for e in c.effects if e.sought_in == "blocks"}
         models = models_of(campaign, list(every.values()), self.random_walks)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from typing import cast
 
+import chain
 import numpy as np
 import pytest
 
@@ -64,3 +65,30 @@ def test_a_chamber_that_cools_is_no_warm_up():
     effect = CATALOGUE["accel_warm_up"].fixed(CONSTANT)
     cooling = replace(motion(), temperature=np.linspace(320, 300, len(motion().time)))
     assert not list(warm_up_rows(solved(), [effect], cooling, BAND))
+
+
+@pytest.mark.slow
+def test_a_warm_up_after_each_switch_on_is_found_in_logs_that_share_no_clock(tmp_path):
+    """A day apart, each from its switch-on: once it was a jump, and a g-sensitivity."""
+    hidden = {"gyro_warm_up": {"start_deg_h": [9, 0, -6], "time_constant_s": 60}}
+    hidden["turn_on_bias"] = {"gyro_deg_h": 4, "accelerometer_micro_g": 100}
+    document = chain.short(effects=hidden, seed=78)
+    document["start"]["pause_s"] = 86_400.0
+    document["receiver"] |= {"message": "columns", "line_end": "lf"}
+    document["campaign"]["instrument"] = {"name": "made up", "rate_hz": 100}
+    document["handling"] |= {"still_s": 5, "change_s": 10}
+    plan = document["campaign"]["plan"]
+    plan = [one for pair in zip(plan[:6], plan[6:], strict=True) for one in pair]  # rest, turn, …
+    document["campaign"]["plan"] = plan
+    for number, each in enumerate(plan):
+        each |= {"log": f"part-{number // 6}.csv", "power_cycle": number == 6}
+    raw = chain.simulate(document, tmp_path / "raw")
+    made = chain.run(raw, tmp_path / "derived", "compensation", chain.BESIDE)
+    assert made["diagnosis/causes"]["cause"].tolist() == ["gyro_warm_up"]
+    assert set(made["diagnosis/verdict"]["verdict"]) == {"usable_within_limits", "usable"}
+    result = made["diagnosis/result"].set_index("parameter")
+    for axis, true in zip("xyz", np.radians([9, 0, -6]) / 3600, strict=True):
+        found = result.loc[f"gyro_warm_up.b_{axis}"]
+        assert found["value"] == pytest.approx(true, abs=4 * found["sigma"])
+    assert result.loc["gyro_warm_up.tau", "value"] == pytest.approx(60, rel=0.3)
+    assert "gyro_warm_up.on_1" not in result.index  # time counts anew in each log
