@@ -5,8 +5,9 @@ python -m commands.check --campaign demo
 It reads the findings of all stages up to criticism, which parameters are determined, and the
 verdict of the diagnosis, all of which `make check` lets the workflow make first; criticism and
 diagnosis only where they are there. It states what gets no result,
-and each cause with what follows from it. It ends with 0 where nothing spoils a result, with 1 where
-something does or a sensor gets none, and with 2 where the tables are missing.
+and each cause with what follows from it. It ends with 0 where each sensor gets a result, if on a
+condition, whether that is a repair or something assumed; with 1 where something spoils a result or
+a sensor gets none, and with 2 where the tables are missing.
 """
 
 import argparse
@@ -165,10 +166,11 @@ LINE_WIDTH = 100
 MAX_FULL_CAUSES = 20  # of further ones only the names are listed
 WITHOUT_IT = (MASKED, INTERPOLATED, LEFT_OUT)  # cures
 SPOILING, WEAKENING, HARMLESS = 3, 2, 1  # severities
-SPOILS, SET_RIGHT, WEAKENS, GOOD_TO_KNOW = range(4)
+SPOILS, SET_RIGHT, CONDITIONAL, WEAKENS, GOOD_TO_KNOW = range(5)
 GRADES = {
     SPOILS: (_("spoils a result"), _("spoil a result")),
     SET_RIGHT: (_("is set right"), _("are set right")),
+    CONDITIONAL: (_("leaves a result on condition"), _("leave a result on condition")),
     WEAKENS: (_("weakens a result"), _("weaken a result")),
     GOOD_TO_KNOW: (_("is good to know"), _("are good to know")),
 }
@@ -235,7 +237,8 @@ def recording_of(derived: Path) -> Recording:
     by_id = {row["id"]: row for row in diagnosed}
     beside = dict(_beside_bias(diagnosed, derived / "diagnosis/result.parquet"))
     competed = compete(list(hypotheses(findings)))
-    explained = [_as_diagnosed(each, severities, by_id) for each in competed]
+    conditions = {(row["cause"], row["sensor"]): row["condition"] for row in diagnosed}
+    explained = [_as_diagnosed(each, severities, conditions, by_id) for each in competed]
     causes = sorted(explained, key=_worst_first)
     remarks = [row["sentence"] for row in circumstances(rows_of(findings.segment_findings))]
     done = list(performed.values())
@@ -300,14 +303,16 @@ def _severity(row: Row) -> int | None:
 def _as_diagnosed(
     each: ExplainedFindings,
     severities: Mapping[tuple[str, str], int],
+    conditions: Mapping[tuple[str, str], str | None],
     diagnosed: Mapping[str, Row],
 ) -> ExplainedFindings:
-    """The same, as grave as it is by the diagnosis, with the sizes of the result."""
+    """The same, as grave as it is by the diagnosis, with the sizes and condition of the result."""
     row = each.cause.row
-    severity = severities.get((row["cause"], row["sensor"]))
+    kind = row["cause"], row["sensor"]
+    severity = severities.get(kind)
     if severity is None or (severity == WEAKENING and row["severity"] < SPOILING):
         severity = row["severity"]
-    as_diagnosed = {**row, "severity": severity}
+    as_diagnosed = {**row, "severity": severity, "condition": conditions.get(kind)}
     if each.cause.stage == MODEL:
         own = diagnosed.get(f"diagnosis/{row['id']}", row)
         as_diagnosed |= {name: own[name] for name in ("sentence", "consequence")}
@@ -322,10 +327,12 @@ def _worst_first(each: ExplainedFindings) -> tuple[int, float, int, str]:
 
 
 def _grade(each: ExplainedFindings) -> int:
-    """How grave a cause is; what a repair undoes spoils nothing."""
+    """How grave a cause is; what a repair undoes, or is assumed to be right, spoils nothing."""
     repair, severity = each.cause.repair, each.cause.row["severity"]
     if repair is not None and repair["state"] in APPLIED:
         return SET_RIGHT
+    if each.cause.row.get("condition"):
+        return CONDITIONAL
     return {SPOILING: SPOILS, WEAKENING: WEAKENS}.get(severity, GOOD_TO_KNOW)
 
 
@@ -412,6 +419,8 @@ def _answers(each: ExplainedFindings) -> Iterator[tuple[str, str]]:
         yield _("What was done"), repair["sentence"]
         if repair["state"] == "applied":
             yield _("Valid if"), repair["condition"]
+    elif condition := row.get("condition"):
+        yield _("Valid if"), condition
     names = (in_words(other.cause) for other in each.consequences if other.id != each.cause.id)
     following = Counter(name for name in names if name not in in_words(row["cause"]))
     yield _("Therefore"), ", ".join(f"{name} ({n})" for name, n in following.most_common())

@@ -146,6 +146,37 @@ def test_what_nobody_set_right_spoils_a_result(
     assert "SPOILS A RESULT · reversed sign" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("condition", [None, "The stamps are right."])
+def test_what_is_assumed_spoils_nothing_either_and_states_its_condition(
+    data: Path, capsys: pytest.CaptureFixture[str], condition: str | None
+) -> None:
+    """A clock that is off by 154 sigma, of which the result holds on a condition, or does not."""
+    change(data, "quality/findings", severity=3, cause="clock_scale", sensor="gyro")
+    row = dict.fromkeys(column.name for column in tables.CAUSES.columns) | {
+        "id": "diagnosis/quality/clock_scale",
+        "cause": "clock_scale",
+        "verdict": "found",
+        "mount": "",
+        "sensor": "gyro",
+        "count": 1,
+        "sentence": "The interval by the stamps is 10000 ppm longer.",
+        "unit": "ppm",
+        "cure": "none",
+        "moves": 154.0,
+        "condition": condition,
+        "consequence": "",
+        "done": "",
+        "action": "",
+    }
+    (data / f"derived/{NAME}/diagnosis").mkdir()
+    write_once(tables.CAUSES, data / f"derived/{NAME}/diagnosis/causes.parquet", [row])
+    assert check(data) == (0 if condition else 1)
+    said = " ".join(capsys.readouterr().out.split())
+    assert ("LEAVES A RESULT ON CONDITION · clock" in said) == (condition is not None)
+    assert ("Valid if: The stamps are right." in said) == (condition is not None)
+    assert ("SPOILS A RESULT · clock" in said) == (condition is None)
+
+
 # ---- no result
 
 

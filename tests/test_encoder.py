@@ -58,7 +58,6 @@ def test_turns_that_stop_anywhere_ask_nothing(spread):
         recorded = SimpleNamespace(
             about=np.tile([0, 0, 1.0], (6, 1)),
             turned_farther=(stated + beside) * (1 + 6e-4) + noise,
-            encoder_jump=np.full(6, np.nan),
             angle=stated + beside,
             stated_angle=stated,
             angle_sigma=2 * ARC_SECOND,
@@ -261,22 +260,62 @@ def test_between_rests_of_the_plan_the_angle_of_a_turn_is_the_encoders_too():
     assert row["value"] == pytest.approx(SCALES["x"] - ENCODER, abs=3.5 * row["sigma"])
 
 
-@pytest.mark.slow
-def test_an_encoder_that_jumps_in_turns_leaves_no_result_of_the_gyros():
-    """Once in each turn, by 0.10° forward and by 0.05° backward, where the table does not."""
+def jumping(change):
+    """The campaign, hiding nothing, diagnosed with another angle of the encoder, by `change`, °.
+
+    change : of the samples and their angle, °, (n,)
+    """
     document = deepcopy(laboratory.read(SOURCE).document)
     document["effects"], document["encoder"]["scale_ppm"] = {}, 0
     recording = laboratory.perform(laboratory.specify(document))
     decoded = chain.in_memory(recording, "decode")
     samples = decoded["decode/samples"].copy()
     turned = np.degrees(samples["table_angle"].to_numpy(np.float64))
-    by = np.where(turned > 140, 0.10, np.where(turned < -140, -0.05, 0.0))
-    samples["table_angle"] = np.radians(turned + by)
+    samples["table_angle"] = np.radians(turned + change(samples, turned))
     changed = decoded.replaced("decode/samples", samples)
-    made = chain.in_memory(recording, "diagnosis", chain.BESIDE, onto=changed)
+    return chain.in_memory(recording, "diagnosis", chain.BESIDE, onto=changed)
+
+
+def right_gyros(made):
+    """The cause of the only one, and that the result is that of gyros without any error."""
     [cause] = made["diagnosis/causes"].to_dict("records")
-    assert cause["cause"] == "encoder_angles" and cause["count"] == 6
-    assert cause["size"] == pytest.approx(0.075 / 360, rel=0.02)  # the mean of both senses
-    assert "In 6 turns the encoder's angle jumps by" in cause["sentence"]
     verdicts = made["diagnosis/verdict"].set_index("sensor")["verdict"]
-    assert verdicts["gyro"] == "not_usable" and verdicts["accel"] == "usable"
+    assert verdicts["gyro"] == "usable_within_limits" and verdicts["accel"] == "usable"
+    result = made["diagnosis/result"].query("sensor == 'gyro' and effect.isna()")
+    scales = result[result["parameter"].str.startswith("scale_")].set_index("parameter")
+    for axis in "xyz":
+        row = scales.loc[f"scale_{axis}"]
+        assert row["value"] == pytest.approx(SCALES[axis], abs=3.5 * row["sigma"])
+        assert row["sigma"] < 3e-5
+    return cause
+
+
+@pytest.mark.slow
+def test_an_encoder_that_jumps_in_turns_is_right_without_its_jumps():
+    """Once in each turn, by 0.10° forward and by 0.05° backward, where the table does not."""
+    made = jumping(lambda _samples, a: np.where(a > 140, 0.10, np.where(a < -140, -0.05, 0.0)))
+    cause = right_gyros(made)
+    assert cause["cause"] == "encoder_jump" and cause["cure"] == "repaired"
+    assert cause["count"] == 6
+    assert np.degrees(cause["size"]) == pytest.approx(0.075, abs=0.03)
+    assert "In 6 turns the encoder's angle jumps by" in cause["sentence"]
+
+
+@pytest.mark.slow
+def test_counts_that_are_lost_once_are_known_in_size_and_place(made):
+    """By 0.08°, in the middle of one turn; every angle after it is as much less."""
+    [(log, first, last)] = (
+        made["segment/segments"]
+        .query("manoeuvre == 'x-forward' and phase == 'steady'")[["log", "from_s", "to_s"]]
+        .itertuples(index=False, name=None)
+    )
+    moment = (first + last) / 2
+
+    def lost(samples, _angle):
+        later = (samples["time"].to_numpy() > moment) & (samples["log"] == log).to_numpy()
+        return np.where(later, -0.08, 0.0)
+
+    cause = right_gyros(jumping(lost))
+    assert (cause["cause"], cause["manoeuvre"], cause["count"]) == ("encoder_jump", "x-forward", 1)
+    assert abs(np.degrees(cause["size"])) == pytest.approx(0.08, abs=4 / 3600)
+    assert cause["sentence"].startswith("In x-forward the encoder's angle jumps by −0.08")

@@ -22,6 +22,7 @@ CONSISTENT = _(
     "residuals, a random walk or further jumps follow no law. As {effect}: {numbers}."
 )
 NO_NUMBER = _("no parameter by itself")
+NONE_ALONE = _("{numbers} (significant together, none of them by itself)")
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ def effect_sentence(
         "place": _(" at {positions}", positions=_(" or ").join(positions)) if positions else "",
         "cause": cause,
         "others": _(" or ").join(others),
-        "numbers": "; ".join(map(_number, _significant(parameters))) or NO_NUMBER,
+        "numbers": _numbers(parameters),
     }
     if verdict == FOUND:
         return DETECTED.format_map(values)
@@ -73,12 +74,17 @@ def effect_sentence(
     return CONSISTENT.format_map(values)
 
 
-def _significant(parameters: Sequence[Estimated]) -> list[Estimated]:
-    """The sizes that are clear, or all, and the times: without one a size says nothing."""
+def _numbers(parameters: Sequence[Estimated]) -> str:
+    """The sizes that are clear, or all, and the times: without one a size says nothing.
+
+    An effect is tested with all its parameters at once, so it may be significant where none is.
+    """
     known = [p for p in parameters if p.value is not None and p.sigma]
     sizes, times = [p for p in known if p.unit != "s"], [p for p in known if p.unit == "s"]
     clear = [p for p in sizes if abs(p.value or 0.0) > MIN_SIGMAS * (p.sigma or 0.0)]
-    return (clear or sizes) + times
+    numbers = "; ".join(map(_number, (clear or sizes) + times)) or NO_NUMBER
+    together = not clear and len(sizes) > 1
+    return NONE_ALONE.format(numbers=numbers) if together else numbers
 
 
 def _number(parameter: Estimated) -> str:

@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from inertial.arrays import Array
-from inertial.campaign.masked_samples import Batch
+from inertial.arrays import Array, Integers
+from inertial.campaign.masked_samples import Accumulator, Batch
 from inertial.campaign.static_positions import Blocks
 from inertial.campaign.sums import Stretches, rows_in
 from inertial.estimation.gyroscope_observations import EncoderWindow, RateSegment
@@ -140,19 +140,26 @@ def by_windows(segment: RateSegment, part: Blocks, angle_sigma: float) -> RateSe
 JUMP_SECONDS = 0.1  # within which an encoder jumps, in its log of 10 Hz or more
 MIN_SCATTERS = 10.0  # of the differences over that time, from which one is a jump
 MAX_EVEN_PAUSE = 1.5  # sample intervals: over more nothing is known of what the gyros felt
+MIN_OWN_SHARE = 0.5  # of a jump, by which the encoder leaves its own steady course
 SIGMA_OF_DEVIATION = 1.4826  # of normal noise, by its median absolute deviation
 
 
 @dataclass(frozen=True)
 class Jump:
-    """The largest of a stretch: by how much, and at which angle of the encoder, rad; NaN: none."""
+    """By how much an encoder jumps, its sigma, and at which angle it does, rad.
 
-    size: float = np.nan
-    at: float = np.nan
+    before, after : records, the last that reads as before the jump, the first that reads as after
+    """
+
+    size: float
+    sigma: float
+    at: float
+    before: int
+    after: int
 
 
 class JumpsOver:
-    """The largest jump of the encoder against the gyros in each of some stretches of records.
+    """The jumps of the encoder against the gyros in each of some stretches of records.
 
     An encoder and the gyros differ by a scale factor, a bias and a delay, so slowly; what they
     differ by within a tenth of a second, beyond its median and ten times its scatter, is a jump of
@@ -165,47 +172,84 @@ class JumpsOver:
 
     def __init__(self, stretches: Stretches, about: dict[str, Array]) -> None:
         self._stretches, self._about = stretches, about
-        self._jumps = {log: [Jump()] * len(axes) for log, axes in about.items()}
+        self._jumps: dict[str, list[list[Jump]]] = {
+            log: [[] for _axis in axes] for log, axes in about.items()
+        }
 
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
         rates = np.column_stack([batch[name] for name in GYRO])
         for k, start, end in stretches_with_angle(batch, self._stretches):
-            own = self._jumps[batch.log]
             part, axis = slice(start, end), self._about[batch.log][k]
             along = rates[part][:, axis != 0] @ axis[axis != 0]
-            jump = largest_jump(batch["time"][part], batch["table_angle"][part], along)
-            if not abs(jump.size) <= abs(own[k].size):
-                own[k] = jump
+            read = batch["record"][part], batch["time"][part], batch["table_angle"][part]
+            self._jumps[batch.log][k] += jumps_of(*read, along)
 
-    def result(self) -> dict[str, list[Jump]]:
+    def result(self) -> dict[str, list[list[Jump]]]:
         """By log, in the order of the stretches."""
         return self._jumps
 
 
-def largest_jump(time: Array, angle: Array, rate: Array) -> Jump:
-    """The largest jump of an encoder beyond its scatter; time, s, angle, rad, rate, rad/s, (n,)."""
+def jumps_of(record: Integers, time: Array, angle: Array, rate: Array) -> list[Jump]:
+    """The jumps of an encoder beyond its scatter against a gyro, in their order.
+
+    record : (n,), ascending
+    time, angle, rate : (n,), s, rad, of the encoder, and rad/s, of the gyro about the same axis
+    """
     pause = np.diff(time)
     if len(pause) < 2 or not (np.isfinite(pause).all() and np.isfinite(angle).all()):
-        return Jump()
+        return []
     step = float(np.median(pause))
     span = round(JUMP_SECONDS / step) if step > 0 else 0
     if span < 1 or len(time) <= 4 * span:
-        return Jump()
+        return []
     sense = np.sign(np.nansum(rate * np.append(pause, step)) * (angle[-1] - angle[0]))
     off = np.diff(angle) - sense * rate[1:] * pause
     off[pause > MAX_EVEN_PAUSE * step] = np.nan  # and with it every difference over it
-    beyond = np.convolve(off, np.ones(span), "valid")
+    own = np.diff(angle) - float(np.median(np.diff(angle) / pause)) * pause
+    beyond, scatter = _differences(off, span)
+    high = np.flatnonzero(np.abs(beyond) > MIN_SCATTERS * scatter)
+    pad, jumps = span // 4, []
+    for run in np.split(high, np.flatnonzero(np.diff(high) > span) + 1):
+        # What is off for longer than the jump takes, and the window, is no jump.
+        if not len(run) or run[-1] - run[0] >= 2 * span:
+            continue
+        first, last = sorted((int(run[0]) + span - 1, int(run[-1])))
+        start, length = max(first - pad, 0), last - first + 1 + 2 * pad
+        sums, sigma = _differences(off, length)
+        size = float(sums[min(start, len(sums) - 1)])
+        # Nor is what comes back, or what the encoder does not show by itself: a glitch of the gyro.
+        whole = float(np.sum(off[run[0] : run[-1] + span] - np.nanmedian(off)))
+        shown = float(np.sum(own[start : start + length]))
+        if min(whole * size, shown * size) > MIN_OWN_SHARE * size**2:
+            place = (int(record[first]), int(record[last + 1]))
+            jumps.append(Jump(size, sigma, float(angle[first]), *place))
+    return jumps
+
+
+def _differences(off: Array, length: int) -> tuple[Array, float]:
+    """What is off over so many samples, beyond its median, (n − length + 1,), and its scatter."""
+    beyond = np.convolve(off, np.ones(length), "valid")
     known = np.isfinite(beyond)
-    if known.sum() <= 3 * span:
-        return Jump()
+    if known.sum() <= 3 * length:
+        return np.zeros(len(beyond)), 0.0
     beyond = np.where(known, beyond - np.median(beyond[known]), 0.0)
-    scatter = SIGMA_OF_DEVIATION * float(np.median(np.abs(beyond[known])))
-    place = int(np.argmax(np.abs(beyond)))
-    size = float(beyond[place])
-    # What is off for longer than the jump takes, and the window, is no jump.
-    long = np.count_nonzero(np.abs(beyond) > abs(size) / 2) > 2 * span
-    if long or abs(size) <= MIN_SCATTERS * scatter:
-        return Jump()
-    within = np.nan_to_num(np.abs(off[place : place + span] - np.nanmedian(off)))
-    return Jump(size, float(angle[place + int(np.argmax(within))]))
+    return beyond, SIGMA_OF_DEVIATION * float(np.median(np.abs(beyond[known])))
+
+
+class WithoutJumps:
+    """What takes in records, with the angle of the encoder as if it had not jumped.
+
+    jumps : by log, each of which changes all angles after it
+    """
+
+    def __init__(self, of: Accumulator, jumps: dict[str, list[Jump]]) -> None:
+        self._of, self._jumps = of, jumps
+        self.columns = of.columns
+
+    def add(self, batch: Batch) -> None:
+        """Take in the next batch."""
+        record, angle = batch["record"], batch["table_angle"]
+        for jump in self._jumps.get(batch.log, ()):
+            angle = angle - np.interp(record, (jump.before, jump.after), (0.0, jump.size))
+        self._of.add(replace(batch, columns={**batch.columns, "table_angle": angle}))

@@ -39,6 +39,11 @@ def same_sensor(cause: Hypothesis, other: Hypothesis) -> bool:
     return None in (cause.sensor, other.sensor) or cause.sensor == other.sensor
 
 
+def where_unresolved(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In the whole campaign, where the cause is neither masked nor set right."""
+    return _unresolved(cause)
+
+
 def same_axis(cause: Hypothesis, other: Hypothesis) -> bool:
     """In the axis that the other finding concerns, or either is not about one alone."""
     one_axis = None in (cause.axis, other.axis) or cause.axis == other.axis
@@ -237,6 +242,9 @@ EXPLANATIONS = (
     Explanation(
         ("wrong_mark",), (*MISFITS, "gyro_drift", "gyro_random_walk", "heading_error"), same_sensor
     ),
+    # Gyros that turn gravity otherwise than the accelerometers see it turn: by hand the angles
+    # between rests, and with them a count size, are by axes of which nobody knows which are right.
+    Explanation(("axis_swap", "sign_flip"), ("gyro_count_size",), where_unresolved),
     Explanation(("wrong_scale_factor", "wrong_imu_type"), ("noise_above_data_sheet",), same_sensor),
     Explanation(("manoeuvre_swapped",), PERFORMANCE, same_log),
     # A clock that is set, or runs wrong, by what its stamps then look like.
@@ -248,7 +256,7 @@ EXPLANATIONS = (
     # Whenever a counter begins again, what it counts is cut.
     Explanation(("time_backwards",), ("short_rest",), same_log),
     Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), anywhere),
-    Explanation(("encoder_scale",), ("rate_off",), anywhere),
+    Explanation(("encoder_scale", "encoder_scale_or_eccentricity"), ("rate_off",), anywhere),
     Explanation(("encoder_angles",), (*BY_ANGLES_OF_TURNS, *MISFITS), same_sensor),
     Explanation(("clock_scale", "rate_off"), ("table_rate_off",), anywhere),
     Explanation(("table_rate_off",), ("wrong_rate",), anywhere),

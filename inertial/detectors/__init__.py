@@ -9,7 +9,12 @@ from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
 from inertial.detectors.copied_readings import CopiedChannel, CopiedLog
 from inertial.detectors.dead_axis import DeadAxis
-from inertial.detectors.encoder_against_plan import EncoderAngles, EncoderScale
+from inertial.detectors.encoder_against_plan import (
+    EncoderAngles,
+    EncoderJump,
+    EncoderScale,
+    EncoderScaleOrEccentricity,
+)
 from inertial.detectors.fixture_creep import FixtureCreep
 from inertial.detectors.gap import Gap
 from inertial.detectors.impact import Impact
@@ -139,7 +144,9 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     LostSamplesOfTurns(),
     MotionAfterTurns(),
     WrongRate(),
+    EncoderJump(),
     EncoderScale(),
+    EncoderScaleOrEccentricity(),
     EncoderAngles(),
     ShortRest(),
     PositionNotKept(),

@@ -1,4 +1,4 @@
-"""An encoder by which turns go farther, or less far, than planned."""
+"""An encoder that jumps, or by which turns go farther, or less far, than planned."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,6 +19,80 @@ MIN_SIGMAS = 5.0  # of a difference of two angles, from which a turn differs fro
 MIN_LOG_ODDS = 5.3  # by which the gyros contradict an encoder: 200 to 1, as MAX_CHANCE
 MAX_CHANCE_OF_MEAN = 1e-3  # that turns which stop anywhere differ from the plan on the mean
 MAX_APART = np.radians(5.0)  # of jumps that are at one place of the encoder
+MAX_ECCENTRICITY = np.radians(0.1)  # of an encoder on the axis of a table
+ARC_SECOND = np.pi / 648_000  # rad
+
+
+class EncoderJump(PlanDetector):
+    """The encoder's angle jumps within a turn, and no gyro feels it.
+
+    Cause: an index mark that sets the count anew, counts that are lost or gained, or a damaged
+    line of the scale. The jump is known in size and place, by the gyros over a tenth of a second,
+    and the angles of the encoder are taken without it; used as they are, they would put its share
+    of the turn into the scale factor of the gyro.
+    """
+
+    name = "encoder_jump"
+    source = "IEEE Std 1554-2005: the accuracy of angles is that of the encoder"
+    severity = 2
+    unit = "rad"
+    sensor = "gyro"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        if not len(recorded.jump_turn):
+            return
+        size = float(np.median(np.abs(recorded.jump_size)))
+        if len(turns := np.unique(recorded.jump_turn)) == 1:
+            first = float(recorded.jump_size[0]) if len(recorded.jump_size) == 1 else size
+            yield self.of(recorded, int(turns[0]), first, count=len(recorded.jump_turn))
+        else:
+            yield Deviation(None, "", size, self.sensor, count=len(recorded.jump_turn))
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        assert deviation.size is not None
+        turns = np.unique(recorded.jump_turn)
+        size = significant(float(np.degrees(deviation.size)), 2)
+        if deviation.at is None:
+            sentence = _(
+                "In {turns} the encoder's angle jumps by {size}° within 0.1 s{at}, which no gyro "
+                "feels: by so much it is the encoder that is off.",
+                turns=counted(len(turns), "turn"),
+                size=size,
+                at=_place_of_jumps(recorded),
+            )
+        else:
+            sentence = _(
+                "In {turn} the encoder's angle jumps by {size}° within 0.1 s{at}, which no gyro "
+                "feels: by so much it is the encoder that is off.",
+                turn=recorded.name[deviation.at],
+                size=size,
+                at=_place_of_jumps(recorded),
+            )
+        shares = np.abs(recorded.jump_size / recorded.stated_angle[recorded.jump_turn])
+        return Description(
+            sentence,
+            _(
+                "The angles are taken without the jumps, each known to {sigma}″, which the σ of "
+                "these turns' angles contain. With them a scale factor would be off by up to {ppm} "
+                "ppm.",
+                sigma=significant(float(np.max(recorded.jump_sigma)) / ARC_SECOND, 2),
+                ppm=significant(1e6 * float(np.max(shares)), 2),
+            ),
+            _(
+                "Have scale, index mark, reading head and counter of the encoder examined there; "
+                "its other angles count as before."
+            ),
+        )
+
+
+def _place_of_jumps(recorded: Recorded) -> str:
+    """Where an encoder jumps, as a part of a sentence; empty where it does so here and there."""
+    places = np.exp(1j * recorded.jump_at)
+    middle = complex(np.mean(places))
+    if not (np.abs(np.angle(places / middle)) < MAX_APART).all():
+        return ""
+    where = fixed(float(np.degrees(np.angle(middle))) % 360, 0)
+    return _(", where it reads {angle}° or whole turns more", angle=where)
 
 
 class EncoderScale(PlanDetector):
@@ -38,10 +112,19 @@ class EncoderScale(PlanDetector):
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         read, off = _read(recorded)
         alike = _of_one_ratio(recorded, read, off)
-        if alike is not None:
-            ratio = float(np.mean(off[alike]))
-            names = [recorded.name[int(i)] for i in read[alike]]
-            yield Deviation(None, "", ratio, self.sensor, count=len(names), facts=names)
+        if alike is None or self.may_be_eccentric(recorded, read[alike], off[alike]):
+            return
+        yield self.of_turns(recorded, read[alike], off[alike])
+
+    def may_be_eccentric(self, recorded: Recorded, turns: Integers, off: Array) -> bool:
+        """Whether an encoder off its axis may read these turns so, too."""
+        return least_eccentricity(recorded, turns, off) < float(MAX_ECCENTRICITY)
+
+    def of_turns(self, recorded: Recorded, turns: Integers, off: Array) -> Deviation:
+        """The deviation of turns that are off by one ratio."""
+        names = [recorded.name[int(i)] for i in turns]
+        ratio = float(np.mean(off))
+        return Deviation(None, "", ratio, self.sensor, count=len(names), facts=names)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         assert deviation.size is not None
@@ -56,8 +139,7 @@ class EncoderScale(PlanDetector):
                 name=deviation.facts[0],
                 read=fixed(read, 4),
                 planned=fixed(planned, 4),
-            )
-            + _jumping(recorded),
+            ),
             _(
                 "The encoder's angles are used. If the plan's are right, the scale factors of all "
                 "gyros are off by {ppm} ppm.",
@@ -69,6 +151,68 @@ class EncoderScale(PlanDetector):
                 "out of the campaign; if the encoder is right, state the angles of the plan by it."
             ),
         )
+
+
+class EncoderScaleOrEccentricity(EncoderScale):
+    """The same in turns that are not whole, which an encoder off its axis reads alike, too.
+
+    Cause: as of the scale; or the encoder's disc sits off the axis of the table, and reads
+    ε sin(a + φ) more at its angle a. A turn by θ from a is then off by
+    2 ε sin(θ/2) cos(a + θ/2 + φ), by as much there as back; a whole revolution is not.
+    """
+
+    name = "encoder_scale_or_eccentricity"
+    source = "IEEE Std 1554-2005: the accuracy of angles is that of the encoder"
+
+    def detect(self, recorded: Recorded) -> Iterator[Deviation]:
+        read, off = _read(recorded)
+        alike = _of_one_ratio(recorded, read, off)
+        if alike is not None and self.may_be_eccentric(recorded, read[alike], off[alike]):
+            yield self.of_turns(recorded, read[alike], off[alike])
+
+    def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
+        assert deviation.size is not None
+        places = [list(recorded.name).index(name) for name in deviation.facts]
+        read, planned = np.degrees(
+            [recorded.angle[places[0]], recorded.stated_angle[places[0]]]
+        ).tolist()
+        turns = np.array(places, np.int64)
+        off = np.full(len(turns), deviation.size)
+        return Description(
+            _(
+                "By the encoder {turns} go {size} times as far as planned ({name}: {read}° in "
+                "place of {planned}°): its scale is off, or it sits off the axis, by an error of "
+                "its angle of {eccentricity}″ or more, or the table does turn so far.",
+                turns=counted(deviation.count, "turn"),
+                size=fixed(1 + deviation.size, 6),
+                name=deviation.facts[0],
+                read=fixed(read, 4),
+                planned=fixed(planned, 4),
+                eccentricity=significant(least_eccentricity(recorded, turns, off) / ARC_SECOND, 2),
+            ),
+            _(
+                "The encoder's angles are used. If the plan's are right, the scale factors of all "
+                "gyros are off by {ppm} ppm.",
+                ppm=significant(-1e6 * deviation.size, 3),
+            ),
+            _(
+                "Turn by whole revolutions, in which an encoder off its axis is right: if it "
+                "agrees with the plan then, it is eccentric; if it is off by the same ratio, "
+                "correct its scale, or the angles of the plan, by a mark, an autocollimator or a "
+                "polygon. Or leave it out of the campaign."
+            ),
+        )
+
+
+def least_eccentricity(recorded: Recorded, turns: Integers, off: Array) -> float:
+    """The least amplitude, rad, of a sine of the encoder's angle by which turns read so.
+
+    `off`: relative, of each of the turns.
+    """
+    angle = recorded.stated_angle[turns]
+    half = np.abs(np.sin(angle / 2))
+    with np.errstate(divide="ignore"):
+        return float(np.max(np.abs(off * angle) / (2 * half)))
 
 
 @dataclass(frozen=True)
@@ -126,9 +270,15 @@ class EncoderAngles(PlanDetector):
             if unlike.log_odds >= MIN_LOG_ODDS
             else ""
         )
-        jumping = _jumping(recorded)
-        return Description(
-            _(
+        if len(unlike.turns) == 1:
+            sentence = _(
+                "By the encoder {name} differs from the plan by {angle}″ in its sense. Either the "
+                "encoder is off, or the table does stop elsewhere than planned.",
+                name=recorded.name[least],
+                angle=_arc(beyond[least]),
+            )
+        else:
+            sentence = _(
                 "By the encoder {turns} differ from the plan, by no one ratio: {name} by {angle}″ "
                 "in its sense, {other} by {other_angle}″. Either the encoder is off, or the table "
                 "does stop elsewhere than planned.",
@@ -138,19 +288,14 @@ class EncoderAngles(PlanDetector):
                 other=recorded.name[most],
                 other_angle=_arc(beyond[most]),
             )
-            + by_gyros
-            + jumping,
+        return Description(
+            sentence + by_gyros,
             _(
                 "The encoder's angles are used. If the plan's are right, the scale factors of the "
                 "gyros are off by up to {ppm} ppm.",
                 ppm=significant(1e6 * abs(deviation.size), 3),
             ),
             _(
-                "Correct the encoder, or its log, or leave it out of the campaign, so that the "
-                "plan's angles are used."
-            )
-            if jumping
-            else _(
                 "Turn the table by a whole revolution, in both senses, against a mark, an "
                 "autocollimator or a polygon. If it turns as planned, correct the encoder, or "
                 "leave it out of the campaign; if the encoder is right, state the angles of the "
@@ -233,28 +378,6 @@ def _largest_mean(recorded: Recorded, read: Integers, off: Array) -> float:
     share = dict(zip(read.tolist(), off.tolist(), strict=True))
     means = [float(np.mean([share[int(i)] for i in own])) for own in _by_axis(recorded, read)]
     return max(means, key=abs, default=float(np.mean(off)))
-
-
-def _jumping(recorded: Recorded) -> str:
-    """What the encoder's log shows within turns that the gyros do not, as a further sentence."""
-    least = MIN_SIGMAS * np.sqrt(2) * recorded.angle_sigma
-    jumps = np.flatnonzero(np.abs(recorded.encoder_jump) > least)
-    if len(jumps) < MIN_TURNS:
-        return ""
-    size = float(np.median(np.abs(recorded.encoder_jump[jumps])))
-    places = np.exp(1j * recorded.encoder_jump_at[jumps])
-    middle = complex(np.mean(places))
-    at = ""
-    if (np.abs(np.angle(places / middle)) < MAX_APART).all():
-        where = fixed(float(np.degrees(np.angle(middle))) % 360, 0)
-        at = _(", where it reads {angle}° or whole turns more", angle=where)
-    return _(
-        " In {turns} the encoder's angle jumps by {size}° within 0.1 s{at}, which no gyro feels: "
-        "by so much it is the encoder that is off.",
-        turns=counted(len(jumps), "turn"),
-        size=significant(float(np.degrees(size)), 2),
-        at=at,
-    )
 
 
 def _arc(angle: float) -> str:

@@ -180,8 +180,8 @@ class Recorded:
     after_stop: (m,), rad, what it turns farther in the rest after it, NaN where not known;
     turned_farther: (m,), rad, the angle of its gyros about `about` beyond what they read there in
     the rests of its position, NaN where that is not known.
-    encoder_jump, encoder_jump_at: (m,), rad, by how much its encoder jumps where the gyros do not,
-    and at which angle; NaN where it does not.
+    jump_turn, jump_size, jump_sigma, jump_at: (j,), in which of them the encoder jumps where the
+    gyros do not, by how much, and at which angle, rad; `angle` is without.
     lacking, lacking_s: (m,), angle and time that are missing; duration: (m,), s, of the rest
     or from start to stop.
     first, after: (m,), records of it, or of what its log holds instead, −1 where there are none;
@@ -226,8 +226,10 @@ class Recorded:
     unsteady: Array
     after_stop: Array
     turned_farther: Array
-    encoder_jump: Array
-    encoder_jump_at: Array
+    jump_turn: Integers
+    jump_size: Array
+    jump_sigma: Array
+    jump_at: Array
     static_means: StaticMeans
     lacking: Array
     lacking_s: Array

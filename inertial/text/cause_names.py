@@ -85,6 +85,10 @@ NAMES = {
     "clock_scale": _("clock too fast or too slow"),
     "duplicate": _("repeated record"),
     "encoder_angles": _("angles of the encoder, or of the table"),
+    "encoder_jump": _("jump of the encoder"),
+    "encoder_scale_or_eccentricity": _(
+        "scale or eccentricity of the encoder, or angles of the table"
+    ),
     "encoder_scale": _("scale of the encoder, or angles of the table"),
     "earth_rate_omitted": _("earth rate left out"),
     "gravity_error": _("wrong gravity"),

@@ -46,7 +46,8 @@ MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed sp
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
 MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
-OF_ENCODER = ("encoder_scale", "encoder_angles")
+OF_ENCODER = ("encoder_scale", "encoder_scale_or_eccentricity", "encoder_angles")
+ENCODER_JUMP = "encoder_jump"  # which segment takes out of the angles
 RATE_OFF, TABLE_RATE_OFF = "rate_off", "table_rate_off"
 QUANTISATION = "quantisation"
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
@@ -329,9 +330,8 @@ class Evidence:
         self, cause: Hypothesis, own: Sequence[SensorResult], members: Sequence[ExplainedFindings]
     ) -> tuple[str, float | None, float | None]:
         """The cure, the largest shift of a parameter in sigma, and the gain on held-out data."""
-        if cause.repair is not None:
-            applied = cause.repair["state"] in APPLIED
-            return REPAIRED if applied else NONE, _moved_by(cause.repair, own), None
+        if cause.cause == ENCODER_JUMP or cause.repair is not None:
+            return _cure_of_repaired(cause.repair, own)
         if cause.row.get("predictor") == "temperature" and self.curves & {
             (result.sensor, result.mount) for result in own
         }:
@@ -382,6 +382,14 @@ class Evidence:
             # What manoeuvres differ by is in the sigmas, so the shift is measured in these.
             return (MODELLED if modelled else NONE), largest, max(drops, default=None)
         return NONE, largest, None
+
+
+def _cure_of_repaired(
+    repair: Row | None, own: Sequence[SensorResult]
+) -> tuple[str, float | None, None]:
+    """Of what a repair sets right, if it is applied; without one it always is."""
+    applied = repair is None or repair["state"] in APPLIED
+    return REPAIRED if applied else NONE, _moved_by(repair, own) if repair else None, None
 
 
 def _cure_of_gap(touched: Sequence[Performed]) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import degrees
+from math import degrees, hypot
 
 import numpy as np
 import pandas as pd
@@ -17,6 +17,7 @@ from inertial.text.numbers import fixed, significant
 from stages.segment.matching import Part
 
 STEADY = "steady"  # the phase of a turn in which its rate does not change
+MIN_JUMP_SIGMAS = 5.0  # of a difference of two angles, from which a jump counts
 
 
 @dataclass(frozen=True)
@@ -137,11 +138,14 @@ def without_unused(blocks: pd.DataFrame, turned: Mapping[str, ByEncoder]) -> pd.
 
 
 class EncoderJumps:
-    """The largest jump of the encoder in the steady part of each turn, added up batch by batch."""
+    """The jumps of the encoder in the steady part of each turn, added up batch by batch."""
 
-    def __init__(self, parts: Sequence[Part], plan: Sequence[Manoeuvre]) -> None:
+    def __init__(
+        self, parts: Sequence[Part], plan: Sequence[Manoeuvre], angle_sigma: float
+    ) -> None:
         axes = {m.name: m.about for m in plan if m.do == "turn" and m.about is not None}
         steady = [part for part in parts if part.phase == STEADY and part.manoeuvre in axes]
+        self._least = MIN_JUMP_SIGMAS * np.sqrt(2) * angle_sigma
         self._parts: dict[str, list[Part]] = {}
         for part in sorted(steady, key=lambda part: part.first):
             self._parts.setdefault(part.log, []).append(part)
@@ -154,13 +158,36 @@ class EncoderJumps:
         }
         self.sums = JumpsOver(edges, about)
 
-    def result(self) -> dict[str, Jump]:
-        """By manoeuvre; NaN where there is none."""
-        return {
-            part.manoeuvre: jump
-            for log, jumps in self.sums.result().items()
-            for part, jump in zip(self._parts[log], jumps, strict=True)
-        }
+    def result(self) -> dict[str, list[Jump]]:
+        """By manoeuvre, of those that have any."""
+        jumps: dict[str, list[Jump]] = {}
+        for log, each in self.sums.result().items():
+            for part, own in zip(self._parts[log], each, strict=True):
+                if large := [jump for jump in own if abs(jump.size) > self._least]:
+                    jumps.setdefault(part.manoeuvre, []).extend(large)
+        return jumps
+
+    def by_log(self) -> dict[str, list[Jump]]:
+        """The same by log."""
+        result, logs = self.result(), dict[str, list[Jump]]()
+        for log, parts in self._parts.items():
+            own = dict.fromkeys(part.manoeuvre for part in parts)
+            logs[log] = [jump for name in own for jump in result.get(name, ())]
+        return logs
+
+
+def with_jumps(
+    turned: Mapping[str, ByEncoder], jumps: Mapping[str, Sequence[Jump]]
+) -> dict[str, ByEncoder]:
+    """The turns whose angles are taken without jumps, with the sigmas of these."""
+    made = dict(turned)
+    for name, own in jumps.items():
+        if name not in made:
+            continue
+        m = made[name].manoeuvre
+        sigma = hypot(m.angle_sigma or 0.0, *(jump.sigma for jump in own))
+        made[name] = replace(made[name], manoeuvre=replace(m, angle_sigma=sigma))
+    return made
 
 
 def plan_by_encoder(

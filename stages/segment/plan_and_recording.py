@@ -70,7 +70,7 @@ class Recording:
     counts : rad, what a count of the gyros is, by log; NaN where not stated
     stated_angles : rad, by manoeuvre, those of the plan before an encoder's took their place
     angle_sigma, rate_sigma : of the table, rad, and relative, NaN where not stated
-    jumps : of the encoder, by manoeuvre
+    jumps : of the encoder, which are taken out of its angles, by manoeuvre
     """
 
     performed: Mapping[str, Performed]
@@ -80,7 +80,7 @@ class Recording:
     stated_angles: Mapping[str, float | None]
     angle_sigma: float
     rate_sigma: float
-    jumps: Mapping[str, Jump]
+    jumps: Mapping[str, Sequence[Jump]]
 
 
 def recorded_of(
@@ -113,7 +113,7 @@ def recorded_of(
         replace(_beside(each, undone), change=undone.changes.get(each.repair))
         for each in misread_in(plan, explained)
     ]
-    jumps = [recording.jumps.get(m.name, Jump()) for m in plan]
+    jumps = [(i, jump) for i, m in enumerate(plan) for jump in recording.jumps.get(m.name, ())]
     first, after, from_s, to_s = np.array(places).reshape(-1, 4).T
     return Recorded(
         given=given,
@@ -144,8 +144,10 @@ def recorded_of(
         unsteady=_unsteady(plan, recording.blocks),
         after_stop=_after_stop(plan, recording.blocks),
         turned_farther=_turned_farther(plan, recording.blocks),
-        encoder_jump=np.array([jump.size for jump in jumps]),
-        encoder_jump_at=np.array([jump.at for jump in jumps]),
+        jump_turn=np.array([i for i, _jump in jumps], np.int64),
+        jump_size=np.array([jump.size for _i, jump in jumps]),
+        jump_sigma=np.array([jump.sigma for _i, jump in jumps]),
+        jump_at=np.array([jump.at for _i, jump in jumps]),
         static_means=_static_means(plan, recording.blocks),
         lacking=_numbers([d.missing_angle for d in done]),
         lacking_s=_numbers([d.missing_s for d in done]),

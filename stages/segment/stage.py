@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
+from inertial.campaign.encoder import WithoutJumps
 from inertial.campaign.findings import Detection, close_ups, table_of
 from inertial.campaign.log_properties import Stated, records_of, stated_by
 from inertial.campaign.masked_samples import Masks, RecordIndex, Repairs, read_once
@@ -24,7 +25,13 @@ from inertial.tables.stage import Stage, Tables
 from inertial.text.messages import _
 from stages.segment import completeness, reduction, repair
 from stages.segment.declared import DECLARED
-from stages.segment.encoder import ByEncoder, EncoderJumps, plan_by_encoder, without_unused
+from stages.segment.encoder import (
+    ByEncoder,
+    EncoderJumps,
+    plan_by_encoder,
+    with_jumps,
+    without_unused,
+)
 from stages.segment.located import Located
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
 from stages.segment.plan_and_recording import ExaminationOfRests, Recording, compare, recorded_of
@@ -85,7 +92,7 @@ def segment(
 
     Two passes over the samples: blocks and the records of a rest are known only after manoeuvres
     were found in short means. Where the plan selects records by time or label, one of these two
-    columns before.
+    columns before; where the encoder jumps, blocks once more, without its jumps.
 
     Parameters
     ----------
@@ -112,17 +119,20 @@ def segment(
     places = _places(made, margin)
 
     in_samples = stated.means_of_known_noise
-    block_sums = reduction.Blocks(
-        places.parts, examined.gaps, masked, clock, in_samples, rest_block, turn_block
-    )
+    by_blocks = (examined.gaps, masked, clock, in_samples, rest_block, turn_block)
+    block_sums = reduction.Blocks(places.parts, *by_blocks)
     segment_times, traces = reduction.Segments(places.parts), reduction.Traces(ends)
     known = {m.name for m in made.plan if m.up is not None}
     rests = ExaminationOfRests(OF_RESTS, places.parts, by_name, masked, known)
     index = RecordIndex()
-    jumps = EncoderJumps(places.parts, made.plan)
-    read_once(samples, [block_sums, segment_times, traces, rests, index, jumps.sums], read_as)
+    of_encoder = EncoderJumps(places.parts, made.plan, stated.angle_sigma)
+    read_once(samples, [block_sums, segment_times, traces, rests, index, of_encoder.sums], read_as)
+    if jumps := of_encoder.result():
+        block_sums = reduction.Blocks(places.parts, *by_blocks)
+        read_once(samples, [WithoutJumps(block_sums, of_encoder.by_log())], read_as)
     blocks, segments = block_sums.table(), segment_times.table()
     by_encoder = plan_by_encoder(made.plan, blocks, stated.angle_sigma, angle_tolerance)
+    by_encoder = with_jumps(by_encoder, jumps)
     turned, by_encoder = _turned(
         places.turns, by_encoder, blocks, block_sums, examined.gaps, made.level, angle_tolerance
     )
@@ -140,7 +150,7 @@ def segment(
             {m.name: m.angle for m in made.plan},
             stated.angle_sigma,
             stated.rate_sigma,
-            jumps.result(),
+            jumps,
         ),
         stated.given,
         angle_tolerance,

@@ -348,3 +348,15 @@ def test_an_impact_in_a_turn_is_the_step_of_that_turn(masked, turn, one):
     assert causes(impact, step) == (
         {"impact": {"step_in_turn"}} if one else {"impact": set(), "step_in_turn": set()}
     )
+
+
+@pytest.mark.parametrize(("rivals", "explained"), [((RIVAL,), True), ((), False)])
+def test_a_count_size_by_axes_that_nobody_knows_is_no_cause(rivals, explained):
+    """By hand the angles between rests are those of exchanged axes: gyros read x 0.36 times."""
+    swap = finding("quality", "axis_swap", "gyro", 3, repair=APPLIED | {"id": "axes/gyro"})
+    swap = replace(swap, rivals=rivals)
+    size = finding("gyroscope", "gyro_count_size", "gyro")
+    named = {"axis_swap": {"gyro_count_size"}}
+    if not explained:  # set right, so that the size is by the right axes
+        named = {"axis_swap": set(), "gyro_count_size": set()}
+    assert causes(swap, size) == named
