@@ -6,9 +6,10 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 
-from inertial.campaign.explanations import JUMPS, RESTARTS, explains, rank
+from inertial.campaign.explanations import explains, rank
 from inertial.campaign.hypotheses import MAX_CARRYING, MODEL, Hypothesis
 from inertial.campaign.records import Row
+from inertial.campaign.where_causes_act import JUMPS, RESTARTS
 
 # What a recording shows of its circumstances: no fault; whether it matters follows from the model.
 CIRCUMSTANCES = ("temperature_drift", "rests_divided", "turning_point_once")

@@ -5,90 +5,36 @@ One table, read from top to bottom: a cause, what it makes other stages report, 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from math import hypot, inf
 
 from inertial.campaign.hypotheses import (
-    FOUND,
     JUMP_NOT_TESTABLE,
     LAW,
+    MIN_SPOILING,
     MODEL,
     MOUNTINGS,
     POSITIONS,
     RECORDING,
     STEP_IN_TURN,
-    TABLE_MOVING,
     Hypothesis,
 )
+from inertial.campaign.where_causes_act import (
+    JUMPS,
+    RESTARTS,
+    Where,
+    anywhere,
+    at_the_gaps,
+    by_single_readings,
+    is_of_step,
+    is_same_event,
+    same_axis,
+    same_log,
+    same_manoeuvre,
+    same_readings,
+    same_sensor,
+    where_unresolved,
+)
 from inertial.sensors import SENSORS
-
-Where = Callable[[Hypothesis, Hypothesis], bool]
-
-
-# ---- Where a cause acts.
-
-
-def anywhere(cause: Hypothesis, other: Hypothesis) -> bool:
-    """In the whole campaign."""
-    return True
-
-
-def same_sensor(cause: Hypothesis, other: Hypothesis) -> bool:
-    """In the sensor that the other finding concerns, or either is not about one alone."""
-    return None in (cause.sensor, other.sensor) or cause.sensor == other.sensor
-
-
-def where_unresolved(cause: Hypothesis, other: Hypothesis) -> bool:
-    """In the whole campaign, where the cause is neither masked nor set right."""
-    return _unresolved(cause)
-
-
-def same_axis(cause: Hypothesis, other: Hypothesis) -> bool:
-    """In the axis that the other finding concerns, or either is not about one alone."""
-    one_axis = None in (cause.axis, other.axis) or cause.axis == other.axis
-    return same_sensor(cause, other) and one_axis
-
-
-def same_manoeuvre(cause: Hypothesis, other: Hypothesis) -> bool:
-    """In a manoeuvre that the other finding is about."""
-    return bool(cause.manoeuvres & other.manoeuvres)
-
-
-def same_readings(cause: Hypothesis, other: Hypothesis) -> bool:
-    """In the axis and in a manoeuvre that the other finding is about."""
-    return same_axis(cause, other) and same_manoeuvre(cause, other)
-
-
-def same_log(cause: Hypothesis, other: Hypothesis) -> bool:
-    """In the log that the other finding is about, or in one of its manoeuvres."""
-    log = cause.row["log"]
-    return (log is not None and log == other.row["log"]) or same_manoeuvre(cause, other)
-
-
-def same_time(cause: Hypothesis, other: Hypothesis) -> bool:
-    """At the same moment, within the sigmas of both."""
-    if cause.time is None or other.time is None:
-        return False
-    apart = abs(cause.time[0] - other.time[0])
-    return apart < MAX_APART_SIGMAS * hypot(cause.time[1], other.time[1])
-
-
-def at_the_gaps(cause: Hypothesis, gaps: Hypothesis) -> bool:
-    """At all gaps of a log, none of which cuts a manoeuvre; of a jump: at the only one."""
-    if not cause.named or gaps.manoeuvres:
-        return False
-    if cause.cause in RESTARTS:
-        return bool(gaps.row["count"] == cause.row["count"])
-    vague = cause.time is not None and cause.time[1] > MAX_VAGUE_S
-    return gaps.row["count"] == 1 and not vague and same_time(cause, gaps)
-
-
-def by_single_readings(cause: Hypothesis, other: Hypothesis) -> bool:
-    """In a manoeuvre, of whose turn readings here and there lack little."""
-    whole = other.cause in ("incomplete_turn", "wrong_angle") and _size(other) > MAX_OF_READINGS
-    return same_manoeuvre(cause, other) and not whole
-
 
 # ---- Which findings.
 
@@ -131,7 +77,6 @@ PERFORMANCE = (
     "table_moving",
 )
 SET_RIGHT = ("applied", "confirmed")  # states of a repair
-MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
 # Faults that change all that a sensor reads: from what they spoil no effect is named. A wrong clock
 # changes it in proportion, so only effects in proportion to a rate, a force, or the earth's rate.
 SPOILING = (
@@ -186,12 +131,6 @@ IN_PROPORTION = frozenset(
 )
 POSITION_OFF = ("table_position_error", "table_axis_error")
 MAX_TILT_S = 4.0  # s: what turns for longer in a rest creeps
-MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
-JUMPS = frozenset({"gyro_bias_jump", "accel_bias_jump"})
-RESTARTS = frozenset({"gyro_restarts", "accel_restarts"})
-MAX_APART_SIGMAS = 3.0  # of two times of one event
-MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with any other
-MAX_ANGLE_RATIO = 2.0  # of one rotation as two stages have it: a rest shows two components of three
 OF_A_PULSE = ("impact", "spike", "saturation", "dead_axis", "clock_step", "samples_lost", "gap")
 LOST_RECORDS = ("gap", "duplicate", "held_record", "time_backwards", "time_stands_still")
 
@@ -327,56 +266,25 @@ def _explains(cause: Hypothesis, other: Hypothesis) -> bool:
     )
 
 
-def is_same_event(cause: Hypothesis, other: Hypothesis) -> bool:
-    """Whether one event is both: what tilts in a rest and stays, or biases that one knock changes.
-
-    A shift of the IMU in its fixture stands for the rest in which it
-    tilts; of two sensors the one whose time is known better stands for both.
-    """
-    if {cause.cause, other.cause} == RESTARTS and cause.named and other.named:
-        return cause.id < other.id
-    if not same_time(cause, other) or not cause.named:
-        return False
-    if cause.cause in MOUNTINGS and other.cause == TABLE_MOVING:
-        return _same_angle(cause, other)
-    if {cause.cause, other.cause} != JUMPS or {cause.verdict, other.verdict} != {FOUND}:
-        return False
-    vague = [one.time[1] for one in (cause, other) if one.time]
-    return max(vague) < MAX_VAGUE_S and (vague[0], cause.id) < (vague[1], other.id)
-
-
-def _same_angle(cause: Hypothesis, other: Hypothesis) -> bool:
-    """Whether both turn the case by about as much."""
-    ratio = (other.angle or 0.0) / (cause.angle or inf)
-    return 1 / MAX_ANGLE_RATIO < ratio < MAX_ANGLE_RATIO
-
-
 def _explains_event(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether an event is what an effect says of it, or leaves what no effect explains."""
     if other.cause == STEP_IN_TURN and cause.cause == "quantisation":  # a count for less than 1 s
-        return same_sensor(cause, other) and _size(other) < _size(cause)
+        return same_sensor(cause, other) and other.size < cause.size
     if other.cause == STEP_IN_TURN and cause.cause in OF_A_PULSE:
-        return _unresolved(cause) and same_manoeuvre(cause, other)
+        return cause.unresolved and same_manoeuvre(cause, other)
     if other.cause == STEP_IN_TURN:
-        return _is_of_step(cause, other)
+        return is_of_step(cause, other)
     if cause.cause == STEP_IN_TURN:
         return other.cause in MISFITS and same_readings(cause, other)
     return True
 
 
-def _is_of_step(cause: Hypothesis, step: Hypothesis) -> bool:
-    """Whether an effect that is named says what the step of one turn means."""
-    if not cause.named or cause.causes.isdisjoint((*MOUNTINGS, "turn_angle_error")):
-        return False
-    return same_manoeuvre(cause, step) or (same_time(cause, step) and _same_angle(cause, step))
-
-
 def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
     """The same of an effect that was named."""
-    if not _unresolved(cause) or not same_sensor(cause, other):
+    if not cause.unresolved or not same_sensor(cause, other):
         return False
     if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
-        return other.cause == "oscillation" and _size(other) < _size(cause)
+        return other.cause == "oscillation" and other.size < cause.size
     if cause.cause == "bias_removed":  # at rest, and with it the earth's rate
         return "earth_rate_omitted" in other.causes
     if cause.cause == "encoder_angles":
@@ -407,11 +315,6 @@ def _set_right_by_another(cause: Hypothesis, other: Hypothesis) -> bool:
     if is_of_wrong_place(cause, other):  # so it was not right
         return False
     return cause.repair is None or cause.repair["id"] != other.repair["id"]
-
-
-def _size(finding: Hypothesis) -> float:
-    """How large it is, in its unit; 0 where that is not known."""
-    return abs(float(finding.row["size"] or 0.0))
 
 
 def _in_proportion(effect: Hypothesis) -> bool:
@@ -487,7 +390,7 @@ def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
         return False
     if other.cause == "gyro_random_walk" and _is_short_tilt(cause):
         return False
-    return _unresolved(cause) and same_axis(cause, other)
+    return cause.unresolved and same_axis(cause, other)
 
 
 def _is_short_tilt(fault: Hypothesis) -> bool:
@@ -499,9 +402,3 @@ def _is_short_tilt(fault: Hypothesis) -> bool:
     if fault.cause != "table_moving" or first is None or last is None:
         return False
     return float(last) - float(first) < MAX_TILT_S
-
-
-def _unresolved(fault: Hypothesis) -> bool:
-    """Whether a fault of the recording leaves a mark, and is neither masked nor set right."""
-    spoils = int(fault.row["severity"]) >= MIN_SPOILING and fault.stage != MODEL
-    return spoils and not fault.masked and (fault.repair is None or bool(fault.rivals))

@@ -28,6 +28,7 @@ MOUNTINGS = ("mounting_shift", SLIP)  # effects that turn the axes of both senso
 TIME = "t0"  # the parameter of effects that set in at a moment
 CLEAR_SIGMAS = 3.0  # of an angle
 MAX_CARRYING = 3  # manoeuvres that carry a structure of the residuals; it is elsewhere with more
+MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,17 @@ class Hypothesis:
     def causes(self) -> frozenset[str]:
         """What it may be."""
         return frozenset((self.cause, *self.members))
+
+    @property
+    def size(self) -> float:
+        """How large it is, in its unit; 0 where that is not known."""
+        return abs(float(self.row["size"] or 0.0))
+
+    @property
+    def unresolved(self) -> bool:
+        """Whether it is a fault that leaves a mark, and is neither masked nor set right."""
+        spoils = int(self.row["severity"]) >= MIN_SPOILING and self.stage != MODEL
+        return spoils and not self.masked and (self.repair is None or bool(self.rivals))
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from inertial.campaign.competition import ExplainedFindings
-from inertial.campaign.explanations import MIN_SPOILING, PER_RUN, has_own_error, is_of_wrong_place
+from inertial.campaign.explanations import PER_RUN, has_own_error, is_of_wrong_place
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,
     JUMP_NOT_TESTABLE,
     LAW,
+    MIN_SPOILING,
     MODEL,
     MOUNTINGS,
     ONE_OF_CLASS,
@@ -169,10 +170,7 @@ class Cause:
 
     @property
     def spoils(self) -> bool:
-        """Whether it is not removed and moves a parameter by more than its sigma.
-
-        By how much is not known of what leaves a structure in the residuals.
-        """
+        """Whether it is not removed and moves a parameter by more than its sigma, or may do so."""
         if self.cure != NONE or self.condition:
             return False
         if self.moves is not None:

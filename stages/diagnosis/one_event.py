@@ -10,9 +10,9 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
-from inertial.campaign.explanations import JUMPS, RESTARTS
 from inertial.campaign.hypotheses import MOUNTINGS, STEP_IN_TURN, TABLE_MOVING, Hypothesis
 from inertial.campaign.records import Row, clocks_of, rows_of
+from inertial.campaign.where_causes_act import JUMPS, RESTARTS
 from inertial.sensors import PLURAL
 from inertial.tables import AXES
 from inertial.text.messages import _
