@@ -41,14 +41,16 @@ class WrongMark(PlanDetector):
         elif off.undecided:
             why = _("Which of them are right neither the plan nor the gyros show.")
         else:
-            why = _("The most of the marks, where nothing moved between them, are taken for right.")
+            why = _(
+                "Where nothing moved between them, the marks that most of them agree on are taken for right."
+            )
         sentence = plural(
-            "The plan states the mark of {names} {off}° from where the turns leave it: between "
-            "{right} and {wrong}, as an example, nothing moves but by the angles of the plan, and "
-            "so one of their marks is wrong. {why}",
-            "The plan states the marks of {names} up to {off}° from where the turns leave them: "
-            "between {right} and {wrong}, as an example, nothing moves but by the angles of the "
-            "plan, and so one of their marks is wrong. {why}",
+            "The plan states the mark of {names} {off}° from where the turns leave it. Between "
+            "{right} and {wrong}, for example, nothing moves but by the planned angles, so one of "
+            "their marks is wrong. {why}",
+            "The plan states the marks of {names} up to {off}° from where the turns leave them. "
+            "Between {right} and {wrong}, for example, nothing moves but by the planned angles, so "
+            "one of their marks is wrong. {why}",
             deviation.count,
             names=", ".join(off.names),
             off=fixed(float(np.degrees(off.off)), 0),

@@ -128,8 +128,8 @@ def _consequence_in_all_logs(misread: Misread) -> str:
     sensor, axes = PLURAL[misread.sensor], _in_the_matrix(misread.axes)
     if misread.change is not None and not misread.undone:
         return _(
-            "The turns give no parameters of the gyros: set right in all of the recording, the "
-            "manoeuvres on the other side would be reversed in their place."
+            "The turns give no parameters of the gyros: with the sign changed in the whole "
+            "recording, the manoeuvres on the other side would be reversed instead."
         )
     if misread.undone:
         return _(
