@@ -42,7 +42,8 @@ class WrongMark(PlanDetector):
             why = _("Which of them are right neither the plan nor the gyros show.")
         else:
             why = _(
-                "Where nothing moved between them, the marks that most of them agree on are taken for right."
+                "Where nothing moved between them, the marks that most of them agree on are taken "
+                "for right."
             )
         sentence = plural(
             "The plan states the mark of {names} {off}° from where the turns leave it. Between "
