@@ -7,15 +7,15 @@ is significant, nor named, and no structure is left, that manoeuvre is off by a 
 name.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from inertial.campaign.equations import Campaign
-from inertial.effects.law import Law
 from inertial.estimation.probability import chi2_sf
-from inertial.model_selection.cause import UNKNOWN_STRUCTURE
+from inertial.model_selection.cause import LAW, UNKNOWN_STRUCTURE
 from inertial.physics.effect import Effect
 from inertial.sensors import PLURAL, SENSORS
 from inertial.text.cause_names import in_words
@@ -34,10 +34,9 @@ from stages.criticism.residual_structure import (
 from stages.criticism.rivals import members_of
 from stages.criticism.selection import OffManoeuvre, Selection
 
-LEAST_EFFECTS = 2  # one may be the own error of that manoeuvre, as the angle of its turn
+LEAST_EFFECTS = 2  # of one sensor: a single one may be the own error of that manoeuvre
 MIN_CHANCE = 0.01  # of the effects in the other manoeuvres by noise alone
 MIN_INFORMATION = 1e-6  # of what an effect does to the readings, that the parameters leave
-
 MAX_CHANCE = 0.001  # of the same in all manoeuvres, in a sensor that shows them
 OFF = _(
     "The readings of the {sensors} in {manoeuvre} differ from those in all others ({p_value}): "
@@ -65,10 +64,11 @@ def select_beside_one_manoeuvre(
     tests : of the residuals of a campaign without effects
     """
     selection, _ = found
-    effects = selection.effects
-    catalogued = [effect for effect in effects if not isinstance(effect, Law)]
-    if len(catalogued) < LEAST_EFFECTS:
+    named = [cause for cause in selection.named.causes if cause.verdict != LAW]
+    of_sensors = Counter(selection.sensor(cause) for cause in named)
+    if max(of_sensors.values(), default=0) < LEAST_EFFECTS:
         return found
+    effects = selection.effects
     every = set(campaign.manoeuvres)
     chances = {m: _least_chance(_drops(campaign, effects, every - {m})) for m in sorted(every)}
     carrier = max(chances, key=chances.__getitem__)
@@ -80,6 +80,8 @@ def select_beside_one_manoeuvre(
     whole = campaign.with_random_walks(other.campaign.solution.random_walks)
     drops = _drops(whole, effects, every).items()
     shown = {sensor: drop for sensor, drop in drops if chi2_sf(*drop) < MAX_CHANCE}
+    if not shown:
+        return found
     off = OffManoeuvre(carrier, shown, members_of(selection))
     return replace(other, campaign=whole, off=off), tests(whole)
 
