@@ -78,3 +78,15 @@ def test_what_one_turn_of_a_gyro_shows_of_no_law_names_no_table():
     assert set(findings["verdict"]) == {"unknown_structure"}
     assert set(findings["sensor"]) == {"gyro"}
     assert "With x-forward left out" in findings.loc["unknown_structure", "sentence"]
+
+
+@pytest.mark.slow
+def test_a_knock_near_the_end_is_a_jump_of_both_sensors():
+    """Few manoeuvres are after it, and one effect of each sensor is no structure of one of them."""
+    jumps = {
+        "gyro_bias_jump": {"size_deg_h": [30, 0, 0], "at_s": 790},
+        "accel_bias_jump": {"size_micro_g": [300, 0, 0], "at_s": 790},
+    }
+    results = chain.in_memory_of(chain.short(seed=1801, effects=jumps), "criticism", chain.BESIDE)
+    findings = results["criticism/findings"].set_index("cause")["verdict"]
+    assert findings.to_dict() == dict.fromkeys(jumps, "found")
