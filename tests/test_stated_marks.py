@@ -53,7 +53,7 @@ def test_marks_that_the_turns_contradict_are_those_that_the_turns_leave(heading,
     (finding,) = results["segment/findings"].to_dict("records")
     (repair,) = results["segment/repairs"].to_dict("records")
     assert (finding["cause"], repair["id"]) == ("wrong_mark", "stated_marks")
-    assert "between x-forward and x-backward" in finding["sentence"]
+    assert "Between x-forward and x-backward" in finding["sentence"]
     assert all(name in repair["condition"] for name in BACK)
     assert finding["size"] == pytest.approx(np.pi)
     if heading is None and not rests:
