@@ -163,7 +163,7 @@ class JumpsOver:
 
     An encoder and the gyros differ by a scale factor, a bias and a delay, so slowly; what they
     differ by within a tenth of a second, beyond its median and ten times its scatter, is a jump of
-    the encoder's count, for no table turns so without its gyros.
+    the count, for no table turns so and no gyro feels it.
 
     about : by log the axis of each stretch, (k, 3), unit vectors in body axes
     """
