@@ -140,17 +140,22 @@ class EncoderScale(PlanDetector):
                 read=fixed(read, 4),
                 planned=fixed(planned, 4),
             ),
-            _(
-                "The encoder's angles are used. If the plan's are right, the scale factors of all "
-                "gyros are off by {ppm} ppm.",
-                ppm=significant(-1e6 * deviation.size, 3),
-            ),
+            _if_planned(deviation.size),
             _(
                 "Turn the table by a whole revolution against a mark, an autocollimator or a "
                 "polygon. If it turns as planned, correct the scale of the encoder, or leave it "
                 "out of the campaign; if the encoder is right, state the angles of the plan by it."
             ),
         )
+
+
+def _if_planned(size: float) -> str:
+    """What an encoder that reads 1 + `size` of the planned angles does if these are right."""
+    return _(
+        "The encoder's angles are used. If the plan's are right, the scale factors of all gyros "
+        "are off by {ppm} ppm.",
+        ppm=significant(-1e6 * size, 3),
+    )
 
 
 class EncoderScaleOrEccentricity(EncoderScale):
@@ -190,11 +195,7 @@ class EncoderScaleOrEccentricity(EncoderScale):
                 planned=fixed(planned, 4),
                 eccentricity=significant(least_eccentricity(recorded, turns, off) / ARC_SECOND, 2),
             ),
-            _(
-                "The encoder's angles are used. If the plan's are right, the scale factors of all "
-                "gyros are off by {ppm} ppm.",
-                ppm=significant(-1e6 * deviation.size, 3),
-            ),
+            _if_planned(deviation.size),
             _(
                 "Turn by whole revolutions, in which an encoder off its axis is right: if it "
                 "agrees with the plan then, it is eccentric; if it is off by the same ratio, "

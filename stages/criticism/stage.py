@@ -92,7 +92,7 @@ def _of_mount(
         tested = structure_tests(effects.campaign, effects.fitted, degrees, levels[1])
         return with_laws(effects, tested, campaign, in_blocks, *levels, degrees)
 
-    def carried_by_several(campaign: Campaign) -> tuple[Selection, Tested]:
+    def beside_one_manoeuvre(campaign: Campaign) -> tuple[Selection, Tested]:
         return select_beside_one_manoeuvre(
             selected(campaign),
             campaign,
@@ -102,7 +102,7 @@ def _of_mount(
         )
 
     (selection, tested, campaign), scatter = select_beside_scatter(
-        measured, lambda one: select_beside_drift(one, carried_by_several, levels[0]), levels[0]
+        measured, lambda one: select_beside_drift(one, beside_one_manoeuvre, levels[0]), levels[0]
     )
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
