@@ -15,7 +15,10 @@ WANTED = 2000  # campaigns, for a bound of 1.5 % where 1 % are named
 LEVEL = 0.01  # required rate of false names; the lower `criticism: level` is of any finding
 BOUND = 0.95  # probability that the rate is below its one-sided bound
 SURE = 0.01  # of all tests of a table together that one is called uneven
-CORRECTED = "structure "  # its p-values are bounds: at most as many below a value as that value
+# Tests whose p-values are bounds (at most as many are below a value as that value): what searches
+# pays for that by a bound, and the lean of a table is sought beside the tilts of its axes, of
+# which the simulated table has none.
+BOUNDS = ("structure ", "table_tilt")
 
 Outcome = dict[str, Any]
 Row = tuple[str, ...]
@@ -70,7 +73,7 @@ def _even(
         tenths = np.histogram(ranks, bins=10, range=(0, 1))[0]
         p = test(values)
         verdict = "uneven" if p < SURE / len(names) else "even"
-        if verdict == "uneven" and name.startswith(CORRECTED):
+        if verdict == "uneven" and name.startswith(BOUNDS):
             below = binomtest(int(tenths[0]), len(values), 0.1, alternative="greater").pvalue
             verdict = "too many" if below < SURE / len(names) else "conservative"
         spread = "" if what == "chances" else f"{np.sqrt(np.mean(values**2)):.2f}"
