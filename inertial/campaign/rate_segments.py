@@ -184,19 +184,25 @@ def rate_segment_of(
 def steady_rate_of(
     rotation: Rotation, noise: NoiseLevels, heading: float | None, rate_sigma: float
 ) -> SteadyRate:
-    """A turn at a known rate by the mean of its steady part; arguments as of `rate_segment_of`."""
+    """A turn at a known rate by the mean of its steady part; arguments as of `rate_segment_of`.
+
+    What is stated of the rates of a table holds for each of them and for what they have in common;
+    a rate that was measured has a sigma of its own alone.
+    """
     m, part = rotation.plan, rotation.steady
     assert m.rate is not None  # the plan requires a rate of such a turn
     ends = np.cumsum(part.seconds + part.missing) - part.missing[0]
+    stated = abs(m.rate) * rate_sigma
     return SteadyRate(
         position=position_of(m, heading),
         about=m.axis,
         rate=m.rate,
-        rate_sigma=abs(m.rate) * rate_sigma if m.rate_sigma is None else m.rate_sigma,
+        rate_sigma=stated if m.rate_sigma is None else m.rate_sigma,
         seconds=part.seconds,
         elapsed=ends - part.seconds / 2,
         mean=mean_rate(part),
         sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(part.seconds.sum()),
+        table_rate_sigma=stated if m.rate_sigma is None else 0.0,
     )
 
 

@@ -72,6 +72,7 @@ DELAY_SIGMA = 0.05  # s
 ECCENTRICITY_SIGMA = 1e-4  # rad, 20 arcsec
 CLOCK = "clock"  # kind of the error of the rate of a log's clock
 DELAY: Name = ("encoder delay", TABLE)
+TABLE_RATE: Name = ("table rate", TABLE)  # by which all its rates are off, in its sigma
 WAVES: tuple[Name, Name] = (("encoder sine", TABLE), ("encoder cosine", TABLE))
 MAX_BLOCKS_PER_PASS = 4000  # so that the memory does not grow with the length of a segment
 
@@ -221,9 +222,13 @@ def steady_equations(
     for tilt, axis in tilt_axes(steady.position, steady.about).items():
         sigma[tilt], names = position_sigma, (*names, tilt)
         columns.append((steady.rate * (matrix @ cross(axis, steady.about)))[:, None])
+    along = matrix @ steady.about
     rate = ("rate", name)
     sigma[rate], names = steady.rate_sigma, (*names, rate)
-    columns.append((matrix @ steady.about)[:, None])
+    columns.append(along[:, None])
+    if steady.table_rate_sigma:
+        sigma[TABLE_RATE], names = 1.0, (*names, TABLE_RATE)
+        columns.append((np.sign(steady.rate) * steady.table_rate_sigma * along)[:, None])
     design = np.hstack(columns)
     observed = steady.mean + up * earth.up - design[:, : len(prior)] @ prior
     return whitened(np.column_stack([design, observed]), steady.sigma, names)

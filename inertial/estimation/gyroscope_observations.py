@@ -178,7 +178,8 @@ class RateSegment:
 class SteadyRate:
     """A part of a rate segment at a known rate: mean rates (3,), rad/s, sigma, rate and its sigma.
 
-    `seconds`, `elapsed`: (k,), duration and middle of its blocks, s.
+    `seconds`, `elapsed`: (k,), duration and middle of its blocks, s. `rate_sigma`: rad/s, of its
+    own; `table_rate_sigma`: rad/s, of the error that all rates of the table have as one share.
     """
 
     position: Position
@@ -191,6 +192,7 @@ class SteadyRate:
     sigma: Array
     sensitivities: Sensitivities = NO_SENSITIVITIES
     stretch: Stretch | None = None
+    table_rate_sigma: float = 0.0
 
 
 @dataclass(frozen=True)

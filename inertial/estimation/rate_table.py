@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array, Integers
+from inertial.estimation.gyroscope_equations import TABLE_RATE
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.gyroscope_observations import Earth, SteadyRate
 from inertial.estimation.horizontal_earth_rate import summed_earth_rate
@@ -90,8 +91,9 @@ def rate_table(
 ) -> RateTable | None:
     """S4's least squares of k steady runs; None where there is none.
 
-    Sigmas are of the noise of the means, the rate of each run, the tilt of the table's axis in
-    each position (rad), the earth's rate, and the `scatter` between runs (rad/s).
+    Sigmas are of the noise of the means, the rate of each run and the share by which all are off,
+    the tilt of the table's axis in each position (rad), the earth's rate, and the `scatter` between
+    runs (rad/s).
     """
     if not runs:
         return None
@@ -120,7 +122,9 @@ def rate_table(
 
     readings = Readings(values, noise)
     for j, (run, earth_rate) in enumerate(zip(runs, earth_rates, strict=True)):
-        readings.add_cause("rate", str(j), j, matrix @ run.about * run.rate_sigma)
+        along = matrix @ run.about
+        readings.add_cause("rate", str(j), j, along * run.rate_sigma)
+        readings.add_cause(*TABLE_RATE, j, along * np.sign(run.rate) * run.table_rate_sigma)
         readings.add_earth(j, earth_rate, matrix, earth.up_sigma)
         readings.add_tilts(j, run.position.name, run.about, run.rate, matrix, position_sigma)
     return RateTable(

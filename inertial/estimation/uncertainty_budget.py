@@ -25,6 +25,8 @@ STEP = 1e-4  # relative, of a variance: its square is lost, and nothing by round
 ERRORS = {
     "position": (*TILTS, *OF_AXIS, *AZIMUTH, *OF_CASE),
     "angle": ("angle", "encoder delay", "encoder sine", "encoder cosine"),
+    "rate": ("rate",),
+    "table_rate": ("table rate",),
     "interpolation": ("gap angle",),
     "clock": ("clock",),
     "azimuth": ("level 0", "level 1", "earth 0", "earth 1", "earth 2"),

@@ -140,9 +140,9 @@ UNCERTAINTY_BUDGET = Table(
             "",
             "noise: white noise; drift: bias instability and random walk by the noise, or by the"
             " data sheet; switch_on: bias from switch-on to switch-on; scatter, random_walk:"
-            " between manoeuvres, by the fit; position, angle: of the table; interpolation: of"
-            " gaps; clock: its rate by stamps of arrival; azimuth: unknown"
-            " direction of north; gravity; latitude",
+            " between manoeuvres, by the fit; position, angle, rate: of the table; table_rate: by"
+            " which all its rates are off alike; interpolation: of gaps; clock: its rate by stamps"
+            " of arrival; azimuth: unknown direction of north; gravity; latitude",
         ),
         Column("sigma", DOUBLE, "as unit", "its part of the standard deviation, root of variance"),
         Column("unit", TEXT, "", "unit of sigma, SI"),

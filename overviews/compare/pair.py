@@ -9,6 +9,7 @@ from math import sqrt
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.campaign.references import READ_AS_SCALE
 from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.estimation.probability import chi2_sf
 from overviews.compare.shared import Key, Shared, shared_by
@@ -110,21 +111,25 @@ class Pair:
         return chi2, len(rows), float(chi2_sf(chi2, len(rows)))
 
     def covariance_of_differences(self, rows: list[Compared]) -> Array:
-        """Of second less first of parameters of a sensor, (n, n), the shared gravity taken out."""
-        each = [self._covariance(which, rows) for which in (0, 1)]
-        moved = [self._by_gravity(which, rows, own) for which, own in enumerate(each)]
-        return np.asarray(each[0] + each[1] - np.outer(*moved) - np.outer(*moved[::-1]))
+        """Of second less first of parameters of a sensor, (n, n).
 
-    def _by_gravity(self, which: int, rows: list[Compared], covariance: Array) -> Array:
-        """By how much an error of the shared gravity moves each value, (n,); or by nothing.
+        The errors of gravity and of the rates of a table that both share are taken out.
+        """
+        each = [self._covariance(which, rows) for which in (0, 1)]
+        difference = each[0] + each[1]
+        for source in READ_AS_SCALE:
+            moved = [self._moved_by(source, which, rows, own) for which, own in enumerate(each)]
+            difference -= np.outer(*moved) + np.outer(*moved[::-1])
+        return difference
+
+    def _moved_by(self, source: str, which: int, rows: list[Compared], covariance: Array) -> Array:
+        """By how much an error of a shared source moves each value, (n,); or by nothing.
 
         Its size is by the share in the variance, its sign that of the covariance with the value of
-        the largest share, which is nearly all gravity's.
+        the largest share, which is nearly all of this source.
         """
-        shares = np.array(
-            [self.shared.shares[which].get((one.key, "gravity"), 0.0) for one in rows]
-        )
-        if "gravity" not in self.shared.sites or not shares.any():
+        shares = np.array([self.shared.shares[which].get((one.key, source), 0.0) for one in rows])
+        if source not in self.shared.sources or not shares.any():
             return np.zeros(len(rows))
         signs = np.sign(covariance[np.argmax(shares)])
         return np.asarray(signs * np.sqrt(np.diag(covariance) * shares))

@@ -12,11 +12,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from math import sqrt
 
-from inertial.campaign.references import References, references_of
+from inertial.campaign.references import TABLE_RATE, References, references_of
 from inertial.text.messages import _
 from stages.report.tables import Tables
 
-TABLE_SOURCES = ("position", "angle")
+TABLE_SOURCES = ("position", "angle", "rate")
 Key = tuple[str, str, str]  # mount, sensor and quantity
 
 
@@ -24,7 +24,7 @@ Key = tuple[str, str, str]  # mount, sensor and quantity
 class Shared:
     """Which references two campaigns share, and their shares in the variance of each parameter.
 
-    `sites`: sources whose error is the same for certain; `table`: it is the same table at the same
+    `sources`: those whose error is the same for certain; `table`: it is the same table at the same
     positions, whose errors repeat as far as they are not chance, which nobody states.
     """
 
@@ -32,10 +32,10 @@ class Shared:
     shares: tuple[Mapping[tuple[Key, str], float], Mapping[tuple[Key, str], float]]
 
     @property
-    def sites(self) -> tuple[str, ...]:
+    def sources(self) -> tuple[str, ...]:
         """In the order of the first."""
         first, second = self.references
-        return tuple(s for s, name in first.sites.items() if second.sites.get(s) == name)
+        return tuple(s for s, name in first.sources.items() if second.sources.get(s) == name)
 
     @property
     def same_plan(self) -> bool:
@@ -52,7 +52,7 @@ class Shared:
         """Of the two values of a parameter; `table`: as if all errors of the table repeated."""
         first, second = self.references
         _mount, *of = key
-        alike = [s for s in self.sites if first.name(s, *of) == second.name(s, *of)]
+        alike = [s for s in self.sources if first.name(s, *of) == second.name(s, *of)]
         return sum(
             sigmas[0] * sigmas[1] * sqrt(self._share(0, key, source) * self._share(1, key, source))
             for source in (*alike, *(TABLE_SOURCES if table and self.table else ()))
@@ -81,19 +81,28 @@ def in_sentences(shared: Shared, names: tuple[str, str]) -> list[str]:
     said = []
     words = {"gravity": _("gravity"), "latitude": _("latitude")}
     missing = [n for n, own in zip(names, shared.shares, strict=True) if not own]
-    if shared.sites and not missing:
+    of_site = [source for source in shared.sources if source in words]
+    if of_site and not missing:
         said.append(
             _(
                 "Both stand at one place and take the same {references} as known: its error is in "
                 "both results alike, and is not in the σ of the differences.",
-                references=_(" and ").join(words[of] for of in shared.sites),
+                references=_(" and ").join(words[of] for of in of_site),
             )
         )
-    if shared.sites and not shared.same_plan and not missing:
+    if of_site and not shared.same_plan and not missing:
         said.append(
             _(
                 "The plans differ, so that only the scale factors of the accelerometers are known "
                 "to contain it alike."
+            )
+        )
+    steady = [any(source == TABLE_RATE for _key, source in own) for own in shared.shares]
+    if TABLE_RATE in shared.sources and all(steady):
+        said.append(
+            _(
+                "Both were turned at known rates of one table: by which share all of these are off "
+                "is in the scale factors of both alike, and is not in the σ of the differences."
             )
         )
     if shared.table and not missing:

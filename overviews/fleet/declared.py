@@ -12,4 +12,5 @@ READ = {
     "information": From("criticism", tables.INFORMATION_MATRIX),
     "result": From("diagnosis", tables.PARAMETERS, "result"),
     "covariance": From("diagnosis", tables.COVARIANCE),
+    "uncertainty_budget": From("compensation", tables.UNCERTAINTY_BUDGET),
 }

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
-from inertial.campaign.references import NAMELESS
+from inertial.campaign.references import NAMELESS, TABLE_RATE
 from inertial.estimation.triad import linear_names
 from inertial.estimation.type_population import Campaigns
 from inertial.model_selection.common_scale import ScaleFactors
@@ -29,8 +29,8 @@ PARAMETERS: tuple[Place, ...] = tuple(
     (sensor, name) for sensor in ("accel", "gyro") for name in linear_names()
 )
 
-ACCEL_SCALES = {("accel", name) for name in SCALE}
-MAX_GRAVITY_SHARE = 0.9999  # of the variance of a scale factor
+SCALES = {sensor: {(sensor, name) for name in SCALE} for sensor in ("accel", "gyro")}
+MAX_SHARE = 0.9999  # of the variance of a scale factor that is an error of its reference
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,8 @@ class Member:
 
     `score` by effect and parameter, `information` rows of the table; `values`: (24,) in the order
     of PARAMETERS, NaN where not determined, with `covariance`; `gravity`: as the campaign takes it
-    as known, m/s², with sigma; `references`: what its scale factors rest on; `reason`: why it is
+    as known, m/s², with sigma; `by_table`: (24,), what of the sigmas is the share by which all
+    rates of the table are off; `references`: what its scale factors rest on; `reason`: why it is
     not pooled.
     """
 
@@ -70,6 +71,7 @@ class Member:
     values: Array
     covariance: Array
     gravity: tuple[float, float]
+    by_table: Array
     references: References
     reason: str = ""
 
@@ -150,6 +152,7 @@ def _members(name: str, folder: Path) -> Iterator[Member]:
             information,
             *_parameters(own, covariance),
             _gravity(frames["known"]),
+            _by_table_of(frames["uncertainty_budget"], mount),
             references,
         )
 
@@ -170,6 +173,12 @@ def _parameters(rows: pd.DataFrame, known: Mapping[tuple[str, str], float]) -> t
 def _gravity(known: pd.DataFrame) -> tuple[float, float]:
     row = known[known["quantity"] == "gravity"].iloc[0]
     return float(row["value"]), float(np.nan_to_num(row["sigma"]))
+
+
+def _by_table_of(budget: pd.DataFrame, mount: str) -> Array:
+    own = budget[(budget["mount"] == mount) & (budget["source"] == TABLE_RATE)]
+    sizes = own.set_index(["sensor", "quantity"])["sigma"]
+    return np.array([float(sizes.get(place, 0.0)) for place in PARAMETERS])
 
 
 def _references(frames: Mapping[str, pd.DataFrame], *, named: bool) -> References:
@@ -226,7 +235,7 @@ def evidence_of(members: Sequence[Member]) -> tuple[FleetEvidence, dict[str, lis
 
 
 def scale_factors_of(members: Sequence[Member], sensor: str) -> ScaleFactors:
-    """The scale factors of a sensor, without the error of gravity that campaigns have alike.
+    """The scale factors of a sensor, without the errors of references that campaigns have alike.
 
     Along each input axis: the lengths of the rows of M, which another mounting does not change.
     """
@@ -235,8 +244,7 @@ def scale_factors_of(members: Sequence[Member], sensor: str) -> ScaleFactors:
     of_matrix = slice(first, first + 9)
     values, covariances = np.full((len(kept), 3), np.nan), np.zeros((len(kept), 3, 3))
     for number, member in enumerate(kept):
-        moved = _by_gravity(member)
-        covariance = member.covariance - np.outer(moved, moved)
+        covariance = _without_references(member)
         found = member.values[of_matrix].reshape(3, 3)
         rows = np.eye(3) + np.nan_to_num(found)
         length = np.linalg.norm(rows, axis=1)
@@ -250,34 +258,48 @@ def scale_factors_of(members: Sequence[Member], sensor: str) -> ScaleFactors:
     return ScaleFactors(values, covariances, imus, tuple(m.table for m in kept))
 
 
-# ---- The error of gravity: campaigns that take the same value as known contain it alike.
+# ---- Errors of references: campaigns that take the same as known contain them alike.
 
 
 def campaigns_of_type(members: Sequence[Member]) -> Campaigns:
-    """The parameters of the campaigns of one type, the error of gravity taken out of their sigmas.
-
-    A relative error ε of gravity is −ε of each scale factor of the accelerometers.
-    """
-    covariance = np.array([m.covariance for m in members])
-    moved = np.array([_by_gravity(m) for m in members])
+    """The parameters of the campaigns of one type, without such errors in their sigmas."""
     return Campaigns(
         np.array([m.values for m in members]),
-        covariance - moved[:, :, None] * moved[:, None, :],
+        np.array([_without_references(m) for m in members]),
         labels_of(members),
     )
 
 
-def of_gravity(members: Sequence[Member]) -> Array:
-    """Sigma of the means by the error of gravity, (24,): one for each value that is known."""
+def of_references(members: Sequence[Member]) -> Array:
+    """Sigma of the means by such errors, (24,): one for each value of gravity and each table."""
     variance = np.zeros(len(PARAMETERS))
     for gravity in {m.gravity for m in members}:
         own = np.array([_by_gravity(m) * (m.gravity == gravity) for m in members])
         variance += own.mean(axis=0) ** 2
+    for table in {m.table for m in members}:
+        own = np.array([_by_table(m) * (m.table == table) for m in members])
+        variance += own.mean(axis=0) ** 2
     return np.sqrt(variance)
 
 
+def _without_references(member: Member) -> Array:
+    """The covariance of the parameters, (24, 24), without the errors of gravity and the table."""
+    moved = np.column_stack([_by_gravity(member), _by_table(member)])
+    return member.covariance - moved @ moved.T
+
+
 def _by_gravity(member: Member) -> Array:
+    """By one sigma of gravity: a relative error is the opposite of that in all scale factors."""
     value, sigma = member.gravity
-    most = np.sqrt(np.diag(member.covariance) * MAX_GRAVITY_SHARE)
-    of = np.array([place in ACCEL_SCALES for place in PARAMETERS])
-    return np.where(of & np.isfinite(member.values), np.minimum(sigma / value, most), 0.0)
+    return _in_scales(member, "accel", sigma / value)
+
+
+def _by_table(member: Member) -> Array:
+    """By one sigma of the share by which all rates of the table are off."""
+    return _in_scales(member, "gyro", member.by_table)
+
+
+def _in_scales(member: Member, sensor: str, size: float | Array) -> Array:
+    most = np.sqrt(np.diag(member.covariance) * MAX_SHARE)
+    of = np.array([place in SCALES[sensor] for place in PARAMETERS])
+    return np.where(of & np.isfinite(member.values), np.minimum(size, most), 0.0)

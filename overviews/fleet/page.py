@@ -264,7 +264,8 @@ def _populations(rows: Rows) -> outline.Section:
             "degrees of freedom, for Student's t. With one table its part is in the mean and not "
             "in σ. Spreads are of largest restricted likelihood; 0: the σ of the campaigns "
             "explains all differences. Outliers are in no number. An error of gravity is one of "
-            "all campaigns that take the same value as known, and is in σ of the mean alone."
+            "all campaigns that take the same value as known, that of all rates of a table one of "
+            "all campaigns on it: they are in σ of the mean alone."
         ),
         parts,
     )

@@ -29,7 +29,7 @@ from overviews.fleet.members import (
     Place,
     campaigns_of_type,
     evidence_of,
-    of_gravity,
+    of_references,
 )
 
 Rows = dict[str, list[Row]]
@@ -174,7 +174,7 @@ def _population(members: Sequence[Member], level: float) -> Iterator[tuple[str, 
     for place, one, common, values in zip(
         PARAMETERS,
         found.parameters,
-        of_gravity(kept),
+        of_references(kept),
         np.array([m.values for m in kept]).T,
         strict=True,
     ):

@@ -12,6 +12,7 @@ UP, LEVEL = earth_rate(np.radians(39.98))
 BEIJING = Earth(UP, 1e-9, LEVEL)
 RATES = np.radians([10, 20, 40, 60, 80, -10, -20, -40, -60, -80])
 NOISE, RATE_SIGMA, TILT = 1e-5, 1e-4, 1e-4  # rad/s; relative; rad
+TABLE_RATE_SIGMA = 2e-4  # relative, of all rates alike
 
 
 def runs(
@@ -23,6 +24,7 @@ def runs(
 ) -> list[SteadyRate]:
     """Runs about each axis at ten rates, with the errors of table, mounting and gyros."""
     result = []
+    off = 1 + random.normal(0, TABLE_RATE_SIGMA)  # all rates of the table
     for gyro in ("xyz".index(axis) for axis in axes):
         up = np.eye(3)[gyro]
         lean = np.cross(random.normal(0, TILT, 3) * (1 - up), up)
@@ -33,7 +35,7 @@ def runs(
             seconds = np.full(100, turns * 2 * np.pi / abs(rate) / 100)
             elapsed = np.cumsum(seconds) - seconds / 2
             seen = turned_all(north, up, rate * elapsed).mean(axis=0)
-            real = rate * (1 + random.normal(0, RATE_SIGMA))
+            real = rate * off * (1 + random.normal(0, RATE_SIGMA))
             truth = real * (up + lean) + UP * up + LEVEL * seen
             mean = M @ truth + bias + random.normal(0, NOISE, 3)
             result.append(
@@ -46,6 +48,7 @@ def runs(
                     elapsed=elapsed,
                     mean=mean,
                     sigma=np.full(3, NOISE),
+                    table_rate_sigma=abs(rate) * TABLE_RATE_SIGMA,
                 )
             )
     return result
@@ -67,6 +70,8 @@ def test_what_was_put_in_comes_back_with_true_sigmas(turns):
         pulls.append(error / table.solution.sigma)
     assert np.std(pulls) == pytest.approx(1, abs=0.14)
     assert np.abs(pulls).max() < 4.5
+    together = np.array(pulls)[:, [0, 4, 8]].mean(axis=1)  # of the scale factors of a table
+    assert np.std(together) == pytest.approx(1, abs=0.3)
 
 
 def test_without_errors_it_is_exact():

@@ -139,6 +139,9 @@ def test_tables_without_a_common_imu_are_not_compared():
 def members(sensor="gyro", turns="steady", named=True):
     """Three IMUs on two tables; 3° between the mountings, of which lengths of rows know nothing."""
     of = scale_factors(3, 2, 9, off=(0.0, OFF))
+    steady = (sensor, turns) == ("gyro", "steady")
+    of_scales = [kind == "gyro" and name.startswith("scale") for kind, name in PARAMETERS]
+    by_table = 50e-6 * np.array(of_scales) * steady
     for number, (diagonal, imu, table) in enumerate(
         zip(of.values, of.imus, of.tables, strict=True)
     ):
@@ -160,13 +163,14 @@ def members(sensor="gyro", turns="steady", named=True):
             units={},
             information=pd.DataFrame(),
             values=values,
-            covariance=SIGMA**2 * np.eye(24),
+            covariance=SIGMA**2 * np.eye(24) + np.outer(by_table, by_table),
             gravity=(9.8, 1e-6),
+            by_table=by_table,
             references=References(named, frozenset({turns}), {"rate": 50e-6}),
         )
 
 
-def test_lengths_of_rows_do_not_know_the_mounting():
+def test_lengths_of_rows_know_neither_the_mounting_nor_the_error_of_all_rates_of_a_table():
     own = scale_factors_of(list(members()), "gyro")
     expected = scale_factors(3, 2, 9, off=(0.0, OFF))
     np.testing.assert_allclose(own.values, expected.values, atol=1e-12)

@@ -7,6 +7,9 @@ import pytest
 from inertial.campaign.equations import PRIOR_SIZE
 from inertial.campaign.observations import campaign_of
 from inertial.estimation.accelerometers import Reference, StaticForce, drifting
+from inertial.estimation.gyroscope_equations import Linearisation
+from inertial.estimation.gyroscope_observations import Earth, Position, SteadyRate
+from inertial.estimation.gyroscopes import linearised
 from inertial.estimation.uncertainty_budget import Model, budget
 from inertial.physics.forward import Triad
 
@@ -56,6 +59,33 @@ def test_a_bias_weighs_upright_positions_against_level_ones(parts):
     noise = NOISE**2 * ((1 - share) ** 2 / 2 + share**2 / 4)
     assert each["noise"][BIAS_X] == pytest.approx(noise, rel=1e-3)
     assert each["position"][BIAS_X] == pytest.approx(tilted * share**2 / 4, rel=1e-3)
+
+
+def test_a_scale_factor_by_known_rates_has_the_share_by_which_all_of_them_are_off():
+    """s = (ω₊ − ω₋)/(2 ω) − 1 of two runs about each axis: own errors ρ²/2, of the table τ²."""
+    rate, own, table, noise = 0.5, 2e-4, 1e-4, 1e-6
+    runs = [
+        SteadyRate(
+            Position(f"{i}", np.eye(3)[i]),
+            np.eye(3)[i],
+            signed,
+            rate * own,
+            np.full(9, 2.0),
+            np.arange(9) * 2.0,
+            signed * np.eye(3)[i],
+            np.full(3, noise),
+            table_rate_sigma=rate * table,
+        )
+        for i in range(3)
+        for signed in (rate, -rate)
+    ]
+    about = Linearisation(np.eye(3), np.zeros(3), {})
+    equations = linearised(about, [], runs, Earth(3e-5, 1e-12, 6e-5), 1e-9)
+    whole, each = budget(Model(equations.with_statics([]).drifting()))
+    assert sum(each.values()) == pytest.approx(whole, rel=1e-3)
+    for scale in (0, 4, 8):
+        assert each["rate"][scale] == pytest.approx(own**2 / 2, rel=0.01)
+        assert each["table_rate"][scale] == pytest.approx(table**2, rel=0.01)
 
 
 @pytest.mark.slow

@@ -36,6 +36,8 @@ SOURCES = {
     "random_walk": _("random walk of the bias"),
     "position": _("table, position"),
     "angle": _("table, angle"),
+    "rate": _("table, each rate"),
+    "table_rate": _("table, all rates alike"),
     "interpolation": _("interpolated gaps"),
     "clock": _("rate of the clock"),
     "azimuth": _("azimuth"),
