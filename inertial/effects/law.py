@@ -55,6 +55,11 @@ class Law(Effect):
         return AXES if self.axis == ALL else (self.axis,)
 
     @property
+    def of_time(self) -> bool:
+        """Whether it is a drift: a law of time, or of that since the power was switched on."""
+        return self.state in ("time", "run_time")
+
+    @property
     def _terms(self) -> Sequence[str]:
         """What distinguishes the functions of one axis."""
         if self.family == "polynomial":

@@ -174,7 +174,7 @@ class BlockResults:
         if cause.verdict not in NAMED:
             return sentences.ACTION_WITHOUT_LAW
         if cause.effect in LAWS:
-            return law_action(cause.effect, self.mount)
+            return law_action(LAWS[cause.effect], self.mount)
         if isinstance(effect := self.selection.families.get(cause.effect, (None,))[0], Restarts):
             manoeuvres = first_after(self.campaign, effect.times)
             return sentences.action_against_restarts(manoeuvres)

@@ -114,6 +114,11 @@ ACTION = _(
     "Look for its physical cause: {file} proposes it as an effect, in the form of the catalogue. "
     "Readings are not compensated by it."
 )
+OF_TIME_ACTION = _(
+    "Look for its physical cause: {file} proposes it as an effect, in the form of the catalogue. "
+    "Readings are not compensated by it: the bias is the mean over the recording, and its sigma "
+    "contains how far the law goes about that."
+)
 POWERS = {2: _("quadratic in {state}"), 3: _("cubic in {state}"), 4: _("quartic in {state}")}
 FORMS = {
     "polynomial": _("a polynomial of degree {degree} in {state}"),
@@ -143,9 +148,10 @@ def law_sentence(cause: Cause, law: Law, parameters: Sequence[Estimated]) -> str
     return LAW_IN_WORDS.format_map(values)
 
 
-def law_action(name: str, mount: str) -> str:
+def law_action(law: Law, mount: str) -> str:
     """What to do about a law."""
-    return ACTION.format(file=f"extension/proposed/{name}{f'-{mount}' if mount else ''}.py")
+    action = OF_TIME_ACTION if law.of_time else ACTION
+    return action.format(file=f"extension/proposed/{law.name}{f'-{mount}' if mount else ''}.py")
 
 
 def form_of(law: Law) -> str:

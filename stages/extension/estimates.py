@@ -1,7 +1,7 @@
 """The refitted model as rows, and the changes of its parameters."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -57,6 +57,15 @@ class Solved:
     def values(self) -> Array:
         """The values of its rows, 0 where there is none."""
         return np.array([row["value"] or 0.0 for row in self.rows])
+
+    def with_values(self, values: Array, covariance: Array) -> "Solved":
+        """The same with other values and covariance of the rows that have any."""
+        sigma = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        rows = [
+            row if row["sigma"] is None else {**row, "value": float(value), "sigma": float(own)}
+            for row, value, own in zip(self.rows, values, sigma, strict=True)
+        ]
+        return replace(self, rows=rows, covariance=covariance)
 
     @property
     def of_sensor(self) -> list[Row]:

@@ -7,9 +7,13 @@ import numpy as np
 
 from inertial.campaign.equations import Campaign
 from inertial.effects.law import SIZES, Law
+from inertial.physics.effect import Effect
+from inertial.physics.laws import functions
+from inertial.physics.motion import Motion
 from inertial.text.cause_names import in_words
 from inertial.text.parameters import AXES
 from stages.extension.candidates import Candidate
+from stages.extension.estimates import Solved
 from stages.extension.named_effects import NamedClass
 
 # ---- A law as a file in the form of the catalogue, for whoever finds its physical cause.
@@ -87,6 +91,40 @@ def text_of(law: Law) -> str:
         count=len(axes),
         sensor=law.sensor,
     )
+
+
+# ---- A law of time is a drift that nothing takes out of readings.
+#
+# So the bias that holds for them is its mean over the recording, and how far the law goes about
+# this is part of its sigma (GUM F.2.4.5: a correction that is known to vary and is not applied).
+
+
+def with_drift_in_the_bias(
+    solution: Solved, effects: Sequence[Effect], motion: Motion, stretches: slice
+) -> Solved:
+    """The fit with the mean of its laws of time in the biases, and their scatter in the sigmas.
+
+    `stretches`: those of `motion` that are of the sensor.
+    """
+    weights = motion.seconds[stretches] / motion.seconds[stretches].sum()
+    place = {row["parameter"]: i for i, row in enumerate(solution.rows)}
+    transform, scatter = np.eye(len(place)), np.zeros(len(place))
+    for law in effects:
+        if not (isinstance(law, Law) and law.of_time and law.sensor == solution.sensor):
+            continue
+        for axis in law.axes:
+            bias, i = place[f"bias_{axis}"], AXES.index(axis)
+            own = [p.name for p in law.parameters if p.name[-1] == axis]
+            terms = [place[name] for p in own if (name := f"{law.name}.{p}") in place]
+            if len(terms) < len(own):
+                continue
+            responses = functions(law.family, law.state, law.shape, motion, i)[stretches]
+            mean = weights @ responses
+            transform[bias, terms] += mean
+            drift = (responses - mean) @ solution.values[terms]
+            scatter[bias] += weights @ drift**2
+    covariance = transform @ solution.covariance @ transform.T + np.diag(scatter)
+    return solution.with_values(transform @ solution.values, covariance)
 
 
 # ---- Laws of the rate, or of the attitude, that have about as many terms as the plan has of these.

@@ -10,7 +10,6 @@ a whole one behind it. They are those of the mixture over all moments, by their 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -85,12 +84,7 @@ def with_scanned_values(
     own = [*range(len(solution.of_sensor)), *(place[r["parameter"]] for r in solution.of_effects)]
     shared = covariance[np.ix_(own, scanned)]
     added = shared @ np.linalg.solve(covariance[np.ix_(scanned, scanned)], shared.T)
-    sigmas = np.sqrt(np.diag(solution.covariance + added)).tolist()
-    rows = [
-        row if row["sigma"] is None else {**row, "sigma": sigma}
-        for row, sigma in zip(solution.rows, sigmas, strict=True)
-    ]
-    return replace(solution, rows=rows, covariance=solution.covariance + added)
+    return solution.with_values(solution.values, solution.covariance + added)
 
 
 def sets_in(effect: Effect) -> bool:
@@ -162,14 +156,7 @@ def _over_moments_of(
     values, covariances = (np.array([fit[k] for fit in fits]) for k in (1, 2))
     mean, covariance = mixture(values, covariances, weights)
     shift, added = mean - before[1], covariance - before[2]
-    covariance = solution.covariance + added
-    rows = [
-        row
-        if row["sigma"] is None
-        else {**row, "value": row["value"] + float(by), "sigma": float(np.sqrt(variance))}
-        for row, by, variance in zip(solution.rows, shift, np.diag(covariance), strict=True)
-    ]
-    return replace(solution, rows=rows, covariance=covariance)
+    return solution.with_values(solution.values + shift, solution.covariance + added)
 
 
 def _determined(fit: Estimate, column: str) -> bool:

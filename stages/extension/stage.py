@@ -34,7 +34,7 @@ from stages.extension.cross_validation import CrossValidation, Trainings, cross_
 from stages.extension.declared import DECLARED
 from stages.extension.estimates import Solved, moved, solved, unseen_components
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
-from stages.extension.laws import form_is_open, proposed_rows
+from stages.extension.laws import form_is_open, proposed_rows, with_drift_in_the_bias
 from stages.extension.models import (
     PRIOR_SIGMA,
     Models,
@@ -283,7 +283,9 @@ class Extension:
             return None
         solution = with_scanned_values(solution, candidate.effects, system_of)
         solution = over_moments(solution, candidate.effects, models.effects, motion, system_of)
-        return solution, with_shapes(solution, candidate.effects, motion, system_of)
+        mean = with_shapes(solution, candidate.effects, motion, system_of)
+        stretches = models.extended.stretches(sensor)
+        return solution, with_drift_in_the_bias(mean, candidate.effects, motion, stretches)
 
     def _solution(self, solution: Solved) -> Iterator[tuple[str, Any]]:
         """The rows of a fit, and of the likeliest how far its parameters move."""

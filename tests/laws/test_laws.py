@@ -8,12 +8,16 @@ import pytest
 from hidden_plans import PLANS
 
 from inertial.effects import LAWS
+from inertial.effects.law import Law
+from inertial.estimation.triad import linear_names
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.law_evidence import best_paths, chance_of, law_odds
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics import laws
 from inertial.physics.motion import stretches
 from inertial.text.units import DEGREE_PER_HOUR, HOUR
+from stages.extension.estimates import Solved
+from stages.extension.laws import with_drift_in_the_bias
 
 BESIDE = ("studies", "comparison", "compensation")
 
@@ -103,6 +107,26 @@ def test_a_clean_campaign_and_a_random_walk_have_no_law(walk):
     document["noise"] = document["noise"] | {"gyro_rate_random_walk_deg_h_sqrt_h": walk}
     results = chain.in_memory_of(document, "criticism", BESIDE)
     assert not set(results["criticism/findings"]["cause"]) & set(LAWS)
+
+
+def test_the_bias_beside_a_law_of_time_is_its_mean_over_the_recording():
+    """Of two levels, the higher one for a quarter of the time: b + k/4 ± √(σ² + 3 k²/16)."""
+    law = Law("gyro", "z", "telegraph", "time", (300 / HOUR,))
+    motion = stretches(
+        np.array([50.0, 200.0, 350.0]), np.array([100.0, 200.0, 100.0]), np.full(3, np.nan)
+    )
+    names = [*linear_names(), f"{law.name}.k_z"]
+    rows = [{"parameter": name, "value": 1.0, "sigma": 0.1} for name in names]
+    rows[-1] |= {"value": 8.0, "sigma": 0.2}
+    sigmas = np.array([0.1] * 12 + [0.2])
+    own = Solved("gyro", rows, np.diag(sigmas**2), None, 0.0)
+    mean = with_drift_in_the_bias(own, [law], motion, slice(0, 3))
+    values = {row["parameter"]: (row["value"], row["sigma"]) for row in mean.rows}
+    scatter = np.sqrt(3 / 16) * 8.0
+    assert values.pop("bias_z") == pytest.approx((3.0, np.hypot(np.hypot(0.1, 0.2 / 4), scatter)))
+    assert values.pop(names[-1]) == (8.0, pytest.approx(0.2))
+    assert all(value == pytest.approx((1.0, 0.1)) for value in values.values())
+    assert mean.covariance[-1, 11] == pytest.approx(0.2**2 / 4)
 
 
 # ---- Functions, and their search.
