@@ -348,7 +348,9 @@ def _courses(at: Array, place: int, narrow: float) -> Iterator[Array]:
     width = narrow
     while width <= end:
         for shift in (-0.5, -0.25, 0, 0.25, 0.5):
-            yield np.clip((at - place) / width + 0.5 + shift, 0, 1)
+            ramp = np.clip((at - place) / width + 0.5 + shift, 0, 1)
+            if ramp.any():  # one that begins after the last block is none
+                yield ramp
         width *= 2
 
 

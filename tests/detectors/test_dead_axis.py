@@ -7,6 +7,7 @@ from recorded_by_hand import COUNT, NOISE, assert_told
 
 from inertial.campaign.findings import detections_of
 from inertial.detectors.dead_axis import DeadAxis
+from inertial.signal.steps import steps
 
 DEAD = DeadAxis()
 
@@ -135,3 +136,17 @@ def test_axes_that_stand_still_over_the_same_records_are_one_finding(channels, s
     assert said in together.sentence and "2 times in this log" in together.sentence
     sensor = "gyro" if channels[0] == 3 else None
     assert (together.sensor, together.axis, together.count) == (sensor, None, 2)
+
+
+def test_a_dead_band_is_searched_for_steps_to_the_last_reading():
+    """A step among the last readings of a window, behind the middle of its last block."""
+    random = np.random.default_rng(482)
+    count = int(random.integers(1500, 4000))
+    readings = random.normal(size=count) * random.uniform(0.5, 3)
+    readings[np.abs(readings) < 1] = 0
+    for _ in range(5):
+        first = int(random.integers(0, count - 50))
+        readings[first : first + int(random.integers(20, 400))] = 0
+    readings[random.integers(0, count) :] += random.uniform(0, 1)
+    found_steps = steps(readings, interval=0.01, quantum=1e-3, level=0.005)
+    assert all(np.isfinite([step.size, step.sigma]).all() for step in found_steps)
