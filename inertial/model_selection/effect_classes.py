@@ -12,6 +12,7 @@ from inertial.model_selection.search import Set
 
 MIN_CLASS_PROBABILITY = 0.95  # posterior, of all members together
 MIN_CAPTURED = 0.90  # share of the signal of an effect that a member can mimic
+MIN_SHARED = 0.10  # the same of any member: an effect that mimics nothing explains other data
 MAX_CHI_SQUARED_EXCESS = 13.8  # of such a member: a likelihood of one in a thousand
 MAX_RIVAL_EXCESS = 6.0  # of the chi-squared of a rival set: odds of 20
 MIN_PRIOR_SNR = 2.0  # of an effect: its prior is uniform in the logarithm
@@ -76,7 +77,8 @@ def effect_class(
     Members share 0.95 of the posterior probability (uniform prior over effects, and over the
     values of each scan), or mimic 0.90 of the signal and are not excluded by the data. So an
     effect that contains another (lever arms of each accelerometer, a common one) is a
-    member though that with fewer parameters is more probable.
+    member though that with fewer parameters is more probable. One that mimics next to nothing of
+    the signal is none, however probable: both may be there.
     """
     given = candidates.around(others)
     drops, degrees = candidates.drops(information, right, given)
@@ -100,7 +102,7 @@ def effect_class(
     captured = _captured(candidates, information, right, place, given, possible)
     ranked = np.argsort(-weights, kind="stable")
     needed = int(np.searchsorted(np.cumsum(weights[ranked]), MIN_CLASS_PROBABILITY)) + 1
-    near = set(ranked[:needed]) | {own}
+    near = {effect for effect in ranked[:needed] if captured[effect] >= MIN_SHARED} | {own}
     drop = float(drops[place])
     largest = np.array([np.max(drops[o & possible], initial=0.0) for o in owners])
     near |= set(

@@ -84,6 +84,19 @@ def test_a_share_that_others_make_negative_is_not_in_their_set():
     assert right[1] > 0 and [cause.effect for cause in named.causes] == ["other"]
 
 
+@pytest.mark.parametrize(("common", "members"), [(0.0, ["one"]), (0.9, ["one", "other"])])
+def test_an_effect_that_explains_other_data_is_no_member_of_a_class(common, members):
+    """χ² falls by 16 by one effect and by about 12 by another, which is below its own threshold."""
+    mixing = np.array([[1.0, common], [common, 1.0]])
+    information = np.kron(mixing, np.eye(3))
+    both = [searched_effect("one", (0, 1, 2)), searched_effect("other", (3, 4, 5))]
+    law = chance(information, both, LEVEL, draws=2000)
+    right = np.array([4.0, 0, 0, 12**0.5 if common == 0 else 4 * common, 0, 0])
+    sensor = EffectInformation(tuple("abcdef"), information, right, 2016.0, 2002)
+    (named,) = causes(Evidence((sensor,), ("gyro",), ()), both, law).causes
+    assert (named.effect, list(named.members)) == ("one", members)
+
+
 def test_what_is_named_is_what_stands_above_its_price():
     p, rng = plan_of("b"), np.random.default_rng(2)
     quiet = np.zeros(p.raw.shape[1])
