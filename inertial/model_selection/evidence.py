@@ -140,14 +140,23 @@ class Evidence:
         return tuple(factors)
 
     def scaled(self, excesses: Sequence[tuple[float, float]]) -> "Evidence":
-        """The same with the noise variance of each sensor multiplied by its excess."""
-        sensors = tuple(
-            replace(
-                sensor,
-                information=sensor.information / excess,
-                right=sensor.right / excess,
-                chi_squared=sensor.chi_squared / excess,
+        """The same with the noise variance of each sensor multiplied by its excess.
+
+        A sensor whose residuals exceed its noise says nothing of what changes readings of the
+        other one alone: it knows that by the tilts of positions, which its unexplained part moves.
+        """
+        sensors: list[EffectInformation] = []
+        for number, (sensor, (excess, _)) in enumerate(zip(self.sensors, excesses, strict=True)):
+            share = np.full(len(sensor.names), 1 / excess)
+            if excess > 1 and self.raw is not None:
+                share[(self.raw[number] == 0) & (self.raw.sum(axis=0) > 0)] = 0.0
+            root = np.sqrt(share)
+            sensors.append(
+                replace(
+                    sensor,
+                    information=sensor.information * np.outer(root, root),
+                    right=sensor.right * share,
+                    chi_squared=sensor.chi_squared / excess,
+                )
             )
-            for sensor, (excess, _) in zip(self.sensors, excesses, strict=True)
-        )
-        return replace(self, sensors=sensors, noise_degrees=tuple(d for _, d in excesses))
+        return replace(self, sensors=tuple(sensors), noise_degrees=tuple(d for _, d in excesses))

@@ -133,6 +133,7 @@ FORMS = {
     "product": _("in proportion to {state}"),
 }
 MIN_SIGMAS = 3.0  # of a size that is written
+EXPONENTS = {2.0: "²", 3.0: "³", 4.0: "⁴", 5.0: "⁵"}
 
 
 def law_sentence(cause: Cause, law: Law, parameters: Sequence[Estimated]) -> str:
@@ -186,15 +187,18 @@ def _numbers(law: Law, parameters: Sequence[Estimated]) -> list[str]:
         unit = quantity(one.name, one.unit).laboratory
         size = plus_minus(unit.of(one.value or 0.0), unit.of(one.sigma or 0.0))
         label = "" if len(sizes) == 1 else f"{one.name} = "
-        written.append(f"{label}{size} {unit.name}{_per(law)}")
+        written.append(f"{label}{size} {unit.name}{_per(law, one.name)}")
     return written
 
 
-def _per(law: Law) -> str:
+def _per(law: Law, parameter: str) -> str:
     """The unit of a size beyond that of the reading."""
-    if law.family == "power" and law.state == "time":
-        power = law.shape[0]
-        return f"/h{'' if power == 1 else '²³⁴⁵'[int(power) - 2]}" if power in (2, 3, 4, 5) else ""
+    if law.family in ("polynomial", "power", "odd_power"):
+        power = float(parameter[1]) if law.family == "polynomial" else law.shape[0]
+        unit = UNITS.get(law.state, "g")
+        unit = f"({unit.removeprefix('× ')})" if " " in unit or "/" in unit else unit
+        exponent = "" if power == 1 else EXPONENTS.get(power) or f"^{significant(power, 3)}"
+        return f"/{unit}{exponent}"
     if law.family == "ramp":
         return "/h"
     if law.family == "hysteresis" and law.state != "temperature":  # whose size is per K

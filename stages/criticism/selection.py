@@ -119,8 +119,9 @@ class Selection:
     def without_certain_names(self, sensors: Sequence[str]) -> "Selection":
         """The same with structure in the residuals of these sensors, so no certain name there.
 
-        Nor of an effect of both sensors that would not be named without their readings. That
-        biases differ from run to run is no law, and stays.
+        Nor of an effect of both sensors, or of the other one by the tilts of positions, that would
+        not be named without their readings. That biases differ from run to run is no law, and
+        stays.
         """
         if not sensors:
             return self
@@ -128,8 +129,7 @@ class Selection:
         for cause in self.named.causes:
             drops = self._drops(cause)
             own = {sensor: drops.pop(sensor) for sensor in sensors}
-            seen = max(own.values()) > 0 and self.sensor(cause) not in own
-            if seen and sum(drops.values()) < cause.threshold:
+            if self.sensor(cause) not in own and sum(drops.values()) < cause.threshold:
                 of_structure[cause.effect] = max(own, key=own.__getitem__)
         moved = replace(self, of_structure=of_structure)
         causes = tuple(

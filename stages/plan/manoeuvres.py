@@ -181,8 +181,10 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
         raise file.refuse_text(
             key,
             _("fewer than two of degrees, rate_deg_s and seconds"),
-            _("two of them; for recorded: steady a signed rate; by hand none is needed"),
-            _("add what the table was set to"),
+            _("two of them; for recorded: steady a signed rate"),
+            _(
+                "add what the table was set to; if it was turned by hand, give the table the name: by hand"
+            ),
         )
     sigma = None if angle is None else _angle_sigma(file, key, item)
     sense = _sense(file)
