@@ -182,9 +182,7 @@ def _turn(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
             key,
             _("fewer than two of degrees, rate_deg_s and seconds"),
             _("two of them; for recorded: steady a signed rate"),
-            _(
-                "add what the table was set to; if it was turned by hand, give the table the name: by hand"
-            ),
+            _("add what the table was set to; of a table turned by hand the name is: by hand"),
         )
     sigma = None if angle is None else _angle_sigma(file, key, item)
     sense = _sense(file)
