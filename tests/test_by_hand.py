@@ -130,6 +130,61 @@ def test_gyros_of_another_count_size_are_a_finding_and_stay_usable(tmp_path):
 
 
 @pytest.mark.slow
+def test_one_gyro_of_another_scale_factor_is_no_count_size(tmp_path):
+    """It said to multiply the counts of all three, of which two read right, by 0.94."""
+    document = sessions.session(3)
+    matrix = np.diag([1.0, 0.94, 1.0]) @ document["truth"]["gyro"]["matrix"]
+    document["truth"]["gyro"]["matrix"] = matrix.tolist()
+    results = sessions.by_hand(document, tmp_path, "diagnosis")
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] == "gyro_scale_of_axes" and cause["axis"] == "y"
+    assert cause["size"] == pytest.approx(matrix[1, 1], abs=1e-3)
+    assert "Multiply" not in cause["action"]
+    assert np.abs(pulls(document, results)["gyro"]).max() < 4
+
+
+def crooked(seed: int, rests: int, **effects: object) -> dict:
+    """A session of so many rests, of accelerometers with errors of 2.5 % in scale and alignment."""
+    document = sessions.session(seed, effects=effects)
+    document["campaign"]["plan"] = document["campaign"]["plan"][:rests]
+    askew = 0.025 * np.random.default_rng(seed + 100).standard_normal((3, 3))
+    document["truth"]["accelerometer"]["matrix"] = (np.eye(3) + askew).tolist()
+    return document
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_quadratic_term_is_no_scatter_of_eighteen_rests(tmp_path, seed):
+    document = crooked(seed, 18, accel_quadratic={"k2_micro_g_g2": [0, 3000, 0]})
+    results = sessions.by_hand(document, tmp_path, "diagnosis")
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] == "accel_quadratic" and cause["axis"] == "y"
+    assert cause["size"] * 9.80665 == pytest.approx(3e-3, abs=5e-4)
+    assert np.abs(pulls(document, results)["accel"]).max() < 4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seed", "verdict"), [(2, "not_usable"), (3, "usable_within_limits")])
+def test_a_scatter_that_nothing_explains_is_a_finding(tmp_path, seed, verdict):
+    """Three degrees of freedom are too few for a name; biases were off by 9 sigma in silence."""
+    document = crooked(seed, 12, accel_quadratic={"k2_micro_g_g2": [0, 4000, 0]})
+    results = sessions.by_hand(document, tmp_path, "diagnosis")
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] == "rest_scatter" and cause["sensor"] == "accel"
+    # What 4 mg of the square of a direction leave beside nine parameters: less than all of it.
+    assert 3 * 9e-4 < cause["size"] < 4e-3 * 9.80665
+    assert results["diagnosis/verdict"].set_index("sensor")["verdict"]["accel"] == verdict
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_crooked_accelerometers_alone_are_silent(tmp_path, seed):
+    results = sessions.by_hand(crooked(seed, 18), tmp_path, "diagnosis")
+    assert results["diagnosis/causes"].empty
+    assert set(results["diagnosis/verdict"]["verdict"]) == {"usable"}
+
+
+@pytest.mark.slow
 def test_degrees_that_are_stated_as_radians_are_told_by_what_no_hand_turns(tmp_path):
     """They were a count size to be multiplied by 1.64, with a result that was right for it."""
     document = sessions.session(3)

@@ -33,6 +33,7 @@ from inertial.physics.forward import Triad
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
+MOST_SWAY = 0.02  # m/s, of a hand that holds still: some mm at 1 Hz, tenths of a mm at 10 Hz
 NO_TABLE = _("No table takes part in a session by hand.")
 SWAYING = _("A hand that turns the IMU sways at rest too, more than this would change.")
 
@@ -75,6 +76,19 @@ class ByHand:
         """Of a rest with the scatter of the gyros, as in `ScatterFit`."""
         usual = float(np.median([stop.seconds for stop in self.handled.stops]))
         return usual if self.scatter.sways else None
+
+    @property
+    def of_motion(self) -> float:
+        """The largest scatter of the mean specific force that motion at rest can make, m/s².
+
+        The mean acceleration over a rest is the change of velocity between its ends, by its length.
+        """
+        return MOST_SWAY / float(np.median([stop.seconds for stop in self.handled.stops]))
+
+    @property
+    def beyond_motion(self) -> bool:
+        """Whether |f| at rest scatters about g by more than an IMU that sways can make it."""
+        return self.force_scatter > self.of_motion
 
     def without_scatter(self) -> "ByHand":
         """The same with noise alone."""

@@ -65,7 +65,7 @@ _KIND = {
 }
 ANOTHER_IMU = "another_imu"
 PER_RUN = ("accel_bias_per_log", "gyro_bias_per_log")
-MISFITS = ("unexplained", "unknown_structure")
+MISFITS = ("unexplained", "unknown_structure", "rest_scatter")
 PERFORMANCE = (
     "incomplete_turn",
     "wrong_angle",
@@ -183,7 +183,9 @@ EXPLANATIONS = (
     ),
     # Gyros that turn gravity otherwise than the accelerometers see it turn: by hand the angles
     # between rests, and with them a count size, are by axes of which nobody knows which are right.
-    Explanation(("axis_swap", "sign_flip"), ("gyro_count_size",), where_unresolved),
+    Explanation(
+        ("axis_swap", "sign_flip"), ("gyro_count_size", "gyro_scale_of_axes"), where_unresolved
+    ),
     Explanation(("wrong_scale_factor", "wrong_imu_type"), ("noise_above_data_sheet",), same_sensor),
     Explanation(("manoeuvre_swapped",), PERFORMANCE, same_log),
     # A clock that is set, or runs wrong, by what its stamps then look like.
@@ -357,7 +359,7 @@ def _explains_position(cause: Hypothesis, other: Hypothesis) -> bool:
 
 # Findings of the model whose law is not known, the least specific first: each explains those after
 # it.
-UNSPECIFIC = ("unknown_structure", "random walk", "consistent", "unexplained")
+UNSPECIFIC = ("unknown_structure", "random walk", "rest_scatter", "consistent", "unexplained")
 
 
 def _generality(finding: Hypothesis) -> int:

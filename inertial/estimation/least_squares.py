@@ -221,7 +221,12 @@ class System:
         return [self.names[base[i]][1] for i in own], changes[own] / sigma[own, None]
 
     def effect_information(self) -> EffectInformation:
-        """The normal equations of the effects, all other unknowns fitted."""
+        """The normal equations of the effects, all other unknowns fitted.
+
+        Chi-squared is that of observations and errors. The vague prior of a parameter is none of
+        either: a cross term of 2.5 % is a third of its σ, and beside residuals in units of a
+        scatter that they are all of, that would stand where an effect leaves nothing.
+        """
         effects = self._effects
         others = [i for i in range(len(self.names)) if i not in set(effects)]
         scaled, residual = self._whitened()
@@ -229,13 +234,15 @@ class System:
         stacked = np.zeros((len(residual) + len(others), len(others) + len(effects) + 1))
         stacked[: len(residual)] = np.column_stack([base, scaled[:, effects], residual])
         stacked[len(residual) :, : len(others)] = np.eye(len(others))
-        corner = partial_r_factor(stacked, len(others))[len(others) :, len(others) :]
-        columns, right = corner[:, :-1], corner[:, -1]
+        factor, count = partial_r_factor(stacked, len(others)), len(others)
+        fitted = solve_triangular(factor[:count, :count], factor[:count, -1])
+        vague = float(np.sum(fitted[: self.parameters] ** 2))
+        columns, right = factor[count:, count:-1], factor[count:, -1]
         return EffectInformation(
             tuple(self.names[i][1] for i in effects),
             columns.T @ columns,
             columns.T @ right,
-            float(right @ right),
+            float(right @ right) - vague,
             self.rows - self.parameters,
         )
 

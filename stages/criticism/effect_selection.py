@@ -42,6 +42,7 @@ FINER_STEPS = 4  # of the second search in each interval of the first
 MIN_THIRD_SEARCH_SNR = 20.0  # from which a third search is finer still
 UNTHINKABLE_SIGMAS = 3.0  # by which a size is beyond all that is thinkable
 MAX_ROUNDS = 3  # of the scatter of positions by hand and the effects
+IDENTIFIED = 0.05  # probability of a wrong name for a scatter that has a cause for certain
 
 
 def select_with_scatter(
@@ -60,7 +61,10 @@ def select_with_scatter(
     selection = first = select_effects(quiet, effects, level, noise_degrees, given)
     if campaign.by_hand is None:
         return first
-    fitted = [*first.fitted, *instead_of_scatter(first, level)]
+    fitted = [
+        *first.fitted,
+        *(instead_of_scatter(first, level) or beyond_motion(first, noise_degrees)),
+    ]
     for _round in range(MAX_ROUNDS):
         if not fitted:
             break
@@ -72,14 +76,16 @@ def select_with_scatter(
     return selection if selection.fitted else first
 
 
-def instead_of_scatter(selection: Selection, level: float) -> list[Effect]:
+def instead_of_scatter(
+    selection: Selection, level: float, sensors: Collection[str] = SENSORS
+) -> list[Effect]:
     """Of each sensor without a name the effect that takes more of its scatter away than by chance.
 
     Or than a random walk would, which is weighed against it later: so there is none in these
     equations. `level`: accepted probability of a false name.
     """
     named = {selection.sensor(cause) for cause in selection.named.causes}
-    scattering = [s for s in selection.campaign.scattering if s not in named]
+    scattering = [s for s in selection.campaign.scattering if s in sensors and s not in named]
     if not scattering:
         return []
     equations, searched = selection.evidence, selection.searched
@@ -92,6 +98,21 @@ def instead_of_scatter(selection: Selection, level: float) -> list[Effect]:
     best = [(one, int(np.argmin(one.p_values))) for one in tests]
     places = [one.places[place] for one, place in best if one.p_values[place] < share]
     return [selection.effect(searched[number].name, value) for number, value in places]
+
+
+def beyond_motion(selection: Selection, noise_degrees: float) -> list[Effect]:
+    """What accounts for a scatter of the specific force that is none of motion at rest.
+
+    |f| depends on no attitude, and no IMU at rest is accelerated by so much: so the accelerometers
+    make it, and the question is no longer whether there is an effect, but which. It must leave no
+    more than motion can make.
+    """
+    by_hand = selection.campaign.by_hand
+    if by_hand is None or not by_hand.beyond_motion:
+        return []
+    effects = instead_of_scatter(selection, IDENTIFIED, ["accel"])
+    given = scattered(selection.campaign, [*selection.fitted, *effects], noise_degrees).by_hand
+    return [] if given is None or given.beyond_motion else effects
 
 
 def scatter_tests_of(

@@ -32,6 +32,7 @@ from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations
 from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
+from stages.criticism.rest_scatter import rest_scatter_rows
 from stages.criticism.restarts import restarts_of
 from stages.criticism.selection import Selection, pooled_evidence_rows
 from stages.criticism.set_position_scatter import select_beside_scatter
@@ -150,6 +151,7 @@ def _of_mount(
     yield from off_rows(selection, tested, mount)
     yield from structure_rows(tested, lawless.reported_structures, mount)
     yield from unexplained_rows(selection, lawless, level * UNEXPLAINED_SHARE, mount)
+    yield from rest_scatter_rows(selection.campaign, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)
     yield from pooled_evidence_rows(selection, mount)
 

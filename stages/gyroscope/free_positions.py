@@ -41,6 +41,7 @@ CURES = {
     ),
 }
 CAUSE = "gyro_count_size"
+OWN_SCALE = "gyro_scale_of_axes"
 UNIT = "wrong_scale_factor"
 MAX_BY_HAND, FASTEST = 40.0, 0.99  # rad/s, of the block at this quantile: more no hand turns
 MAX_LEVEL = 0.5  # of gravity along an axis that is level
@@ -155,16 +156,23 @@ def _unit(turning: float, mount: str) -> Finding:
 def _count_size(estimate: Estimate, mount: str) -> Iterator[Finding]:
     """The gyros whose counts are of another size than stated, as the motions by hand show it.
 
-    One finding for all axes; M holds it, so the result stays right for readings as they are.
+    One finding for all axes; M holds it, so the result stays right for readings as they are. One
+    count size is stated of a sensor: where it is wrong all axes read wrong alike, but for the scale
+    errors of each. A single axis that is off has another scale factor.
     """
     places = [0, 4, 8]
     ratios, sigmas = estimate.values[places], estimate.sigma[places]
+    known = estimate.determined[places]
     beyond = np.abs(ratios - 1) - MAX_SCALE_ERROR["gyro"] > MIN_SIGMAS * sigmas
-    off = [i for i in range(3) if beyond[i] and estimate.determined[places[i]]]
+    off = [i for i in range(3) if beyond[i] and known[i]]
     if not off:
         return
     listed = ", ".join(f"{AXES[i]} {significant(ratios[i], 4)}" for i in off)
     mean = float(np.mean(ratios[off]))
+    alike = np.ptp(ratios[known]) <= 2 * MAX_SCALE_ERROR["gyro"] * abs(mean)
+    if len(off) < known.sum() or not alike:
+        yield _own_scales(listed, [AXES[i] for i in off], mean, mount)
+        return
     yield Finding(
         id="/".join(("gyroscope", with_mount(CAUSE, mount), "all")),
         cause=CAUSE,
@@ -186,4 +194,28 @@ def _count_size(estimate: Estimate, mount: str) -> Iterator[Finding]:
             "Multiply the counts_per_unit of the gyros by {factor}, or state the right unit.",
             factor=significant(mean, 4),
         ),
+    )
+
+
+def _own_scales(listed: str, axes: Sequence[str], mean: float, mount: str) -> Finding:
+    """Of single gyros whose scale factors are further off than those of any data sheet."""
+    return Finding(
+        id="/".join(("gyroscope", with_mount(OWN_SCALE, mount), "all")),
+        cause=OWN_SCALE,
+        mount=mount,
+        sensor="gyro",
+        axis=axes[0] if len(axes) == 1 else None,
+        count=len(axes),
+        size=mean,
+        severity=1,
+        sentence=_(
+            "Between the positions the gyros turned by other angles than they read: they read "
+            "{listed} times what they should, and the other axes do not read wrong alike. It is no "
+            "count size, which is one of all axes, but the scale factor of these.",
+            listed=listed,
+        ),
+        consequence=_(
+            "The scale factors of the result hold it, so the result is right for these readings."
+        ),
+        action=_("None. Where each axis has a counts_per_unit of its own, see that of these."),
     )

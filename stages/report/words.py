@@ -118,6 +118,7 @@ FACTORS = frozenset(
         "noise_above_data_sheet",
         "wrong_rate",
         "gyro_count_size",
+        "gyro_scale_of_axes",
     }
     | {"wrong_time_unit"}
 )
