@@ -161,9 +161,10 @@ class Jump:
 class JumpsOver:
     """The jumps of the encoder against the gyros in each of some stretches of records.
 
-    An encoder and the gyros differ by a scale factor, a bias and a delay, so slowly; what they
-    differ by within a tenth of a second, beyond its median and ten times its scatter, is a jump of
-    the count, for no table turns so and no gyro feels it.
+    An encoder and the gyros differ by a scale factor, a bias and a delay, so slowly but at the
+    edges of a steady part: an encoder that is late still accelerates there, and one that is early
+    slows down already. What they differ by elsewhere within a tenth of a second, beyond its median
+    and ten times its scatter, is a jump of the count, for no table turns so and no gyro feels it.
 
     about : by log the axis of each stretch, (k, 3), unit vectors in body axes
     """
@@ -213,6 +214,9 @@ def jumps_of(record: Integers, time: Array, angle: Array, rate: Array) -> list[J
     for run in np.split(high, np.flatnonzero(np.diff(high) > span) + 1):
         # What is off for longer than the jump takes, and the window, is no jump.
         if not len(run) or run[-1] - run[0] >= 2 * span:
+            continue
+        # What is off from the very edge on is an encoder that is late: there it still accelerates.
+        if run[0] <= pad or run[-1] >= len(beyond) - 1 - pad:
             continue
         first, last = sorted((int(run[0]) + span - 1, int(run[-1])))
         start, length = max(first - pad, 0), last - first + 1 + 2 * pad

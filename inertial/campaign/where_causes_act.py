@@ -70,11 +70,11 @@ def same_time(cause: Hypothesis, other: Hypothesis) -> bool:
 
 
 def at_the_gaps(cause: Hypothesis, gaps: Hypothesis) -> bool:
-    """At all gaps of a log, none of which cuts a manoeuvre; of a jump: at the only one."""
+    """At gaps of a log, none of which cuts a manoeuvre; of a jump: at the only one."""
     if not cause.named or gaps.manoeuvres:
         return False
     if cause.cause in RESTARTS:
-        return bool(gaps.row["count"] == cause.row["count"])
+        return bool(gaps.row["count"] >= cause.row["count"])
     vague = cause.time is not None and cause.time[1] > MAX_VAGUE_S
     return gaps.row["count"] == 1 and not vague and same_time(cause, gaps)
 

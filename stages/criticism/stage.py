@@ -11,6 +11,8 @@ from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
+from inertial.effects.restarts import Restarts
+from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -33,9 +35,9 @@ from stages.criticism.oscillation_search import find_oscillations
 from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
 from stages.criticism.rest_scatter import rest_scatter_rows
-from stages.criticism.restarts import restarts_of
+from stages.criticism.restarts import at_changes, restarts_of
 from stages.criticism.selection import Selection, pooled_evidence_rows
-from stages.criticism.set_position_scatter import select_beside_scatter
+from stages.criticism.set_position_scatter import PositionScatter, select_beside_scatter
 from stages.criticism.step_results import step_rows
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_functions import select_with_temperature
@@ -81,30 +83,15 @@ def _of_mount(
     spectrum = replace(spectrum, oscillations=with_rests(turns, spectrum.oscillations))
     quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
     measured = campaign_of(replace(data, blocks=quiet))
-    in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
-    in_blocks += restarts_of(measured, gaps, data.clocks)
     levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
-
-    def selected(campaign: Campaign) -> tuple[Selection, Tested]:
-        temperature_level = level * TEMPERATURE_SHARE
-        effects = select_with_temperature(
-            campaign, in_blocks, levels[0], temperature_level, degrees
-        )
-        tested = structure_tests(effects.campaign, effects.fitted, degrees, levels[1])
-        return with_laws(effects, tested, campaign, in_blocks, *levels, degrees)
-
-    def beside_one_manoeuvre(campaign: Campaign) -> tuple[Selection, Tested]:
-        return select_beside_one_manoeuvre(
-            selected(campaign),
-            campaign,
-            selected,
-            partial(_without, data=replace(data, blocks=quiet)),
-            lambda one: structure_tests(one, [], degrees, levels[1]),
-        )
-
-    (selection, tested, campaign), scatter = select_beside_scatter(
-        measured, lambda one: select_beside_drift(one, beside_one_manoeuvre, levels[0]), levels[0]
+    select = partial(
+        _selected, measured, partial(_without, data=replace(data, blocks=quiet)), level, degrees
     )
+    of_gaps = restarts_of(measured, gaps, data.clocks)
+    (selection, tested, campaign), scatter = select(of_gaps)
+    if (times := at_changes(selection, levels[0])) is not None:
+        of_gaps = [Restarts(effect.sensor, times, first=1) for effect in of_gaps]
+        (selection, tested, campaign), scatter = select(of_gaps)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
     for sensor, drift in measured.drifts.items():
@@ -154,6 +141,40 @@ def _of_mount(
     yield from rest_scatter_rows(selection.campaign, mount)
     yield from temperature_rows(data.blocks, data.plan, level, mount)
     yield from pooled_evidence_rows(selection, mount)
+
+
+def _selected(
+    measured: Campaign,
+    without: Callable[[Campaign, str], Campaign],
+    level: float,
+    degrees: float,
+    of_gaps: Sequence[Effect],
+) -> tuple[tuple[Selection, Tested, Campaign], PositionScatter | None]:
+    """The named effects of the catalogue and those `of_gaps`, tests, their campaign, scatter."""
+    in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
+    in_blocks += of_gaps
+    levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
+
+    def selected(campaign: Campaign) -> tuple[Selection, Tested]:
+        temperature_level = level * TEMPERATURE_SHARE
+        effects = select_with_temperature(
+            campaign, in_blocks, levels[0], temperature_level, degrees
+        )
+        tested = structure_tests(effects.campaign, effects.fitted, degrees, levels[1])
+        return with_laws(effects, tested, campaign, in_blocks, *levels, degrees)
+
+    def beside_one_manoeuvre(campaign: Campaign) -> tuple[Selection, Tested]:
+        return select_beside_one_manoeuvre(
+            selected(campaign),
+            campaign,
+            selected,
+            without,
+            lambda one: structure_tests(one, [], degrees, levels[1]),
+        )
+
+    return select_beside_scatter(
+        measured, lambda one: select_beside_drift(one, beside_one_manoeuvre, levels[0]), levels[0]
+    )
 
 
 def _without(campaign: Campaign, manoeuvre: str, data: CampaignData) -> Campaign:

@@ -24,6 +24,7 @@ MAX_TURNED_COSINE = 0.7  # of an attitude and the axis of a rotation that change
 TIME_SIGMAS = 2.0  # of a time, before and after which a manoeuvre is
 
 ONE_EVENT = _("It is one event with this: {sentence}")
+AND_THIS = _("And with this: {sentence}")
 BEFORE = _("The parameters of the {sensors} are those of the mounting before it.")
 AFTER = _("The parameters of the {sensors} are those of the mounting after it.")
 BETWEEN = _(
@@ -35,9 +36,13 @@ UNKNOWN = _("To which of the two mountings the parameters of the {sensors} belon
 
 def with_consequences(row: Row, cause: Cause, sentences: Mapping[str, str]) -> Row:
     """The row of a cause, whose sentence says the sizes of one event once from each side."""
+    # The gap last: it is where the others are.
+    same = sorted(_same_event(cause), key=lambda each: each.cause == "gap")
     others = [
-        ONE_EVENT.format(sentence=sentences.get(each.id) or each.row["sentence"])
-        for each in _same_event(cause)
+        (AND_THIS if number else ONE_EVENT).format(
+            sentence=sentences.get(each.id) or each.row["sentence"]
+        )
+        for number, each in enumerate(same)
     ]
     return row | {"sentence": " ".join([row["sentence"], *others])}
 

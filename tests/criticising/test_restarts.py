@@ -43,9 +43,16 @@ def test_each_run_has_a_bias_of_its_own_and_the_terms_say_the_same() -> None:
 
 
 def recorded(
-    folder: Path, seed: int, restarts: Sequence[str] = AFTER_RESTART, **effects: Any
+    folder: Path,
+    seed: int,
+    restarts: Sequence[str] = AFTER_RESTART,
+    gaps_alone: Sequence[str] = (),
+    **effects: Any,
 ) -> tuple[dict[str, Any], Path]:
-    """Six positions of a rest and two turns each, in one log with a gap before some of them."""
+    """Six positions of a rest and two turns each, in one log with a gap before some of them.
+
+    gaps_alone : those of them where the IMU stays on
+    """
     document = chain.short(effects=effects, seed=seed)
     document["start"]["pause_s"] = PAUSE_S
     document["handling"] |= {"still_s": 5, "change_s": 8}
@@ -60,7 +67,9 @@ def recorded(
             part += place in restarts
             log = {"log": f"part-{part}.csv"}
             plan.append({"id": place, "do": "rest", "seconds": 40, **own, **log})
-            plan[-1]["power_cycle"] = "turn_on_bias" in effects and place in restarts
+            plan[-1]["power_cycle"] = (
+                "turn_on_bias" in effects and place in restarts and place not in gaps_alone
+            )
             for name, degrees in (("forward", 360), ("backward", -360)):
                 turn = {"degrees": degrees, "rate_deg_s": 60, "accel_deg_s2": 50}
                 plan.append({"id": f"{place}-{name}", "do": "turn", **own, **turn, **log})
@@ -140,3 +149,21 @@ def test_a_jump_at_the_only_gap_is_one_event_with_it(tmp_path: Path) -> None:
     assert ": gap of " in causes.loc["gyro_bias_jump", "sentence"]
     assert "power_cycle: true" in causes.loc["gyro_bias_jump", "action"]
     assert set(made["diagnosis/verdict"]["verdict"]) == {"usable_within_limits"}
+
+
+@pytest.mark.slow
+def test_only_gaps_at_which_biases_change_are_restarts(tmp_path: Path) -> None:
+    """Of four gaps the IMU stays on at two: no bias changes there, and no switch-on is advised."""
+    places = ("z-down", "x-up", "x-down", "y-up")
+    _document, raw = recorded(tmp_path, 5, places, ("x-up", "y-up"), turn_on_bias=BIASES)
+    made = chain.run(raw, tmp_path / "derived", "diagnosis", chain.BESIDE)
+    (cause,) = made["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] in ("gyro_restarts", "accel_restarts") and cause["verdict"] == "found"
+    assert "power_cycle: true in z-down and x-down:" in cause["action"]
+    assert cause["sentence"].count("It is one event with this") == 1
+    assert cause["sentence"].count(" s, by up to ") == 2 and ": gap of " in cause["sentence"]
+    gaps = made["quality/gaps"].sort_values("from_s")
+    middles = (gaps["from_s"] + gaps["to_s"]).to_numpy() / 2
+    result = made["diagnosis/result"].set_index("parameter")["value"]
+    times = result[result.index.str.match(r"gyro_restarts\.t\d")]
+    assert times.to_numpy() == pytest.approx(middles[[0, 2]])

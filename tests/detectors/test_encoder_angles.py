@@ -175,6 +175,23 @@ def test_every_jump_of_a_turn_is_found():
     assert sizes == pytest.approx([120, 60], abs=12)
 
 
+@pytest.mark.parametrize("late", [0.0, 0.06, 0.12, 0.15, -0.12, -0.15])
+@pytest.mark.parametrize("step", [0.0, 120.0])
+def test_an_encoder_that_is_late_still_accelerates_at_the_edge_and_jumps_elsewhere(late, step):
+    """At 60 °/s² to 72 °/s: 22 ms into the steady part by the gyros it lacks 0.015°, 52″."""
+    random = np.random.default_rng(11)
+    margin, duration, rate, acceleration = 0.098, 4.0, 72.0, 60.0
+    time = 0.01 * np.arange(round(100 * duration) + 1)
+    # The table is steady from −margin to duration + margin; its angle, of ramps at either side.
+    beyond = np.maximum(0, -margin - (time - late)), np.maximum(0, time - late - duration - margin)
+    true = rate * (time - late) + 0.5 * acceleration * (beyond[0] ** 2 - beyond[1] ** 2)
+    read = true + step / 3600 * (true > 140)
+    counts = np.radians(5e-4 * np.round(read / 5e-4))
+    gyro = np.radians(rate) + 8.7e-5 * random.standard_normal(len(time))
+    sizes = [jump.size / ARC_SECOND for jump in jumps_at(time, counts, gyro)]
+    assert sizes == pytest.approx([step] * (step > 0), abs=12)
+
+
 def test_what_is_no_jump():
     time, angle, gyro = read_at(0.0)
     assert not jumps_at(time, angle, gyro)

@@ -120,9 +120,12 @@ def _opening(file_type: FileType) -> container.Opening:
 # ---- The angle of the table from the log of its encoder, beside the IMU's log.
 #
 # Between two readings the angle is interpolated linearly. In gaps, before the first reading and
-# after the last one there is no angle.
+# after the last one there is no angle. Stamps of an even clock are rounded to their count, by which
+# the angle of a turn would jump where its interval is no whole number of counts: there the clock is
+# used.
 
 MAX_READINGS = 20_000_000  # held in memory: 320 MB
+MAX_OFF_COUNT = 0.05  # counts of its stamps, by which differences of rounded ones may be off
 MAX_GAP_INTERVALS = 5.5  # median intervals between two readings that are interpolated
 
 
@@ -161,7 +164,7 @@ class Encoder:
                 )
         time = np.concatenate([np.zeros(0), *ticks]) / ticks_per_second(layout)
         later = np.diff(time, prepend=-np.inf) > 0  # of equal times the first counts
-        self.time = time[later]
+        self.time = _unrounded(time[later])
         self.angle = np.unwrap(np.concatenate([np.zeros(0), *angles])[later], period=turn)
 
     def angle_at(self, time: Array) -> Array:
@@ -173,3 +176,24 @@ class Encoder:
         between = np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(step) - 1)
         angle[step[between] > MAX_GAP_INTERVALS * np.median(step)] = np.nan
         return np.asarray(angle)
+
+
+def _unrounded(time: Array) -> Array:
+    """Times, (n,), s, of the even clock that they are rounded from; as they are without one.
+
+    Its steps rounded to counts q are two neighbours, and a line through all of them is off by less
+    than q in all.
+    """
+    step = np.diff(time)
+    if not len(step):
+        return time
+    number = np.append(0.0, np.cumsum(np.rint(step / np.median(step))))
+    single = step[np.diff(number) == 1]
+    if not len(single):
+        return time
+    low, high = float(single.min()), float(single.max())
+    count = high - low
+    near = np.minimum(single - low, high - single) < MAX_OFF_COUNT * count
+    even = np.polynomial.Polynomial.fit(number, time, 1)(number)
+    rounded = bool(near.all()) and np.ptp(time - even) < (1 + MAX_OFF_COUNT) * count
+    return np.asarray(even) if rounded else time
