@@ -27,6 +27,7 @@ MIN_SPANS, MAX_SPANS = 20, 20_000
 MIN_ENTRY_SIGMA = 10.0  # sigmas of the entries of G that decide
 MAX_ENTRY_SIGMA = 0.15  # of any entry
 MAX_OFF_DIAGONAL = 0.5  # of the largest entry of its row and column
+MAX_CONTRADICTING = 0.1  # of the spans that tell a sign: more is a sign of a part of them
 REWEIGHTINGS = 10
 ROBUST_SIGMA = 3.0  # sigmas from which on a span counts less: Cauchy's weights
 UNKNOWNS = 24
@@ -35,11 +36,16 @@ PRIOR = 1e-6  # of the normal matrix: what nothing determines stays 0
 
 @dataclass(frozen=True)
 class Turned:
-    """G, (3, 3), with its sigma, and from how many spans of half a second."""
+    """G, (3, 3), with its sigma, and from how many spans of half a second.
+
+    `contradicting`: (3,), which share of the spans that tell the sign of a row of G are for the
+    other one: an axis that is reversed for a time has both.
+    """
 
     matrix: Array
     sigma: Array
     spans: int
+    contradicting: Array
 
     @property
     def axes(self) -> Permutation | None:
@@ -54,6 +60,8 @@ class Turned:
         if (others > MAX_OFF_DIAGONAL * own[:, None]).any():
             return None
         if (own < MIN_ENTRY_SIGMA * self.sigma[np.arange(3), sources]).any():
+            return None
+        if (self.contradicting > MAX_CONTRADICTING).any():
             return None
         signs = np.sign(self.matrix[np.arange(3), sources]).astype(int)
         return Permutation(tuple(sources.tolist()), tuple(signs.tolist()))
@@ -87,8 +95,16 @@ def turned(stretches: Sequence[tuple[Array, Array, float]]) -> Turned | None:
     covariance = inverse @ (of_each.T @ of_each) @ inverse  # whatever the scatter of each
     # What is not determined at all stays at 0: its sigma is that of the prior.
     sigma = np.sqrt(np.diag(covariance) + PRIOR * np.diag(inverse))
-    matrix = inverse @ (weighted.T @ change)
-    return Turned(matrix[:9].reshape(3, 3), sigma[:9].reshape(3, 3), len(change) // 3)
+    solution = inverse @ (weighted.T @ change)
+    matrix = solution[:9].reshape(3, 3)
+    left = (change - design @ solution).reshape(-1, 3)
+    contradicting = np.zeros(3)
+    for row in range(3):
+        other = left + 2 * (design[:, 3 * row : 3 * row + 3] @ matrix[row]).reshape(-1, 3)
+        tells = np.linalg.norm(other - left, axis=1) > ROBUST_SIGMA * 2 * scatter
+        wrong = np.linalg.norm(other, axis=1) < np.linalg.norm(left, axis=1)
+        contradicting[row] = np.sum(wrong & tells) / max(np.sum(tells), 1)
+    return Turned(matrix, sigma[:9].reshape(3, 3), len(change) // 3, contradicting)
 
 
 def _spans(forces: Array, rates: Array, step: float) -> tuple[Array, Array]:

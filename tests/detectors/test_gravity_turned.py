@@ -68,6 +68,16 @@ def test_whatever_bias_and_scale_the_axes_are_those_that_are(seed, scale):
     assert np.abs(found.matrix - np.eye(3) / scale).max() < 0.2
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_an_axis_that_is_reversed_for_a_time_is_no_reversed_axis(seed):
+    """Two thirds of what turns it read the other way: neither sign is that of the recording."""
+    forces, rates = moved(seed, positions=20)
+    rates[len(rates) // 3 :, 2] *= -1
+    found = seen(forces, rates)
+    assert found.axes is None
+    assert found.contradicting[2] > 0.2
+
+
 @pytest.mark.parametrize("sources", list(permutations(range(3))))
 def test_every_exchange_and_every_sign_is_found(sources):
     forces, rates = moved(7)
