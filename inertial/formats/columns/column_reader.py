@@ -125,6 +125,7 @@ def _opening(file_type: FileType) -> container.Opening:
 # used.
 
 MAX_READINGS = 20_000_000  # held in memory: 320 MB
+MIN_COUNT = 1e-6  # intervals: less are those of floating-point numbers
 MAX_OFF_COUNT = 0.05  # counts of its stamps, by which differences of rounded ones may be off
 MAX_GAP_INTERVALS = 5.5  # median intervals between two readings that are interpolated
 
@@ -193,6 +194,8 @@ def _unrounded(time: Array) -> Array:
         return time
     low, high = float(single.min()), float(single.max())
     count = high - low
+    if count < MIN_COUNT * low:
+        return time
     near = np.minimum(single - low, high - single) < MAX_OFF_COUNT * count
     even = np.polynomial.Polynomial.fit(number, time, 1)(number)
     rounded = bool(near.all()) and np.ptp(time - even) < (1 + MAX_OFF_COUNT) * count
