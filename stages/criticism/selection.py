@@ -41,7 +41,7 @@ class Selection:
     `evidence`; `families`: its candidates by its name, in the order of
     `SearchedEffect.candidates`; `limits`: the detection limits;
     `rivals`: by effect the random walk that is as likely, and the log odds of the effect;
-    `of_structure`: by effect of both sensors that is not significant without the sensor whose
+    `of_structure`: by effect that is not significant without the readings of a sensor whose
     residuals have a structure, that sensor; `off`: the manoeuvre without which it is selected.
     """
 
