@@ -296,7 +296,7 @@ def _manoeuvres(fits: Sequence[Fit], content: _Tables, provenance: Provenance) -
         list(dict.fromkeys(used)),
         content.read("segment/blocks", tables.BLOCKS),
         content.read("segment/manoeuvres", tables.MANOEUVRES),
-        content.read("quality/masks", tables.MASKS),
+        content.read("segment/masks", tables.MASKS),
     )
     lines = content.lines([phase.records for phase in phases])
     listed = content.rows("plan/logs", tables.LOGS)

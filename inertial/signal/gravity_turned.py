@@ -9,14 +9,17 @@ which is linear in the 24 unknowns G, H, c, d, so neither a bias nor a scale fac
 either sensor matters. Where an IMU is moved by hand its acceleration is noise. G is near the unit
 matrix, or near that signed permutation by which the axes of the sensors differ. A turn about the
 vertical says nothing. Accelerometers that all read their negative turn in the same way.
+
+A gyro may read its negative in a part of a recording alone. A motion from rest to rest, consecutive
+spans of it, tells its sign by which of both fits: a motion that tells nothing fits either way.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Integers
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.text.units import STANDARD_GRAVITY
@@ -31,7 +34,11 @@ MAX_CONTRADICTING = 0.1  # of the spans that tell a sign: more is a sign of a pa
 REWEIGHTINGS = 10
 ROBUST_SIGMA = 3.0  # sigmas from which on a span counts less: Cauchy's weights
 UNKNOWNS = 24
+MIN_SIGN_GAIN = 15.0  # of the logarithm of Cauchy's likelihood, by the one sign in a motion
+MAX_MISFIT = np.log(2)  # of its negative, the mean of a motion: they fit to ROBUST_SIGMA
 PRIOR = 1e-6  # of the normal matrix: what nothing determines stays 0
+
+Stretch = tuple[Array, Array, float]  # of consecutive short means: forces, rates, time between them
 
 
 @dataclass(frozen=True)
@@ -40,12 +47,15 @@ class Turned:
 
     `contradicting`: (3,), which share of the spans that tell the sign of a row of G are for the
     other one: an axis that is reversed for a time has both.
+    unknowns : (24,), all of them; scatter : m/s², of a span about them
     """
 
     matrix: Array
     sigma: Array
     spans: int
     contradicting: Array
+    unknowns: Array
+    scatter: float
 
     @property
     def axes(self) -> Permutation | None:
@@ -67,7 +77,7 @@ class Turned:
         return Permutation(tuple(sources.tolist()), tuple(signs.tolist()))
 
 
-def turned(stretches: Sequence[tuple[Array, Array, float]]) -> Turned | None:
+def turned(stretches: Sequence[Stretch]) -> Turned | None:
     """How the gyros turn gravity; None where too little is turned.
 
     Parameters
@@ -76,8 +86,8 @@ def turned(stretches: Sequence[tuple[Array, Array, float]]) -> Turned | None:
         (k, 3), rad/s; the time from one to the next, s
     """
     spans = [_spans(*stretch) for stretch in stretches]
-    design = np.concatenate([np.empty((0, 3, UNKNOWNS)), *(part for part, _ in spans)])
-    change = np.concatenate([np.empty((0, 3)), *(part for _, part in spans)])
+    design = np.concatenate([np.empty((0, 3, UNKNOWNS)), *(part for part, _, _ in spans)])
+    change = np.concatenate([np.empty((0, 3)), *(part for _, part, _ in spans)])
     if len(change) < MIN_SPANS:
         return None
     every = -(-len(change) // MAX_SPANS)
@@ -104,11 +114,70 @@ def turned(stretches: Sequence[tuple[Array, Array, float]]) -> Turned | None:
         tells = np.linalg.norm(other - left, axis=1) > ROBUST_SIGMA * 2 * scatter
         wrong = np.linalg.norm(other, axis=1) < np.linalg.norm(left, axis=1)
         contradicting[row] = np.sum(wrong & tells) / max(np.sum(tells), 1)
-    return Turned(matrix, sigma[:9].reshape(3, 3), len(change) // 3, contradicting)
+    both = (matrix, sigma[:9].reshape(3, 3))
+    return Turned(*both, len(change) // 3, contradicting, solution, scatter)
 
 
-def _spans(forces: Array, rates: Array, step: float) -> tuple[Array, Array]:
-    """The equations of all spans: ∂/∂(G, H, c, d), (n, 3, 24), and the change of f, (n, 3)."""
+@dataclass(frozen=True)
+class Motion:
+    """Means [first, after) in which gravity is turned; spans: how many.
+
+    reversed : (3,), by gyro: +1 where it reads as in most of the recording, −1 where its negative,
+    0 where the motion does not tell
+    """
+
+    first: int
+    after: int
+    spans: int
+    reversed: Integers
+
+
+def motions(stretch: Stretch, seen: Turned, most: float = MAX_MISFIT) -> Iterator[Motion]:
+    """The motions of a stretch, as of `turned`, and the signs of the gyros in each.
+
+    most : mean loss up to which a motion fits
+    """
+    forces, rates, step = stretch
+    steps = max(round(SPAN_S / step), 1)
+    design, change, starts = _spans(forces, rates, step)
+    losses = np.empty((4, len(starts)))
+    for way in range(4):  # as it is, and each gyro with the other sign
+        of_gyros = design
+        if way:
+            of_gyros = design.copy()
+            of_gyros[:, :, [k for k in range(18) if k % 3 == way - 1]] *= -1
+        left = (change - of_gyros @ seen.unknowns) / (ROBUST_SIGMA * seen.scatter)
+        with np.errstate(over="ignore"):
+            losses[way] = np.log1p(left**2).sum(axis=1)
+    breaks = np.flatnonzero(np.diff(starts) > steps) + 1
+    for own in np.split(np.arange(len(starts)), breaks):
+        if not len(own):
+            continue
+        total = losses[:, own].sum(axis=1)
+        gains = total[1:] - total[0]
+        fits = np.minimum(total[1:], total[0]) < most * 3 * len(own)
+        signs = np.sign(gains).astype(np.int64) * (fits & (np.abs(gains) > MIN_SIGN_GAIN))
+        yield Motion(int(starts[own[0]]), int(starts[own[-1]]) + steps, len(own), signs)
+
+
+def signs_of_motions(stretches: Sequence[Stretch], seen: Turned) -> list[list[Motion]]:
+    """The motions of each stretch, as by the recording in which all read alike.
+
+    Where a few motions are reversed, they pull at the unknowns of all: these are found anew with
+    the motions read as they seem to be.
+    """
+    alike = []
+    for forces, rates, step in stretches:
+        read = rates.copy()
+        for one in motions((forces, rates, step), seen, np.inf):
+            read[one.first : one.after + 1] *= np.where(one.reversed < 0, -1.0, 1.0)
+        alike.append((forces, read, step))
+    anew = turned(alike) or seen
+    return [list(motions(stretch, anew)) for stretch in stretches]
+
+
+def _spans(forces: Array, rates: Array, step: float) -> tuple[Array, Array, Integers]:
+    """The equations of all spans: ∂/∂(G, H, c, d), (n, 3, 24), the change of f, (n, 3), begins."""
     steps = max(round(SPAN_S / step), 1)
     starts = np.arange(0, len(forces) - steps, steps)
     inside = starts[:, None] + np.arange(steps + 1)
@@ -130,7 +199,8 @@ def _spans(forces: Array, rates: Array, step: float) -> tuple[Array, Array]:
         np.arctan2(across_both, along) > MIN_TURNED
     )
     there = np.isfinite(of_matrix).all(axis=(1, 2)) & moved
-    return np.concatenate([of_matrix, of_bias, of_level, of_both], axis=2)[there], change[there]
+    design = np.concatenate([of_matrix, of_bias, of_level, of_both], axis=2)
+    return design[there], change[there], starts[there]
 
 
 # ---- The rate at which the specific force turns in the case, on a table with a level axis.

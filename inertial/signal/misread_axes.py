@@ -7,12 +7,15 @@ from inertial.signal.axis_permutations import Permutation
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import (
     Deviation,
+    Edge,
     Misread,
     Recorded,
+    ReversedPart,
     SignChange,
     confirming,
     rivals_in_words,
 )
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from inertial.text.parameters import AXES
@@ -32,7 +35,7 @@ def deviation(misread: Misread, recorded: Recorded) -> Deviation:
         misread.log,
         float(len(misread.explains)),
         misread.sensor,
-        None if misread.change is None else AXES[misread.change.axis],
+        next((AXES[of.axis] for of in (misread.change, misread.part) if of is not None), None),
         first=first,
         after=after,
         from_s=min(times, default=None),
@@ -58,7 +61,13 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
             "The manoeuvres are found by the right axes; the data are not changed. Correct "
             "the axes of the instrument, or the columns, and run it again."
         )
-    if misread.change is not None and not misread.undone:
+    if misread.part is not None and not misread.undone:
+        action = _(
+            "These readings, and those of which it is not sure, are left out. See what changed "
+            "where it begins and ends; turn the sign in the log, or give each part a log of its "
+            "own, and run it again."
+        )
+    elif misread.change is not None and not misread.undone:
         action = _(
             "Nothing is set right, for within a log the moment is not known. See what changed "
             "between {before} and {after}; turn the sign in the log, or give each part a log of "
@@ -83,6 +92,8 @@ def _sentence(misread: Misread, recorded: Recorded) -> str:
     """Which axes are others, and what shows it."""
     if misread.change is not None:
         return _of_a_change(misread, misread.change)
+    if misread.part is not None:
+        return _of_a_part(misread, misread.part)
     sensor = PLURAL[misread.sensor]
     where = _("in {log}", log=misread.log) if misread.log else "in all logs"
     if misread.spans:
@@ -124,8 +135,67 @@ def _of_a_change(misread: Misread, change: SignChange) -> str:
     )
 
 
+def _of_a_part(misread: Misread, part: ReversedPart) -> str:
+    """Where a gyro is reversed, and what shows it."""
+    sentence = _(
+        "The {axis} gyro reads its negative in a part of the recording, {begins} {ends}: only so "
+        "do the gyros turn gravity there as the accelerometers see it turn, in {spans} of half a "
+        "second; elsewhere it reads as it should.",
+        axis=AXES[part.axis],
+        begins=_begins(part.begins),
+        ends=_ends(part.ends),
+    )
+    if not part.turns:
+        return sentence
+    return _(
+        "{sentence} In the turns about it ({names}) it reads as planned.",
+        sentence=sentence,
+        names=listed(part.turns[:MAX_NAMES]),
+    )
+
+
+def _begins(edge: Edge | None) -> str:
+    if edge is None:
+        return _("from its beginning")
+    if not edge.before:
+        return _("from {manoeuvre} on or longer before it", manoeuvre=edge.after)
+    return _("from a moment {between} on", between=_between(edge))
+
+
+def _ends(edge: Edge | None) -> str:
+    if edge is None:
+        return _("to its end")
+    if not edge.after:
+        return _("up to {manoeuvre} or longer after it", manoeuvre=edge.before)
+    return _("until one {between}", between=_between(edge))
+
+
+def _between(edge: Edge) -> str:
+    """Two manoeuvres, and times where a log has them; in a search for rests, times alone."""
+    times = edge.to_s > edge.from_s
+    if edge.before == edge.after and times:
+        return _(
+            "between {from_s} and {to_s} s", from_s=f"{edge.from_s:.1f}", to_s=f"{edge.to_s:.1f}"
+        )
+    words = _("between {before} and {after}", before=edge.before, after=edge.after)
+    if not times:
+        return words
+    return _(
+        "{words} ({from_s} to {to_s} s)",
+        words=words,
+        from_s=f"{edge.from_s:.1f}",
+        to_s=f"{edge.to_s:.1f}",
+    )
+
+
 def _consequence_in_all_logs(misread: Misread) -> str:
     sensor, axes = PLURAL[misread.sensor], _in_the_matrix(misread.axes)
+    if misread.part is not None:
+        return _(
+            "Used as they are named, these readings would give {axes}, and a bias and cross terms "
+            "of the wrong sign, in this part alone: what fits neither part.",
+            axes=axes,
+        )
     if misread.change is not None and not misread.undone:
         return _(
             "The turns give no parameters of the gyros: with the sign changed in the whole "

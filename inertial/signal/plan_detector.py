@@ -28,6 +28,36 @@ class SignChange:
 
 
 @dataclass(frozen=True)
+class Edge:
+    """Where a part begins or ends: between two manoeuvres, and between two times of a log, s.
+
+    before, after : empty where nothing tells how far beyond the other one it lies
+    from_s, to_s : NaN where there is no time, or where it lies between two logs
+    """
+
+    before: str
+    after: str
+    from_s: float
+    to_s: float
+
+
+@dataclass(frozen=True)
+class ReversedPart:
+    """Gyro `axis` (0, 1, 2) reads its negative in a part of a recording.
+
+    begins, ends : None where that is so from the start on, or to the end; turns : about this axis
+    that read as planned; logs : in which it is so; parted : whether one of them is so in a part
+    """
+
+    axis: int
+    begins: Edge | None
+    ends: Edge | None
+    turns: Sequence[str]
+    logs: Sequence[str]
+    parted: bool
+
+
+@dataclass(frozen=True)
 class Misread:
     """A sensor with exchanged or reversed axes; `log` is empty where all logs have it so.
 
@@ -35,7 +65,8 @@ class Misread:
     repair: id of its repair; undone: whether that is applied. rivals: the ids of others that
     explain as much, each with what would have to be true, in words. spans: of half a second, in
     which the gyros turn gravity as the accelerometers see it only so; 0: the plan shows it.
-    change: where it begins, or ends, to be so; None where it is so all along.
+    change: where it begins, or ends, to be so; None where it is so all along. part: the part of the
+    recording in which gravity shows it to be so, alone.
     """
 
     sensor: str
@@ -47,6 +78,7 @@ class Misread:
     rivals: Sequence[tuple[str, str]] = ()
     spans: int = 0
     change: SignChange | None = None
+    part: ReversedPart | None = None
 
 
 @dataclass(frozen=True)

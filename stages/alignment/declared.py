@@ -9,7 +9,7 @@ DECLARED = Declared(
         "samples": From("decode", tables.SAMPLES),
         "purposes": From("plan", tables.PURPOSES),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
-        "masks": From("quality", tables.MASKS),
+        "masks": From("segment", tables.MASKS),
         "segments": From("segment", tables.SEGMENTS),
         **RECORDED,
         "result": From("diagnosis", tables.PARAMETERS, "result"),

@@ -11,7 +11,7 @@ DECLARED = Declared(
         "traces": From("segment", tables.TRACES),
         "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
         "ranges": From("plan", tables.RANGES),
-        "masks": From("quality", tables.MASKS),
+        "masks": From("segment", tables.MASKS),
         "segments": From("segment", tables.SEGMENTS),
         **RECORDED,
         "campaign": From("plan", tables.CAMPAIGN),

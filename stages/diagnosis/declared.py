@@ -20,7 +20,7 @@ DECLARED = Declared(
         "plan_repairs": From("plan", tables.REPAIRS),
         "segment_repairs": From("segment", tables.REPAIRS),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
-        "masks": From("quality", tables.MASKS),
+        "masks": From("segment", tables.MASKS),
         "gaps": From("quality", tables.GAPS),
         "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
         "clocks": From("decode", tables.CLOCKS),

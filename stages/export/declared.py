@@ -14,7 +14,7 @@ DECLARED = Declared(
         "clocks": From("decode", tables.CLOCKS),
         "samples": From("decode", tables.SAMPLES),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
-        "masks": From("quality", tables.MASKS),
+        "masks": From("segment", tables.MASKS),
         "blocks": From("segment", tables.BLOCKS),
         "noise": From("noise", tables.NOISE),
         "terms": From("noise", tables.NOISE_TERMS, "terms"),

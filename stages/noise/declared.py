@@ -13,7 +13,7 @@ DECLARED = Declared(
         "manoeuvres": From("segment", tables.MANOEUVRES),
         "clocks": From("decode", tables.CLOCKS),
         "gaps": From("quality", tables.GAPS),
-        "masks": From("quality", tables.MASKS),
+        "masks": From("segment", tables.MASKS),
         "sensors": From("plan", tables.SENSORS),
         "ranges": From("plan", tables.RANGES),
     },

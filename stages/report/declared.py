@@ -21,7 +21,7 @@ DECLARED = Declared(
         "samples": From("decode", tables.SAMPLES),
         "plan_repairs": From("plan", tables.REPAIRS),
         "quality_findings": From("quality", tables.FINDINGS),
-        "masks": From("quality", tables.MASKS),
+        "masks": From("segment", tables.MASKS),
         "gaps": From("quality", tables.GAPS),
         "quality_close_ups": From("quality", tables.CLOSE_UPS),
         "segment_findings": From("segment", tables.FINDINGS),

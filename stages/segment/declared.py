@@ -27,6 +27,7 @@ DECLARED = Declared(
         "segments": tables.SEGMENTS,
         "performed": tables.PERFORMED,
         "blocks": tables.BLOCKS,
+        "masks": tables.MASKS,
         "traces": tables.TRACES,
         "findings": tables.FINDINGS,
         "close_ups": tables.CLOSE_UPS,

@@ -17,6 +17,7 @@ from inertial.campaign.records import Manoeuvre, Row
 from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import AS_NAMED, Permutation, composed
 from inertial.signal.detector import Given
+from inertial.signal.gravity_turned import Turned
 from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import (
     MarksOff,
@@ -29,7 +30,6 @@ from inertial.signal.plan_detector import (
 )
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
-from inertial.text.typography import capital
 from stages.segment.located import AS_PLANNED
 from stages.segment.plan_and_recording import Undone
 from stages.segment.recording_explanations import (
@@ -47,19 +47,24 @@ from stages.segment.repair_readings import (
     scales_of,
     step_of,
 )
+from stages.segment.reversed_parts import reversals
 from stages.segment.sign_changes import sign_changes
 from stages.segment.stated_marks import marks_off, with_marks
 from stages.segment.steps import (
+    APPLIED,
+    BY_GRAVITY,
     Step,
     at_other_rate,
     axes_in_words,
     axes_step,
+    channel_row,
     count_size_step,
     exchange_in_words,
     exchange_step,
     exchanged_back,
     marks_in_words,
     place_of,
+    row_of,
     sense_in_words,
     sense_step,
     spans_in_words,
@@ -106,7 +111,7 @@ class SetRight:
     """The campaign with its repairs: plan, where it is found, and what was set right.
 
     `level`: (3,), rad/s, the gyros at rest; `rows`: of the table of repairs, where `finding` is
-    the id of the repair whose finding tells of it.
+    the id of the repair whose finding tells of it; `masks`: of that of masks, likewise.
     """
 
     plan: Sequence[Manoeuvre]
@@ -114,6 +119,7 @@ class SetRight:
     explained: ExplainedRecording
     rows: Sequence[Row]
     channels: Sequence[Row]
+    masks: Sequence[Row]
     undone: Undone
 
 
@@ -144,6 +150,7 @@ class _Campaign:
         self._binned, self._plan, self._basis = binned, plan, basis
         self._rows: list[Row] = []
         self._channels: list[Row] = []
+        self._masks: list[Row] = []
         self._misread: list[Misread] = []
         self._swapped: list[Swapped] = []
         self._rescaled: list[Rescaled] = []
@@ -175,7 +182,7 @@ class _Campaign:
             self._marks_off,
         )
         found = (self._plan, self._level, self._explained)
-        return SetRight(*found, self._rows, self._channels, undone)
+        return SetRight(*found, self._rows, self._channels, self._masks, undone)
 
     @property
     def _applied(self) -> set[str]:
@@ -194,7 +201,7 @@ class _Campaign:
     ) -> bool:
         """State a repair in the table, with `more` columns of it; whether it is applied."""
         state = self._basis.state(step, rival=rival)
-        self._rows.append(_row(step, state, condition, fitting, log) | more)
+        self._rows.append(row_of(step, state, condition, fitting, log) | more)
         return state in APPLIED
 
     def _logs(self, log: str) -> Sequence[str]:
@@ -252,7 +259,7 @@ class _Campaign:
             if not self._decide(step, condition, *found, rival=rival, value=by, stated=1.0):
                 continue
             channels += [
-                _channel(step.id, log, scale.sensor, axis, axis, by)
+                channel_row(step.id, log, scale.sensor, axis, axis, by)
                 for log in self._logs(scale.log)
                 for axis in tables.AXES
             ]
@@ -362,7 +369,7 @@ class _Campaign:
         for log in logs:
             for i, axis in enumerate(tables.AXES):
                 source, sign = tables.AXES[axes.sources[i]], float(axes.signs[i])
-                yield _channel(step.id, log, misread.sensor, axis, source, sign)
+                yield channel_row(step.id, log, misread.sensor, axis, source, sign)
 
     def _plan_as_found(self, explained: ExplainedRecording) -> list[Manoeuvre]:
         """The plan with exchanged manoeuvres in their places, and turns the other way."""
@@ -387,20 +394,59 @@ class _Campaign:
         others = (row["state"] for row in self._rows if row["repair"] != "count_size")
         if self._changes or any(state not in APPLIED for state in others):
             return
-        found = misread_by_gravity(self._binned, self._level)
+        seen = axes_by_gravity(self._binned, self._level)
+        if seen is None or self._in_part(seen):
+            return
+        found = misread_by_gravity(self._binned, seen)
         words = {each.repair: axes_in_words(each) for each in found}
         chosen = [each for each in found if each.repair in self._basis.accepted] or found
         channels: list[Row] = []
         for each in chosen:
-            step, rival = step_of(each), len(chosen) > 1
-            if self._decide(step, words[step.id], rival=rival, finding=chosen[0].repair):
-                channels += self._axes(step, each, each.axes, self._logs(each.log))
+            step = step_of(each)
+            rows = list(self._axes(step, each, each.axes, self._logs(each.log)))
+            fitting = self._fitting_with(rows)
+            rival = len(chosen) > 1 or fitting[1] < fitting[0]
+            if self._decide(step, words[step.id], fitting, rival=rival, finding=chosen[0].repair):
+                channels += rows
         if chosen:
             rivals = [(other.repair, words[other.repair]) for other in chosen[1:]]
             self._misread.append(replace(chosen[0], undone=bool(channels), rivals=rivals))
         if channels:
             self._read_again(channels)
             self._explain()
+
+    def _fitting_with(self, channels: Sequence[Row]) -> tuple[int, int, int]:
+        """How many observations agree with the plan, with a repair of channels too, and all."""
+        now = (self._binned, self._channels, self._level, self._explained)
+        before, total = _agreeing(self._explained)
+        self._binned = list(self._binned)
+        self._channels = list(self._channels)
+        self._read_again(channels)
+        self._explain()
+        after, _total = _agreeing(self._explained)
+        self._binned, self._channels, self._level, self._explained = now
+        return before, after, total
+
+    def _in_part(self, seen: Turned) -> bool:
+        """Whether gyros are reversed in a part: set right by logs, or left out within one."""
+        earth = (self._basis.earth_rate, self._basis.heading)
+        found = (self._explained.located, self._plan, self._level, seen, earth)
+        channels: list[Row] = []
+        parts = list(reversals(*found))
+        for each in parts:
+            step = axes_step("gyro", each.axes)
+            step = replace(step, id=f"{step.id}/{BY_GRAVITY}/{tables.AXES[each.part.axis]}")
+            misread = Misread("gyro", each.axes, "", (), step.id, spans=each.spans, part=each.part)
+            undone = not each.part.parted and self._decide(step, axes_in_words(misread))
+            if undone:
+                channels += self._axes(step, misread, each.axes, each.part.logs)
+            else:
+                self._masks += [row | {"finding": step.id} for row in each.masks]
+            self._misread.append(replace(misread, undone=undone))
+        if channels:
+            self._read_again(channels)
+            self._explain()
+        return bool(parts)
 
     # ---- rates of the plan
 
@@ -440,45 +486,8 @@ class _Campaign:
             self._explain()
 
 
-APPLIED = ("applied", "confirmed")
-
-
-def _row(
-    step: Step,
-    state: str,
-    condition: str,
-    fitting: tuple[int, int, int] | None = None,
-    log: str = "",
-) -> Row:
-    before, after, total = fitting or (None, None, None)
-    if state == "rival":
-        done = _("It is not applied, for others explain as much.")
-    elif state == "refused":
-        done = _("It is not applied, for the settings refuse repairs.")
-    else:
-        done = _("It is set right before the estimation.")
-    return {
-        "id": step.id,
-        "repair": step.repair,
-        "state": state,
-        "sensor": step.sensor,
-        "log": log or None,
-        "unit": "1",
-        "finding": step.id,
-        "fitting_before": before,
-        "fitting_after": after,
-        "observations": total,
-        "condition": condition,
-        "sentence": f"{capital(condition)}. {done}",
-    }
-
-
-def _channel(repair: str, log: str, sensor: str, axis: str, from_axis: str, factor: float) -> Row:
-    return {
-        "repair": repair,
-        "log": log,
-        "sensor": sensor,
-        "axis": axis,
-        "from_axis": from_axis,
-        "factor": factor,
-    }
+def _agreeing(explained: ExplainedRecording) -> tuple[int, int]:
+    """How many observations agree with the plan by the axes as they are named, and all."""
+    each = [located.agreeing for located in explained.located if located.axes == AS_PLANNED]
+    total = sum(located.agreeing[1] for located in explained.located)
+    return sum(right for right, _all in each), total

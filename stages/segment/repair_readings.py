@@ -36,25 +36,19 @@ from stages.segment.windows import Binned
 
 
 def axes_by_gravity(binned: Sequence[Binned], level: Array) -> Turned | None:
-    """How the gyros turn gravity; `level` as in `misread_by_gravity`."""
+    """How the gyros turn gravity; `level`: (3,), rad/s, the gyros at rest."""
     return turned([(one.forces, one.rates - level, one.bin_seconds) for one in binned if one.bins])
 
 
-def misread_by_gravity(binned: Sequence[Binned], level: Array) -> list[Misread]:
+def misread_by_gravity(binned: Sequence[Binned], seen: Turned) -> list[Misread]:
     """What explains that the gyros turn gravity otherwise than it turns; each does it alone.
 
     If the gyros' triad is left-handed beside the accelerometers', only they explain it, for
     accelerometers that read A f turn by det(A)·A ω, which is right-handed. Else both may: of the
     accelerometers those with the fewest signs, for all of them reversed turn alike.
-
-    Parameters
-    ----------
-    level : (3,), rad/s, the gyros at rest
     """
-    seen = axes_by_gravity(binned, level)
-    if seen is None or seen.axes in (None, AS_NAMED):
+    if seen.axes is None or seen.axes == AS_NAMED:
         return []
-    assert seen.axes is not None
     names = [m.name for one in binned for m in one.window.manoeuvres]
     explained = [("gyro", seen.axes)]
     if determinant(seen.axes) > 0:

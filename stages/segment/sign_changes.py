@@ -27,18 +27,19 @@ MIN_RESTS = 3  # fewer do not tell a sign from a bias
 
 
 @dataclass(frozen=True)
-class _Rest:
+class Rest:
     """What a gyro reads at rest.
 
-    order : window and stretch; heading : what has north in the same direction in the body;
-    up : share of the axis that points up; rate, sigma : rad/s, mean; before, after : the last
-    manoeuvre up to it, and the first from it on
+    order : window and stretch; heading : what has north in the same direction in the body; up :
+    share of the axis that points up; mark : (3,), the zero mark of the table where it is known;
+    rate, sigma : rad/s, mean; before, after : the last manoeuvre up to it, and the first from it on
     """
 
     order: tuple[int, int]
     log: str
     heading: tuple[str, int]
     up: Array
+    mark: Array | None
     rate: Array
     sigma: Array
     before: str
@@ -65,7 +66,7 @@ def sign_changes(
     order = {m.name: k for k, m in enumerate(plan)}
     windows = sorted(located, key=lambda one: order[one.plan[0].name])
     stated = {m.name: m for m in plan}
-    rests = [rest for k, one in enumerate(windows) for rest in _rests(k, one, stated, level)]
+    rests = [rest for k, one in enumerate(windows) for rest in rests_of(k, one, stated, level)]
     found = []
     for i in np.flatnonzero(np.array(axes.signs) < 0):
         turns = [
@@ -82,39 +83,41 @@ def sign_changes(
     return found
 
 
-def _rests(
+def rests_of(
     window: int, located: Located, stated: Mapping[str, Manoeuvre], level: Array
-) -> Iterator[_Rest]:
+) -> Iterator[Rest]:
     """The rests of a window with a known direction up, those beside turns too.
 
     `stated`: the manoeuvres by name, with their directions as the plan has them.
     """
-    ups: dict[int, tuple[Manoeuvre, int]] = {}
+    ups: dict[int, tuple[Manoeuvre, int, bool]] = {}  # and whether the mark is where it states
     rounds = 0  # turns so far after which north is elsewhere
     for m in (stated[one.name] for one in located.plan):
         place = located.place(m)
         if place is None or m.up is None:
             continue
         if m.do == "rest":
-            ups[place] = (m, rounds)
+            ups[place] = (m, rounds, True)
         if m.do == "turn":
-            ups.setdefault(place - 1, (m, rounds))
+            ups.setdefault(place - 1, (m, rounds, True))
             angle = 0.5 if m.angle is None else m.angle / (2 * np.pi)
-            rounds += abs(angle - round(angle)) > MAX_OF_ROUND
+            whole = abs(angle - round(angle)) <= MAX_OF_ROUND
+            rounds += not whole
             if abs(m.axis @ m.up) > OWN_AXIS_SHARE:
-                ups[place + 1] = (m, rounds)
+                ups[place + 1] = (m, rounds, whole)
     places = [(place, m.name) for m in located.plan if (place := located.place(m)) is not None]
     for place in sorted(ups):
         if not 0 <= place < len(located.observed) or located.observed[place].moves:
             continue
-        m, turned = ups[place]
+        m, turned, as_stated = ups[place]
         assert m.up is not None
         seen = located.observed[place]
-        yield _Rest(
+        yield Rest(
             (window, place),
             located.binned.window.log,
             (m.position, turned),
             m.up,
+            m.mark if as_stated else None,
             seen.rate + level,
             seen.unsure,
             max(one for one in places if one[0] <= place)[1] if places[0][0] <= place else m.name,
@@ -123,13 +126,13 @@ def _rests(
 
 
 def _change(
-    i: int, rests: Sequence[_Rest], turns: Sequence[tuple[int, int]], earth_rate: float
+    i: int, rests: Sequence[Rest], turns: Sequence[tuple[int, int]], earth_rate: float
 ) -> SignChange | None:
     """Where gyro i, whose turns are all read the other way, changes its sign; None: nowhere."""
     if len(rests) < MIN_RESTS or not turns:
         return None
     rate, up = (np.array([getattr(rest, key)[i] for rest in rests]) for key in ("rate", "up"))
-    weights = cho_factor(_covariance(i, rests, earth_rate))
+    weights = cho_factor(covariance_of(i, rests, earth_rate))
 
     def misfit(signs: Array, parts: Array) -> float:
         """Chi-squared with one bias, or with one on each side; signs, (n,), of the readings."""
@@ -165,15 +168,19 @@ def _change(
     return SignChange(i, rests[first].before, rests[after].after, later, logs, parted)
 
 
-def _covariance(i: int, rests: Sequence[_Rest], earth_rate: float) -> Array:
+def covariance_of(
+    i: int, rests: Sequence[Rest], earth_rate: float, heading: float | None = None
+) -> Array:
     """That of the readings of gyro i, (n, n), rad²/s²: noise, and what is not known of the earth.
 
-    The horizontal part of its rate has a direction of its own for each heading, and the upward one
-    is not known without a latitude.
+    The horizontal part of its rate has a direction of its own for each heading, unless `heading`
+    and mark tell it, and the upward one is not known without a latitude.
     """
     up, sigma = (np.array([getattr(rest, key)[i] for rest in rests]) for key in ("up", "sigma"))
+    told = [bool(earth_rate) and heading is not None and rest.mark is not None for rest in rests]
     headings = [rest.heading for rest in rests]
     same = np.array([[one == other for other in headings] for one in headings])
+    same &= ~np.logical_or.outer(told, told)
     level = (EARTH_RATE**2 - earth_rate**2) * np.sqrt(np.outer(1 - up**2, 1 - up**2)) / 2
     unknown = 0.0 if earth_rate else EARTH_RATE**2 / 2
     return np.asarray(np.diag(sigma**2) + level * same + unknown * np.outer(up, up))

@@ -18,7 +18,7 @@ from inertial.sensors import COLUMNS
 from inertial.signal.axis_permutations import AS_NAMED
 from inertial.signal.detector import Log
 from inertial.signal.plan_detector import SpansOff
-from inertial.tables import CHANNEL_REPAIRS, STATIC_PHASES
+from inertial.tables import CHANNEL_REPAIRS, MASKS, STATIC_PHASES
 from inertial.tables.errors import Refusal
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -114,7 +114,8 @@ def segment(
     made = _set_right(samples, plan, basis, stated.clocks, Masks(examined.masks))
     confirmed.refuse_unknown(made.rows)
     read_as = Repairs(CHANNEL_REPAIRS.frame(made.channels))
-    masked = Masks(examined.masks, read_as)
+    masks = [*rows_of(examined.masks), *made.masks]
+    masked = Masks(MASKS.frame(masks), read_as)
     by_name = {name: log_as_read(log, read_as) for name, log in logs.items()}
     places = _places(made, margin)
 
@@ -164,6 +165,7 @@ def segment(
         "segments": segments,
         "performed": pd.DataFrame([asdict(performed[m.name]) for m in plan]),
         "blocks": reduction.with_temperatures(without_unused(blocks, by_encoder), plan),
+        "masks": _masks(masks, of_plan),
         "traces": traces.table(),
         "findings": table_of([each.finding for each in detections]),
         "close_ups": close_ups(samples, index, detections),
@@ -306,6 +308,14 @@ def _performed(
         for each in completeness.with_ways(done, located, made.level):
             done[each.manoeuvre] = each
     return done
+
+
+def _masks(rows: Sequence[Row], of_plan: Sequence[tuple[Detection, str]]) -> pd.DataFrame:
+    """Those of the stage quality, and of the readings that no repair sets right, by finding."""
+    told = {by: each.finding.id for each, by in of_plan if by}
+    return MASKS.frame(
+        [row | {"finding": told.get(row["finding"], row["finding"])} for row in rows]
+    )
 
 
 def _with_findings(

@@ -5,14 +5,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from inertial.campaign.records import Manoeuvre
+from inertial.campaign.records import Manoeuvre, Row
 from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.misread_axes import reads_in_words
 from inertial.signal.plan_detector import MarksOff, Misread, SpansOff, Swapped
 from inertial.tables import AXES
+from inertial.text.enumeration import listed
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed
+from inertial.text.typography import capital
 
 BY_GRAVITY = "by-gravity"  # the end of a repair's id that gravity shows, whatever the plan says
 ALL_REVERSED = Permutation((0, 1, 2), (-1, -1, -1))
@@ -114,10 +116,11 @@ def where(log: str) -> str:
 
 def axes_in_words(misread: Misread) -> str:
     """That a sensor reads other axes than those it is named by."""
+    whole = misread.change is None and misread.part is None
     words = _(
         "of the {sensor}, {where}, {axes}",
         sensor=PLURAL[misread.sensor],
-        where=where(misread.log) if misread.change is None else _("in a part of the logs"),
+        where=where(misread.log) if whole else _("in a part of the logs"),
         axes=reads_in_words(misread.axes),
     )
     if misread.change is not None:
@@ -126,6 +129,8 @@ def axes_in_words(misread: Misread) -> str:
             if misread.change.later
             else _(", up to {manoeuvre}", manoeuvre=misread.change.before)
         )
+    if misread.part is not None:
+        words += _(": {logs}", logs=listed(misread.part.logs))
     if misread.sensor == "accel" and misread.axes == ALL_REVERSED:
         words += _(", or the log tells gravity in place of specific force, which is the same")
     return words
@@ -184,6 +189,55 @@ def sense_in_words(turns: OtherSense, own: Sequence[Manoeuvre]) -> str:
             words += _(", or they were done in the other order, which gives the same result")
         return words
     return _("the table counts all its turns the other way")
+
+
+# ---- Repairs as rows of their tables.
+
+APPLIED = ("applied", "confirmed")
+
+
+def row_of(
+    step: Step,
+    state: str,
+    condition: str,
+    fitting: tuple[int, int, int] | None = None,
+    log: str = "",
+) -> Row:
+    """A repair and what was done; `fitting`: observations that fit before, after, and all."""
+    before, after, total = fitting or (None, None, None)
+    if state == "rival":
+        done = _("It is not applied, for others explain as much.")
+    elif state == "refused":
+        done = _("It is not applied, for the settings refuse repairs.")
+    else:
+        done = _("It is set right before the estimation.")
+    return {
+        "id": step.id,
+        "repair": step.repair,
+        "state": state,
+        "sensor": step.sensor,
+        "log": log or None,
+        "unit": "1",
+        "finding": step.id,
+        "fitting_before": before,
+        "fitting_after": after,
+        "observations": total,
+        "condition": condition,
+        "sentence": f"{capital(condition)}. {done}",
+    }
+
+
+def channel_row(
+    repair: str, log: str, sensor: str, axis: str, from_axis: str, factor: float
+) -> Row:
+    return {
+        "repair": repair,
+        "log": log,
+        "sensor": sensor,
+        "axis": axis,
+        "from_axis": from_axis,
+        "factor": factor,
+    }
 
 
 # ---- The plan as a repair makes it: manoeuvres in each other's place, turned back, at other rates.

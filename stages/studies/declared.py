@@ -8,7 +8,7 @@ DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
         "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
-        "masks": From("quality", tables.MASKS),
+        "masks": From("segment", tables.MASKS),
         **RECORDED,
         "segments": From("segment", tables.SEGMENTS),
         "spectra": From("noise", tables.SPECTRA),
