@@ -4,7 +4,7 @@ from typing import Any
 
 import chain
 import pytest
-from test_repairs import flip, in_one_log
+from test_repairs import all_turns, flip, in_one_log
 
 BIAS = 1.1e-4  # rad/s, 23 °/h, of the y gyro: against 10.6 °/h of the earth's rate across
 TURNS = ("y-forward", "y-backward", "y-down-forward", "y-down-backward")
@@ -75,3 +75,58 @@ def test_nothing_is_set_right_where_a_gyro_changes_its_sign_within_a_log():
     (finding,) = found[found["cause"] == "sign_flip"].to_dict("records")
     assert "changes between y-down and z-up" in finding["sentence"]
     assert "Nothing is set right" in finding["action"]
+
+
+def in_one_session(first: str = "", after: str = "") -> tuple[chain.Results, list[int]]:
+    """All in one log, the y gyro reversed from before one rest until before another.
+
+    So much noise that no two records show a change by themselves. Records of the changes as well.
+    """
+    document = chain.short()
+    in_one_log(document)
+    document["noise"]["angle_random_walk_deg_sqrt_h"] = 0.15
+    lines = []
+    if first:
+        segments = chain.in_memory_of(document, "segment")["segment/segments"]
+        begins = segments.drop_duplicates("manoeuvre").set_index("manoeuvre")["from_record"]
+        lines = [int(begins[name]) - 20 for name in (first, after)]
+        fault = {**flip("gyro", "y")["flip"], "line": lines[0], "samples": lines[1] - lines[0]}
+        document["faults"] = [{"flip": {**fault, "log": "session.asc"}}]
+    return chain.in_memory_of(document, "gyroscope"), lines
+
+
+@pytest.mark.parametrize(("first", "after"), [("y-up", "z-down"), ("x-down", "z-down")])
+def test_a_gyro_that_is_reversed_between_two_rests_is_left_out_there(first, after):
+    results, (line, end) = in_one_session(first, after)
+    assert results["segment/channel_repairs"].empty and results["segment/repairs"].empty
+    findings = results["segment/findings"]
+    (finding,) = findings[findings["cause"] == "sign_flip"].to_dict("records")
+    assert (finding["sensor"], finding["axis"]) == ("gyro", "y")
+    assert "reads its negative in a part of the recording" in finding["sentence"]
+    masks = results["segment/masks"]
+    (mask,) = masks[masks["finding"] == finding["id"]].to_dict("records")
+    assert (mask["sensor"], mask["axis"]) == ("gyro", "y")
+    assert mask["from_record"] <= line and end <= mask["to_record"]
+    assert mask["to_record"] - mask["from_record"] < end - line + 6000  # a rest on either side
+    assert results["segment/performed"]["complete"].all()
+    assert results.parameters("gyroscope")["value"].notna().all()
+
+
+@pytest.mark.slow
+def test_of_a_gyro_that_reads_as_it_should_no_part_is_left_out():
+    results, _lines = in_one_session()
+    assert results["segment/masks"].empty and results["segment/findings"].empty
+
+
+def test_of_signs_that_fit_the_plan_less_than_the_readings_none_is_set_right():
+    """Every gyro reversed and every turn counted the other way: the turns are as planned."""
+    document = chain.short()
+    in_one_log(document)
+    document["faults"] = [flip("gyro", axis) for axis in "xyz"]
+    all_turns(lambda m: {**m, "degrees": -m["degrees"]})(document)
+    results = chain.in_memory_of(document, "segment")
+    (repair,) = results["segment/repairs"].to_dict("records")
+    assert (repair["id"], repair["state"]) == ("signs/gyro/by-gravity", "rival")
+    assert repair["fitting_after"] < repair["fitting_before"]
+    assert results["segment/channel_repairs"].empty
+    assert results["segment/performed"]["complete"].all()

@@ -15,7 +15,7 @@ spans of it, tells its sign by which of both fits: a motion that tells nothing f
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -35,6 +35,7 @@ REWEIGHTINGS = 10
 ROBUST_SIGMA = 3.0  # sigmas from which on a span counts less: Cauchy's weights
 UNKNOWNS = 24
 MIN_SIGN_GAIN = 15.0  # of the logarithm of Cauchy's likelihood, by the one sign in a motion
+MIN_ABOUT = 0.1  # rad, about an axis in a motion: its gyro with the other sign is far from any bias
 MAX_MISFIT = np.log(2)  # of its negative, the mean of a motion: they fit to ROBUST_SIGMA
 PRIOR = 1e-6  # of the normal matrix: what nothing determines stays 0
 
@@ -156,16 +157,22 @@ def motions(stretch: Stretch, seen: Turned, most: float = MAX_MISFIT) -> Iterato
         total = losses[:, own].sum(axis=1)
         gains = total[1:] - total[0]
         fits = np.minimum(total[1:], total[0]) < most * 3 * len(own)
-        signs = np.sign(gains).astype(np.int64) * (fits & (np.abs(gains) > MIN_SIGN_GAIN))
-        yield Motion(int(starts[own[0]]), int(starts[own[-1]]) + steps, len(own), signs)
+        first, after = int(starts[own[0]]), int(starts[own[-1]]) + steps
+        about = np.abs(rates[first:after]).sum(axis=0) * step
+        told = fits & (np.abs(gains) > MIN_SIGN_GAIN) & (about > MIN_ABOUT)
+        yield Motion(first, after, len(own), np.sign(gains).astype(np.int64) * told)
 
 
-def signs_of_motions(stretches: Sequence[Stretch], seen: Turned) -> list[list[Motion]]:
-    """The motions of each stretch, as by the recording in which all read alike.
+def signs_of_motions(
+    stretches: Sequence[Stretch], seen: Turned
+) -> tuple[Turned, list[list[Motion]]]:
+    """The motions of each stretch, as by the recording in which all read alike, which is given too.
 
     Where a few motions are reversed, they pull at the unknowns of all: these are found anew with
-    the motions read as they seem to be.
+    the motions read as they seem to be. Where so many are that no axes are seen, by the names.
     """
+    if seen.axes is None:
+        seen = replace(seen, unknowns=np.append(np.eye(3).ravel(), np.zeros(UNKNOWNS - 9)))
     alike = []
     for forces, rates, step in stretches:
         read = rates.copy()
@@ -173,7 +180,7 @@ def signs_of_motions(stretches: Sequence[Stretch], seen: Turned) -> list[list[Mo
             read[one.first : one.after + 1] *= np.where(one.reversed < 0, -1.0, 1.0)
         alike.append((forces, read, step))
     anew = turned(alike) or seen
-    return [list(motions(stretch, anew)) for stretch in stretches]
+    return anew, [list(motions(stretch, anew)) for stretch in stretches]
 
 
 def _spans(forces: Array, rates: Array, step: float) -> tuple[Array, Array, Integers]:

@@ -144,6 +144,7 @@ def _of_a_part(misread: Misread, part: ReversedPart) -> str:
         axis=AXES[part.axis],
         begins=_begins(part.begins),
         ends=_ends(part.ends),
+        spans=counted(misread.spans, "span"),
     )
     if not part.turns:
         return sentence

@@ -418,12 +418,12 @@ class _Campaign:
     def _fitting_with(self, channels: Sequence[Row]) -> tuple[int, int, int]:
         """How many observations agree with the plan, with a repair of channels too, and all."""
         now = (self._binned, self._channels, self._level, self._explained)
-        before, total = _agreeing(self._explained)
+        before, _with_more, total = self._explained.fitting
         self._binned = list(self._binned)
         self._channels = list(self._channels)
         self._read_again(channels)
         self._explain()
-        after, _total = _agreeing(self._explained)
+        after = self._explained.fitting[0]
         self._binned, self._channels, self._level, self._explained = now
         return before, after, total
 
@@ -484,10 +484,3 @@ class _Campaign:
         if undone:
             self._plan_again(with_marks(self._plan, marks))
             self._explain()
-
-
-def _agreeing(explained: ExplainedRecording) -> tuple[int, int]:
-    """How many observations agree with the plan by the axes as they are named, and all."""
-    each = [located.agreeing for located in explained.located if located.axes == AS_PLANNED]
-    total = sum(located.agreeing[1] for located in explained.located)
-    return sum(right for right, _all in each), total

@@ -4,7 +4,8 @@ Every motion from rest to rest that turns gravity tells the sign of a gyro by it
 turn about its axis as planned. Where some motions show it as named and others reversed, and all of
 the reversed ones follow one another, it is reversed in the part that holds them. Of the rests
 between, what the gyro reads, its bias and the earth's rate, shows on which side of the change each
-is, where heading and latitude are known; without them the part is as long as it may be.
+is, where heading and latitude are known; without them the part is as long as it may be. Turns on
+one side alone show nothing without gravity: the plan may count them the other way.
 """
 
 from collections.abc import Iterator, Sequence
@@ -74,16 +75,16 @@ def reversals(
     level : (3,), rad/s, what the rates are less by; seen : how the gyros turn gravity
     earth : rad/s, the upward part of its rate, 0 where it is not known; rad, the heading
     """
-    axes = seen.axes
-    if axes is None or not axes.in_place:
-        return
     order = {m.name: k for k, m in enumerate(plan)}
     windows = sorted(located, key=lambda one: order[one.plan[0].name])
     stated = {m.name: m for m in plan}
     rests = [rest for k, one in enumerate(windows) for rest in rests_of(k, one, stated, level)]
     means = [one.binned for one in windows]
     stretches = [(one.forces, one.rates - level, one.bin_seconds) for one in means]
-    signs = signs_of_motions(stretches, seen)
+    alike, signs = signs_of_motions(stretches, seen)
+    axes = alike.axes
+    if axes is None or not axes.in_place:
+        return
     moved = [(k, motion) for k, own in enumerate(signs) for motion in own]
     for i in range(3):
         own = [rest for rest in rests if np.isfinite(rest.rate[i])]
@@ -157,6 +158,9 @@ def _reversal(
     if not len(wrong) or not len(right) or ((right > wrong[0]) & (right < wrong[-1])).any():
         return None
     before, behind = right[right < wrong[0]], right[right > wrong[-1]]
+    by_gravity = any(one.sign > 0 and one.spans for one in told)
+    if not by_gravity and not (len(before) and len(behind)):
+        return None  # the plan may count these turns the other way
     firsts = range(before[-1] + 1 if len(before) else 0, wrong[0] + 1)
     afters = range(wrong[-1] + 1, (behind[0] if len(behind) else len(told)) + 1)
     at_rest = np.array([one.rest for one in told])
