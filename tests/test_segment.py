@@ -641,3 +641,51 @@ def test_what_a_table_swings_on_after_a_turn_is_one_block_and_no_rest():
     assert near["rest-before"] == pytest.approx(5.0)
     assert near["rest-after"] == pytest.approx(6.0)
     assert phases["rest-after"][1] - phases["rest-after"][0] > 7
+
+
+COUNT = float(np.radians(0.02))  # rad/s
+
+
+@pytest.mark.parametrize("noise", [0.05, 0.14, 0.25])  # counts, of a reading
+@pytest.mark.parametrize("bias", [0.0, 0.25])  # counts: that toggle seldom, or now and then
+def test_counts_that_toggle_are_no_motion_and_a_turn_begins_where_it_does(noise, bias):
+    """A turn of 360° at 72 °/s with ramps of 60 °/s²: it takes 6.2 s, between rests of 30 s."""
+    step, ramp, plateau = 0.1, 1.2, 3.8
+    time = 0.01 * np.arange(6620)
+    rate = 72 * np.clip(np.minimum(time - 30, 36.2 - time) / ramp, 0, 1)
+    assert rate.sum() * 0.01 == pytest.approx(72 * (plateau + ramp))
+    sensed = np.radians(np.outer(rate, [0, 0, 1])) / COUNT + bias
+    readings = np.round(sensed + noise * np.random.default_rng(8).standard_normal(sensed.shape))
+    rates = COUNT * readings.reshape(-1, 10, 3).mean(axis=1)
+    bins, up = len(rates), np.array([0.0, 0.0, 1.0])
+    turn = Manoeuvre(
+        **dict.fromkeys(field.name for field in fields(Manoeuvre))
+        | {"name": "turn", "do": "turn", "log": "log", "up": up, "about": up, "recorded": "whole"}
+        | {"angle": 2 * np.pi, "rate": np.radians(72)}
+    )
+    binned = windows.Binned(
+        windows.Window("log", 0, bins, [turn]),
+        np.arange(bins + 1),
+        rates,
+        np.tile(9.8 * up, (bins, 1)),
+        np.full(bins, step),
+        step * np.arange(bins),
+        step * np.arange(bins) + 0.09,
+        quantum=np.append(np.full(3, np.nan), np.full(3, COUNT)),
+    )
+    (located,) = explained_of([binned], [turn], 0.0)[1].located
+    place = located.place(turn)
+    assert place is not None
+    stretch = located.stretches[place]
+    assert (stretch.first, stretch.after) == (pytest.approx(300, abs=2), pytest.approx(362, abs=2))
+
+
+def test_a_rest_in_which_counts_toggle_holds_no_slow_motion():
+    rng = np.random.default_rng(4)
+    readings = np.round(0.4 + 0.14 * rng.standard_normal((3000, 3))) * COUNT
+    still = readings.reshape(300, 10, 3).mean(axis=1)
+    assert slow_motion(still, 0.1, np.full(3, COUNT)) is None
+    turning = still.copy()
+    turning[100:200, 1] += np.radians(0.1)  # 1° in 10 s
+    first, after = slow_motion(turning, 0.1, np.full(3, COUNT))
+    assert abs(first - 100) <= 1 and abs(after - 200) <= 1

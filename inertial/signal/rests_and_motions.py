@@ -9,6 +9,9 @@ from inertial.arrays import Array, Booleans
 from inertial.signal.scatter import MAD_TO_SIGMA
 
 MIN_MOTION_SIGMA = 6.0  # scatters of the gyros at rest: what cannot be noise
+# Counts that reading after reading toggles between two values, where the noise is below a count: a
+# mean of them may be a count off, and its level half a count where attitude or bias moves it.
+MAX_TOGGLING = 1.5
 MIN_HAND_RATE = np.radians(2.0)  # rad/s: what counts as motion where no rate is planned
 MIN_STRETCH_S = 0.3  # s, a motion or a rest shorter than this is none, or a tenth of the stretch
 MAX_KNOCK_TILT = np.radians(5.0)  # rad: an IMU that is knocked stands again as it stood
@@ -119,10 +122,22 @@ def _fell(stretch: BinStretch, forces: Array | None) -> bool:
     return bool(cosine < np.cos(MAX_KNOCK_TILT))  # not where they are not recorded
 
 
-def shaken_bins(found: list[BinStretch], forces: Array) -> Booleans:
+def toggling(quantum: Array) -> Array:
+    """What the mean of a bin may differ by for the counts alone, of steps (k,); NaN: none is known.
+
+    The scatter of bins does not show it: where the noise is below a count most of them are alike.
+    """
+    return np.asarray(MAX_TOGGLING * np.nan_to_num(quantum))
+
+
+def shaken_bins(found: list[BinStretch], forces: Array, quantum: Array) -> Booleans:
     """Which bins of still stretches differ from one beside them by more than others do, (k,).
 
     A hand that takes the IMU shakes the accelerometers before the gyros show that it turns.
+
+    Parameters
+    ----------
+    forces : (k, 3), m/s², NaN where not recorded; quantum : (3,), m/s², their step, NaN: not known
     """
     shakes = np.zeros(len(forces), bool)
     for stretch in found:
@@ -131,7 +146,8 @@ def shaken_bins(found: list[BinStretch], forces: Array) -> Booleans:
             continue
         change = np.abs(np.diff(own, axis=0))
         scatter = MAD_TO_SIGMA * np.median(change, axis=0)
-        far = (change > MIN_MOTION_SIGMA * scatter).any(axis=1) & (scatter > 0).all()
+        least = np.maximum(MIN_MOTION_SIGMA * scatter, toggling(quantum))
+        far = (change > least).any(axis=1) & (scatter > 0).all()
         shakes[stretch.first : stretch.after] = np.append(far, False) | np.append(False, far)
     return shakes
 
@@ -169,7 +185,9 @@ def _length(true: Booleans, pause: int) -> int:
     return int(kept[-1]) + 1 if len(kept) else 0
 
 
-def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
+def slow_motion(
+    rates: Array, bin_seconds: float, quantum: Array | float = 0.0
+) -> tuple[int, int] | None:
     """The bins of a still stretch from the first in which it turns slowly to that behind the last.
 
     A table that is set a degree further takes seconds, below what counts as motion. It begins and
@@ -178,15 +196,18 @@ def slow_motion(rates: Array, bin_seconds: float) -> tuple[int, int] | None:
     Parameters
     ----------
     rates : (k, 3), rad/s, NaN where not recorded
+    quantum : rad/s, the step of the gyros, (3,) or of each, NaN where it is not known
     """
     recorded = bridged(rates[:, np.isfinite(rates).any(axis=0)])
     if len(recorded) < 2 or not recorded.size:
         return None
     change = MAD_TO_SIGMA * np.median(np.abs(np.diff(recorded, axis=0)), axis=0) / np.sqrt(2)
+    by_counts = float(np.linalg.norm(toggling(np.broadcast_to(quantum, 3))))
+    least = max(MIN_MOTION_SIGMA * float(np.linalg.norm(change)), by_counts)
     rests = np.ones(len(recorded), bool)
     for _ in range(LEVEL_ROUNDS):  # it may last as long as the rest
         away = recorded - np.median(recorded[rests], axis=0)
-        above = np.linalg.norm(away, axis=1) > MIN_MOTION_SIGMA * float(np.linalg.norm(change))
+        above = np.linalg.norm(away, axis=1) > least
         if above.all():
             return None
         rests = ~above

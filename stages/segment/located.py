@@ -165,7 +165,7 @@ def divide(
         moves = moving(binned.rates, binned.forces, level, lowest)
         moves |= binned.beside_pauses | binned.beside_jumps
         divided = stretches(moves, binned.bin_seconds, binned.forces)
-        above = above_noise | shaken_bins(divided, binned.forces)
+        above = above_noise | shaken_bins(divided, binned.forces, binned.quantum[:3])
         divided = with_slow_ends(divided, above, binned.bin_seconds, swings=swings)
         ways.append((divided, observe(binned, divided, level)))
     return Division(binned, ways)

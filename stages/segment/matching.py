@@ -317,7 +317,9 @@ def between_parts(rests: Sequence[Part]) -> Iterator[Part]:
 
 def _first_of(binned: Binned, rest: BinStretch, room: int, shared: bool) -> int:
     """Where the rest before a turn begins; the turn before it, if any, has the first half."""
-    moved = slow_motion(binned.rates[rest.first : rest.after], binned.bin_seconds)
+    moved = slow_motion(
+        binned.rates[rest.first : rest.after], binned.bin_seconds, binned.quantum[3:]
+    )
     if moved:
         return min(rest.first + moved[1] + room, rest.after)
     if shared:
@@ -327,7 +329,9 @@ def _first_of(binned: Binned, rest: BinStretch, room: int, shared: bool) -> int:
 
 def _after_of(binned: Binned, rest: BinStretch, room: int, shared: bool) -> int:
     """Where the rest after a turn ends; the turn behind it, if any, has the second half."""
-    moved = slow_motion(binned.rates[rest.first : rest.after], binned.bin_seconds)
+    moved = slow_motion(
+        binned.rates[rest.first : rest.after], binned.bin_seconds, binned.quantum[3:]
+    )
     if moved:
         return max(rest.first + moved[0] - room, rest.first)
     if shared:

@@ -16,7 +16,7 @@ from inertial.signal.axis_permutations import (
 )
 from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import Misread, Swapped
-from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA
+from inertial.signal.rests_and_motions import MIN_HAND_RATE, MIN_MOTION_SIGMA, toggling
 from stages.segment.located import (
     AS_PLANNED,
     Axes,
@@ -135,9 +135,12 @@ def explained_of(
     """What the gyros read at rest, (3,), rad/s, and where the manoeuvres are; as `explain`."""
     level, scatter = level_of(binned)
     rates = [abs(m.rate) for m in plan if m.rate]
-    noise = MIN_MOTION_SIGMA * scatter
-    threshold = max(MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE, noise)
-    ways = [divide(window, level, threshold, noise, swings=bool(rates)) for window in binned]
+    planned = MIN_RATE_SHARE * min(rates) if rates else MIN_HAND_RATE
+    ways = []
+    for window in binned:
+        by_counts = float(np.linalg.norm(toggling(window.quantum[3:])))
+        noise = max(MIN_MOTION_SIGMA * scatter, min(by_counts, planned))
+        ways.append(divide(window, level, max(planned, noise), noise, swings=bool(rates)))
     explained = explain(
         ways, earth_rate, accepted, with_sense=with_sense, gyros_confirmed=gyros_confirmed
     )

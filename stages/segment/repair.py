@@ -216,7 +216,13 @@ class _Campaign:
             six = repairs.readings(log, np.hstack([one.forces, one.rates]))
             if cut_off is not None:
                 cut_off = repairs.channel_masks(log, cut_off)
-            self._binned[k] = replace(one, forces=six[:, :3], rates=six[:, 3:], censored=cut_off)
+            self._binned[k] = replace(
+                one,
+                forces=six[:, :3],
+                rates=six[:, 3:],
+                censored=cut_off,
+                quantum=np.abs(repairs.readings(log, one.quantum[None])[0]),
+            )
 
     def _plan_again(self, plan: Sequence[Manoeuvre]) -> None:
         """Take another plan, whose manoeuvres may stand in other windows."""

@@ -111,7 +111,8 @@ def segment(
         set(confirmed.accepted["repair"]),
         stated.heading,
     )
-    made = _set_right(samples, plan, basis, stated.clocks, Masks(examined.masks))
+    quanta = {name: log.quantum for name, log in logs.items()}
+    made = _set_right(samples, plan, basis, stated.clocks, Masks(examined.masks), quanta)
     confirmed.refuse_unknown(made.rows)
     read_as = Repairs(CHANNEL_REPAIRS.frame(made.channels))
     masks = [*rows_of(examined.masks), *made.masks]
@@ -178,6 +179,7 @@ def _set_right(
     basis: repair.Basis,
     clocks: pd.DataFrame,
     masks: Masks,
+    quanta: Mapping[str, Array],
 ) -> SetRight:
     """The campaign with its repairs, from short means over the windows of its plan.
 
@@ -186,7 +188,7 @@ def _set_right(
     by_log, ends = clocks_of(clocks), records_of(clocks)
 
     def binned(of: Sequence[Window]) -> list[Binned]:
-        bins = Bins(of, by_log, masks)
+        bins = Bins(of, by_log, masks, quanta)
         read_once(samples, [bins])
         return list(bins.binned())
 

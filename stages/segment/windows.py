@@ -1,7 +1,7 @@
 """The parts of a log in which manoeuvres are sought, and short means of them."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -45,7 +45,8 @@ class Binned:
     `edges`: (k + 1,), records; `rates`, `forces`: (k, 3), rad/s and m/s², NaN where not
     recorded; where a gyro is masked its rate is on a straight line; `seconds`: (k,), what the
     means are sums over; `first_s`, `last_s`: (k,); `censored`: (k, 6), where a channel is cut off
-    at the end of its range, None where none is.
+    at the end of its range, None where none is; `quantum`: (6,), step of each channel, NaN where it
+    is not known.
     """
 
     window: Window
@@ -56,6 +57,7 @@ class Binned:
     first_s: Array
     last_s: Array
     censored: Booleans | None = None
+    quantum: Array = field(default_factory=lambda: np.full(6, np.nan))
 
     @property
     def bins(self) -> int:
@@ -168,7 +170,11 @@ class Bins:
     columns = MeansOver.columns
 
     def __init__(
-        self, windows: Sequence[Window], clocks: Mapping[str, Clock], masks: Masks
+        self,
+        windows: Sequence[Window],
+        clocks: Mapping[str, Clock],
+        masks: Masks,
+        quanta: Mapping[str, Array] | None = None,
     ) -> None:
         records = sum(window.after - window.first for window in windows)
         self._edges: list[tuple[Integers, Integers]] = []
@@ -201,6 +207,7 @@ class Bins:
         self._windows = windows
         self._clocks = clocks
         self._censoring = masks
+        self._quanta = quanta or {}
 
     def add(self, batch: Batch) -> None:
         """Take in the next batch."""
@@ -228,4 +235,5 @@ class Bins:
                 own.first[part],
                 own.last[part],
                 self._censoring.censored_between(window.log, edges) if len(first) else None,
+                self._quanta.get(window.log, np.full(6, np.nan)),
             )
