@@ -60,6 +60,11 @@ class Turned:
 
     @property
     def axes(self) -> Permutation | None:
+        """As `axes_of_most`, if no axis is reversed for a time."""
+        return None if (self.contradicting > MAX_CONTRADICTING).any() else self.axes_of_most
+
+    @property
+    def axes_of_most(self) -> Permutation | None:
         """What takes the readings of the gyros to the axes of the accelerometers, if it is sure."""
         size = np.abs(self.matrix)
         sources = np.argmax(size, axis=1)
@@ -71,8 +76,6 @@ class Turned:
         if (others > MAX_OFF_DIAGONAL * own[:, None]).any():
             return None
         if (own < MIN_ENTRY_SIGMA * self.sigma[np.arange(3), sources]).any():
-            return None
-        if (self.contradicting > MAX_CONTRADICTING).any():
             return None
         signs = np.sign(self.matrix[np.arange(3), sources]).astype(int)
         return Permutation(tuple(sources.tolist()), tuple(signs.tolist()))
@@ -171,7 +174,7 @@ def signs_of_motions(
     Where a few motions are reversed, they pull at the unknowns of all: these are found anew with
     the motions read as they seem to be. Where so many are that no axes are seen, by the names.
     """
-    if seen.axes is None:
+    if seen.axes_of_most is None:
         seen = replace(seen, unknowns=np.append(np.eye(3).ravel(), np.zeros(UNKNOWNS - 9)))
     alike = []
     for forces, rates, step in stretches:

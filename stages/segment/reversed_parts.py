@@ -82,7 +82,7 @@ def reversals(
     means = [one.binned for one in windows]
     stretches = [(one.forces, one.rates - level, one.bin_seconds) for one in means]
     alike, signs = signs_of_motions(stretches, seen)
-    axes = alike.axes
+    axes = alike.axes_of_most
     if axes is None or not axes.in_place:
         return
     moved = [(k, motion) for k, own in enumerate(signs) for motion in own]

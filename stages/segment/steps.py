@@ -205,7 +205,9 @@ def row_of(
 ) -> Row:
     """A repair and what was done; `fitting`: observations that fit before, after, and all."""
     before, after, total = fitting or (None, None, None)
-    if state == "rival":
+    if state == "rival" and after is not None and before is not None and after < before:
+        done = _("It is not applied, for with it less of the recording agrees with the plan.")
+    elif state == "rival":
         done = _("It is not applied, for others explain as much.")
     elif state == "refused":
         done = _("It is not applied, for the settings refuse repairs.")
