@@ -27,6 +27,7 @@ MIN_LEVEL = 16  # samples, before or after it, that tell a level
 MAX_STEPS = 3  # in one turn: what has more is no step, but rings or is noisy there
 MAX_TURNS_SHARE = 1 / 4  # of the turns, that have one: what more have is of the table
 MIN_OF_TABLE = 0.5  # of its size, that other turns have at the same angle of the table
+ROUNDING = 1e-6  # of the largest change: below it readings are alike, as counts are that toggle
 NORMAL = 1.4826  # sigma of a normal distribution by its median absolute deviation
 
 
@@ -110,8 +111,9 @@ def _largest(turn: SteadyTurn) -> StepInTurn | None:
         if not turn.observes(np.eye(3)[axis]):
             continue
         record = turn.truth[:, axis]
-        sigma = _scatter(np.diff(record)) / sqrt(2)
-        for width in widths if sigma else []:
+        changes = np.diff(record)
+        sigma = _scatter(changes) / sqrt(2)
+        for width in widths if sigma > ROUNDING * np.abs(changes).max() else []:
             rises = _rises(_means(record, width), 2 * width)
             tried += rises.shape[1]
             scatter = max(*map(_scatter, rises), sigma * sqrt(2 / width))

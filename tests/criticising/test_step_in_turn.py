@@ -97,6 +97,16 @@ def test_noise_and_wandering_biases_have_none(walk):
         assert not without_steps(turns(100 + seed, walk=walk))[1]
 
 
+def test_a_count_that_toggles_for_some_samples_is_no_step():
+    """Of counts far coarser than noise all readings are alike, but for rounding in their sums."""
+    made = turns(7)
+    alike = [replace(turn, truth=1e-12 * turn.truth) for turn in made]
+    truth = alike[SLIPPED].truth.copy()
+    truth[800:804, 2] += 10 * NOISE
+    alike[SLIPPED] = replace(alike[SLIPPED], truth=truth)
+    assert not without_steps(alike)[1]
+
+
 @pytest.mark.parametrize("end", [slice(-3, None), slice(0, 3)])
 def test_a_ramp_that_reaches_into_the_steady_part_is_no_step(end):
     """The last samples, with 60 °/s² for 0.02 s: 0.014° less at the end of one turn."""
