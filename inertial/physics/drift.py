@@ -7,7 +7,8 @@ was switched off and on between, a warm-up begins anew.
 """
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from dataclasses import replace
 from itertools import pairwise
 from typing import ClassVar, Self
@@ -84,7 +85,7 @@ class WarmUp(Drift):
     that has cooled down between.
 
     `switched_on`: when it was switched on again, s since the first sample, where the motion does
-    not have it.
+    not have it: after an export, or where the readings tell a restart that nobody stated.
     """
 
     switched_on: tuple[float, ...] = ()
@@ -115,8 +116,20 @@ class WarmUp(Drift):
         ]
 
     def with_constants(self, values: Mapping[str, float]) -> Self:
-        effect = super().with_constants(values)
-        effect.switched_on = tuple(sorted(at for key, at in values.items() if key.startswith(ON)))
+        return super().with_constants(values).beginning_at(_switched_on(values))
+
+    def as_named(self, values: Mapping[str, float]) -> Effect:
+        effect = super().as_named(values)
+        return effect.beginning_at(_switched_on(values)) if isinstance(effect, WarmUp) else effect
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        return *super().key, self.switched_on
+
+    def beginning_at(self, switched_on: Iterable[float]) -> Self:
+        """The same, that begins again at these times, s since the first sample."""
+        effect = copy(self)
+        effect.switched_on = tuple(sorted(switched_on))
         names = [f"{ON}{i}" for i in range(1, len(effect.switched_on) + 1)]
         if names:
             steps = [f"(t > {names[0]}) * {names[0]}"]
@@ -124,6 +137,10 @@ class WarmUp(Drift):
             factor = f"exp(-(t - {' - '.join(steps)}) / tau)"
             effect.terms = tuple(replace(term, factor=factor) for term in self.terms)  # type: ignore[misc]
         return effect
+
+
+def _switched_on(values: Mapping[str, float]) -> list[float]:
+    return [at for name, at in values.items() if name.startswith(ON)]
 
 
 def without_clock(motion: Motion) -> str:

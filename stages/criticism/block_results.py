@@ -19,7 +19,7 @@ from inertial.model_selection.cause import (
 )
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
-from inertial.physics.drift import without_clock
+from inertial.physics.drift import WarmUp, without_clock
 from inertial.physics.effect import Effect
 from inertial.physics.setting_in import SettingIn
 from inertial.physics.site import EARTH_RATE
@@ -339,10 +339,12 @@ class BlockResults:
             scan = effect.scan
             sigma = self.selection.scan_sigma(self.causes[effect.name]) if scan.between else None
             parameters.append(Estimated(scan.name, scan.unit, scan.meaning, effect.at, sigma))
-        elif effect.name in {**TEMPERATURE_MODELS, **AT_GAPS, **LAWS}:
+        own_times = isinstance(effect, WarmUp) and effect.switched_on
+        if own_times or effect.name in {**TEMPERATURE_MODELS, **AT_GAPS, **LAWS}:
             parameters += [
                 Estimated(one.name, one.unit, one.meaning, one.value)
                 for one in effect.constants(self.campaign.motion)
+                if effect.scan is None or one.name != effect.scan.name
             ]
         return parameters
 

@@ -58,6 +58,12 @@ ACTION_OF_RESTARTS = _(
     "have the value before a gap and what is added at it together, which the export holds where "
     "the result includes them."
 )
+ACTION_OF_RESTART = _(
+    "If the IMU was switched off and on at this gap, state power_cycle: true in {manoeuvres}: then "
+    "the report says how well the biases repeat. Else find what changed there. Later readings have "
+    "the value before the gap and what is added at it together, which the export holds where the "
+    "result includes them."
+)
 ACTION_OF_LATITUDE = _(
     "By the gyros the table stands at {latitude}°: correct latitude_deg, from which the earth's "
     "rate and normal gravity follow; or heading_deg, if that is uncertain."
@@ -82,14 +88,26 @@ PER_LOG = {
         "The biases of the accelerometers differ from run to run, by up to {size}.{others}"
     ),
 }
-RESTARTS = {
-    "gyro": _(
-        "The biases of the gyros are others after gaps of the recording, at {times} s, by up to "
-        "{size}: there the IMU was probably switched off and on.{others}"
+RESTARTS = {  # at one gap, at several
+    "gyro": (
+        _(
+            "The biases of the gyros are others after a gap of the recording, at {times} s, by up "
+            "to {size}: there the IMU was probably switched off and on.{others}"
+        ),
+        _(
+            "The biases of the gyros are others after gaps of the recording, at {times} s, by up "
+            "to {size}: there the IMU was probably switched off and on.{others}"
+        ),
     ),
-    "accel": _(
-        "The biases of the accelerometers are others after gaps of the recording, at {times} s, by "
-        "up to {size}: there the IMU was probably switched off and on.{others}"
+    "accel": (
+        _(
+            "The biases of the accelerometers are others after a gap of the recording, at {times} "
+            "s, by up to {size}: there the IMU was probably switched off and on.{others}"
+        ),
+        _(
+            "The biases of the accelerometers are others after gaps of the recording, at {times} "
+            "s, by up to {size}: there the IMU was probably switched off and on.{others}"
+        ),
     ),
 }
 DRIFT = _("The biases drift in a way that no effect of the catalogue explains{nearest}.")
@@ -128,7 +146,7 @@ def restarts_sentence(
     cause: Cause, sensor: str, times: Sequence[float], difference: float, sigma: float, si: str
 ) -> str:
     """Of biases that differ after gaps at some times, s; `difference`: as in `per_log_sentence`."""
-    return RESTARTS[sensor].format(
+    return RESTARTS[sensor][len(times) > 1].format(
         times=listed([fixed(time, 1) for time in times]),
         size=_difference(difference, sigma, si),
         others=_or_others(cause),
@@ -213,7 +231,8 @@ def action_against(effect: Effect | None, *, timed: bool = True) -> str:
 
 def action_against_restarts(manoeuvres: Sequence[str]) -> str:
     """What to do where biases change at gaps; `manoeuvres`: the first after each."""
-    return ACTION_OF_RESTARTS.format(manoeuvres=listed(manoeuvres))
+    action = ACTION_OF_RESTART if len(manoeuvres) == 1 else ACTION_OF_RESTARTS
+    return action.format(manoeuvres=listed(manoeuvres))
 
 
 def action_against_latitude(latitude: float) -> str:

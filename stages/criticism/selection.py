@@ -161,7 +161,7 @@ class Selection:
         count, with their likelihood and the share of the range that each stands for.
         """
         searched = next(one for one in self.searched if one.name == cause.effect)
-        total = self._beside_others(cause).total
+        total = self.beside_others(cause).total
         drops = np.array([total.drop(columns)[0] for columns in searched.candidates])
         at = np.array([one.at for one in self.families[cause.effect]], np.float64)
         step = self.prior(searched) if len(at) > 1 else np.zeros(1)
@@ -169,7 +169,7 @@ class Selection:
         likely = step * np.exp((drops - drops.max()) / 2)
         return float(np.sqrt(likely @ squares / likely.sum())) if likely.any() else 0.0
 
-    def _beside_others(self, cause: Cause) -> Evidence:
+    def beside_others(self, cause: Cause) -> Evidence:
         """The evidence given the other causes, in units of the noise that the search found."""
         others = [i for c in self.named.causes if c is not cause for i in c.columns]
         evidence = self.evidence.given(list(dict.fromkeys(others)))
@@ -177,7 +177,7 @@ class Selection:
 
     def _drops(self, cause: Cause) -> dict[str, float]:
         """The reduction of χ² by a cause in each sensor whose readings it changes, else 0."""
-        evidence = self._beside_others(cause)
+        evidence = self.beside_others(cause)
         raw = evidence.raw
         acts = [
             raw is None or bool((raw[number, list(cause.columns)] > 0).any())

@@ -11,8 +11,6 @@ from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.steady_residuals import steady_turns
 from inertial.effects import CATALOGUE
-from inertial.effects.restarts import Restarts
-from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -35,7 +33,14 @@ from stages.criticism.oscillation_search import find_oscillations
 from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
 from stages.criticism.rest_scatter import rest_scatter_rows
-from stages.criticism.restarts import at_changes, restarts_of
+from stages.criticism.restarts import (
+    at_changes,
+    beginning_again,
+    is_better,
+    named_at_gap,
+    restarts_at,
+    times_of_gaps,
+)
 from stages.criticism.selection import Selection, pooled_evidence_rows
 from stages.criticism.set_position_scatter import PositionScatter, select_beside_scatter
 from stages.criticism.step_results import step_rows
@@ -87,11 +92,16 @@ def _of_mount(
     select = partial(
         _selected, measured, partial(_without, data=replace(data, blocks=quiet)), level, degrees
     )
-    of_gaps = restarts_of(measured, gaps, data.clocks)
-    (selection, tested, campaign), scatter = select(of_gaps)
+    at_gaps = times_of_gaps(measured, gaps, data.clocks)
+    (selection, tested, campaign), scatter = select(at_gaps)
     if (times := at_changes(selection, levels[0])) is not None:
-        of_gaps = [Restarts(effect.sensor, times, first=1) for effect in of_gaps]
-        (selection, tested, campaign), scatter = select(of_gaps)
+        at_gaps = times
+        (selection, tested, campaign), scatter = select(at_gaps)
+    if at_gaps and selection.named.causes:
+        again = select(at_gaps, warm_up_at=at_gaps)
+        if is_better(again[0][0], selection):
+            (selection, tested, campaign), scatter = again
+    selection = named_at_gap(selection)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
     for sensor, drift in measured.drifts.items():
@@ -148,11 +158,18 @@ def _selected(
     without: Callable[[Campaign, str], Campaign],
     level: float,
     degrees: float,
-    of_gaps: Sequence[Effect],
+    at_gaps: Sequence[float],
+    warm_up_at: Sequence[float] = (),
 ) -> tuple[tuple[Selection, Tested, Campaign], PositionScatter | None]:
-    """The named effects of the catalogue and those `of_gaps`, tests, their campaign, scatter."""
+    """The named effects, tests, their campaign, scatter.
+
+    at_gaps, warm_up_at : s since the first sample, where the biases may be others, and where a
+        warm-up begins again besides the stated switch-ons
+    """
     in_blocks = [effect for effect in CATALOGUE.values() if effect.sought_in == "blocks"]
-    in_blocks += of_gaps
+    if warm_up_at:
+        in_blocks = beginning_again(in_blocks, measured.motion, warm_up_at)
+    in_blocks += restarts_at(at_gaps)
     levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
 
     def selected(campaign: Campaign) -> tuple[Selection, Tested]:

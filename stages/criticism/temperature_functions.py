@@ -303,6 +303,10 @@ def select_with_temperature(
     if any(model.lag for model in models):  # hysteresis may look the same
         at_once = [TemperatureModel(one.sensor, one.pieces, one.knots) for one in models]
         selection = _weighed(selection, selected(at_once))
+    # A curve of a temperature that rises may be a course in time beside straight lines.
+    lines = [TemperatureModel(one.sensor, own) for one in models if (own := _straight(one))]
+    if lines and _pieces(lines) < _pieces(models):
+        selection = _weighed(selection, selected(lines))
     straight = {f"{one.sensor}_{what}" for one in models for what in STRAIGHT_LINES}
     without = [effect for effect in effects if effect.name not in straight]
     plain = select_with_scatter(campaign, without, level, noise_degrees)
@@ -329,6 +333,10 @@ def _in_turn(
             break
         models, selection = again, selected(again)
     return selection, models
+
+
+def _straight(model: TemperatureModel) -> list[Piece]:
+    return [piece for piece in model.pieces if piece.power == 1]
 
 
 def _pieces(models: Sequence[TemperatureModel]) -> int:

@@ -25,6 +25,11 @@ TIME_SIGMAS = 2.0  # of a time, before and after which a manoeuvre is
 
 ONE_EVENT = _("It is one event with this: {sentence}")
 AND_THIS = _("And with this: {sentence}")
+OTHER_GAPS = _("The log has {count} gaps in all; after the others no bias is another.")
+NO_MANOEUVRE_LACKS = _(
+    "No manoeuvre of the plan lacks these samples, so none need be recorded again. Find what loses "
+    "samples, such as a buffer, a cable or a disk."
+)
 BEFORE = _("The parameters of the {sensors} are those of the mounting before it.")
 AFTER = _("The parameters of the {sensors} are those of the mounting after it.")
 BETWEEN = _(
@@ -35,16 +40,24 @@ UNKNOWN = _("To which of the two mountings the parameters of the {sensors} belon
 
 
 def with_consequences(row: Row, cause: Cause, sentences: Mapping[str, str]) -> Row:
-    """The row of a cause, whose sentence says the sizes of one event once from each side."""
+    """The row of a cause, whose sentence says the sizes of one event once from each side.
+
+    And of a gap between manoeuvres, of which the log alone does not tell that it is, the action.
+    """
+    if cause.main.cause == "gap" and not any(each.cause.manoeuvres for each in cause.members):
+        row |= {"action": NO_MANOEUVRE_LACKS}
     # The gap last: it is where the others are.
     same = sorted(_same_event(cause), key=lambda each: each.cause == "gap")
-    others = [
-        (AND_THIS if number else ONE_EVENT).format(
-            sentence=sentences.get(each.id) or each.row["sentence"]
-        )
-        for number, each in enumerate(same)
-    ]
-    return row | {"sentence": " ".join([row["sentence"], *others])}
+
+    def said(number: int, each: Hypothesis) -> str:
+        count = each.row["count"]
+        if cause.main.cause in RESTARTS and each.cause == "gap" and count > cause.main.row["count"]:
+            return OTHER_GAPS.format(count=count)  # that which is described may be one of these
+        sentence = sentences.get(each.id) or each.row["sentence"]
+        return (AND_THIS if number else ONE_EVENT).format(sentence=sentence)
+
+    others = [said(number, each) for number, each in enumerate(same)]
+    return {**row, "sentence": " ".join([row["sentence"], *others])}
 
 
 def _same_event(cause: Cause) -> Iterator[Hypothesis]:

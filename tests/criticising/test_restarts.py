@@ -119,7 +119,8 @@ def test_gaps_where_no_bias_changes_are_gaps_alone(tmp_path: Path) -> None:
     for seed in (6, 7):
         _document, raw = recorded(tmp_path / str(seed), seed)
         made = chain.run(raw, tmp_path / str(seed) / "derived", "diagnosis", chain.BESIDE)
-        assert made["diagnosis/causes"]["cause"].tolist() == ["gap"]
+        (cause,) = made["diagnosis/causes"].to_dict("records")
+        assert cause["cause"] == "gap" and "none need be recorded again" in cause["action"]
         assert set(made["diagnosis/verdict"]["verdict"]) == {"usable_within_limits"}
 
 
@@ -140,15 +141,41 @@ def test_a_jump_elsewhere_or_a_drift_keeps_its_name_beside_gaps(
 
 
 @pytest.mark.slow
-def test_a_jump_at_the_only_gap_is_one_event_with_it(tmp_path: Path) -> None:
-    """Its time was known to seconds, and the gap stood beside it as a cause without a harm."""
-    _document, raw = recorded(tmp_path, 9, ("x-up",), turn_on_bias=BIASES)
+@pytest.mark.parametrize("alone", [(), ("z-down", "y-up", "y-down")])
+def test_a_restart_at_one_gap_has_the_time_of_the_gap(
+    tmp_path: Path, alone: tuple[str, ...]
+) -> None:
+    """It was a jump at a time that was known to seconds, one of each sensor, and gaps beside it."""
+    places = sorted(("x-up", *alone), key=["z-down", "x-up", "y-up", "y-down"].index)
+    _document, raw = recorded(tmp_path, 9, places, alone, turn_on_bias=BIASES)
     made = chain.run(raw, tmp_path / "derived", "diagnosis", chain.BESIDE)
-    causes = made["diagnosis/causes"].set_index("cause")
-    assert "gyro_bias_jump" in causes.index and "gap" not in causes.index
-    assert ": gap of " in causes.loc["gyro_bias_jump", "sentence"]
-    assert "power_cycle: true" in causes.loc["gyro_bias_jump", "action"]
+    (cause,) = made["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] in ("gyro_restarts", "accel_restarts") and cause["verdict"] == "found"
+    assert "power_cycle: true in x-up:" in cause["action"]
+    gaps = made["quality/gaps"].sort_values("from_s")
+    middle = ((gaps["from_s"] + gaps["to_s"]) / 2).to_numpy()[places.index("x-up")]
+    result = made["diagnosis/result"].set_index("parameter")["value"]
+    times = result[result.index.str.match(r"gyro_restarts\.t\d")]
+    assert times.to_numpy() == pytest.approx([middle])
     assert set(made["diagnosis/verdict"]["verdict"]) == {"usable_within_limits"}
+
+
+@pytest.mark.slow
+def test_a_warm_up_begins_again_at_restarts_that_nobody_stated(tmp_path: Path) -> None:
+    """One from the beginning of the log had sizes and a time that were three times too large."""
+    start = {"start_deg_h": [30, -20, 0], "time_constant_s": 45}
+    _document, raw = recorded(
+        tmp_path, 10, ("x-up", "y-up"), turn_on_bias=BIASES, gyro_warm_up=start
+    )
+    made = chain.run(raw, tmp_path / "derived", "diagnosis", chain.BESIDE)
+    assert {"gyro_warm_up"} < set(made["diagnosis/causes"]["cause"])
+    result = made["diagnosis/result"].set_index("parameter")
+    hour = np.degrees(1) * 3600
+    for axis, true in zip("xy", (30, -20), strict=True):
+        row = result.loc[f"gyro_warm_up.b_{axis}"]
+        assert abs(row["value"] * hour - true) < 0.15 * abs(true)
+        assert row["sigma"] * hour < 3
+    assert 35 < result.loc["gyro_warm_up.tau", "value"] < 60
 
 
 @pytest.mark.slow
@@ -161,7 +188,8 @@ def test_only_gaps_at_which_biases_change_are_restarts(tmp_path: Path) -> None:
     assert cause["cause"] in ("gyro_restarts", "accel_restarts") and cause["verdict"] == "found"
     assert "power_cycle: true in z-down and x-down:" in cause["action"]
     assert cause["sentence"].count("It is one event with this") == 1
-    assert cause["sentence"].count(" s, by up to ") == 2 and ": gap of " in cause["sentence"]
+    assert cause["sentence"].count(" s, by up to ") == 2
+    assert "The log has 4 gaps in all" in cause["sentence"] and "gap of" not in cause["sentence"]
     gaps = made["quality/gaps"].sort_values("from_s")
     middles = (gaps["from_s"] + gaps["to_s"]).to_numpy() / 2
     result = made["diagnosis/result"].set_index("parameter")["value"]

@@ -192,6 +192,27 @@ def test_a_drift_in_time_is_no_curve_of_the_temperature():
 
 
 @pytest.mark.slow
+def test_a_warm_up_while_the_temperature_rises_is_no_curve_of_it():
+    """Beside a straight line of another axis: it was a parabola and a cubic, as if for certain."""
+
+    def line_and_drift(above: Array, read: Array, time: Array) -> Array:
+        change = np.zeros_like(read)
+        change[:, 0] = 1e-4 * above
+        change[:, 2] = 5e-3 * np.exp(-time / 300)
+        return change
+
+    campaign = soaks.recorded(
+        soaks.soak((10, 15, 20, 25, 30, 35, 40, 45, 50), 5.0), 21, line_and_drift
+    )
+    effects = [CATALOGUE[f"accel_{what}"] for what in ("warm_up", "bias_ramp", "quadratic")]
+    selection = select_with_temperature(campaign, effects, LEVEL, TEMPERATURE_LEVEL, np.inf)
+    causes = {cause.effect: cause for cause in selection.named.causes}
+    assert set(causes) == {"accel_temperature", "accel_warm_up"}
+    warm_up = causes["accel_warm_up"]
+    assert warm_up.values[2] == pytest.approx(5e-3, abs=4 * warm_up.covariance[2, 2] ** 0.5 + 2e-4)
+
+
+@pytest.mark.slow
 def test_a_lag_of_the_sensors_is_found():
     """The delayed temperature by small steps of its differential equation."""
     plan, lag = soaks.ramp(), 120.0
