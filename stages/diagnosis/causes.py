@@ -45,7 +45,6 @@ APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were ma
 MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
 MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
-MOST_MEMBERS = 3  # of a class in its name
 CLOCK = "clock_scale"
 OF_ENCODER = ("encoder_scale", "encoder_scale_or_eccentricity", "encoder_angles")
 ENCODER_JUMP = "encoder_jump"  # which segment takes out of the angles
@@ -189,7 +188,7 @@ class Cause:
         if of_both and self.main.sensor is None:
             words = _(" and ").join(names)
         else:
-            names = names[:MOST_MEMBERS] if self.verdict == ONE_OF_CLASS else []
+            names = names if self.verdict == ONE_OF_CLASS else []
             words = _(" or ").join(names or [in_words(self.main.cause)])
         axis = self.main.axis
         place = self.manoeuvre
