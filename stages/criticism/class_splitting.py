@@ -112,8 +112,8 @@ def _turned_over(m: Manoeuvre) -> Manoeuvre:
 def _alike(one: Manoeuvre, other: Manoeuvre) -> bool:
     """Whether two turns are about one axis, with the same end of it up, at one rate."""
     assert one.up is not None and other.up is not None and one.rate and other.rate
-    axes = one.up @ other.up, abs(one.axis @ other.axis)
-    return min(axes) > ALIKE and isclose(abs(one.rate), abs(other.rate), rel_tol=1 - ALIKE)
+    alike = min(float(one.up @ other.up), abs(float(one.axis @ other.axis))) > ALIKE
+    return alike and isclose(abs(one.rate), abs(other.rate), rel_tol=1 - ALIKE)
 
 
 # ---- The manoeuvre that best distinguishes the members of a class, by this campaign's noise.
