@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
+from math import isclose
 
 import numpy as np
 import pandas as pd
@@ -25,6 +26,7 @@ from stages.criticism.selection import Selection
 # those of the originals and have no meaning.
 
 PAUSE = 60.0  # s, before an added manoeuvre
+ALIKE = 0.99  # cosine of two directions (8°), and ratio of two rates, that are as good as one
 TURNED_OVER = _("turn also at the same rate with the axis down")
 FASTER = _("turn also at twice the rate")
 BETWEEN_AXES = _("rest also with two axes at 45° to the vertical")
@@ -43,7 +45,11 @@ class ExtendedPlan:
 def extended_plans(
     plan: Sequence[Manoeuvre], performed: Mapping[str, Performed], blocks: pd.DataFrame
 ) -> dict[str, Callable[[], ExtendedPlan]]:
-    """The campaign with each manoeuvre that might be added, by name, computed on demand."""
+    """The campaign with each manoeuvre that might be added, by name, computed on demand.
+
+    What the plan has already, as turns with the axis up and down at one rate, is none of them: to
+    do it once more brings little of what a manoeuvre of another kind brings.
+    """
     rows = blocks.groupby("manoeuvre").indices
     complete = [m for m in plan if performed[m.name].complete]
     whole = [m for m in complete if m.up is not None and m.name in rows]
@@ -72,7 +78,9 @@ def extended_plans(
 
     plans: dict[str, Callable[[], ExtendedPlan]] = {}
     if turns:
-        plans[TURNED_OVER] = partial(added, [(m, _turned_over(m), 1.0) for m in turns])
+        over = [(m, _turned_over(m), 1.0) for m in turns]
+        if new := [pair for pair in over if not any(_alike(pair[1], m) for m in turns)]:
+            plans[TURNED_OVER] = partial(added, new)
         plans[FASTER] = partial(added, [(m, _named(m, "faster"), 2.0) for m in turns])
     if rests:
         first = rests[0]
@@ -99,6 +107,13 @@ def _named(m: Manoeuvre, what: str) -> Manoeuvre:
 def _turned_over(m: Manoeuvre) -> Manoeuvre:
     assert m.up is not None  # else it is not copied
     return replace(_named(m, "turned over"), up=-m.up)
+
+
+def _alike(one: Manoeuvre, other: Manoeuvre) -> bool:
+    """Whether two turns are about one axis, with the same end of it up, at one rate."""
+    assert one.up is not None and other.up is not None and one.rate and other.rate
+    alike = min(float(one.up @ other.up), abs(float(one.axis @ other.axis))) > ALIKE
+    return alike and isclose(abs(one.rate), abs(other.rate), rel_tol=1 - ALIKE)
 
 
 # ---- The manoeuvre that best distinguishes the members of a class, by this campaign's noise.

@@ -17,7 +17,6 @@ from inertial.campaign.hypotheses import (
     MODEL,
     MOUNTINGS,
     ONE_OF_CLASS,
-    PLAN,
     RECORDING,
     SENSE_OF_TURNS,
     UNKNOWN_STRUCTURE,
@@ -28,8 +27,14 @@ from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
-from inertial.text.units import STANDARD_GRAVITY
 from stages.diagnosis.decision import UNEXPLAINED
+from stages.diagnosis.moved_parameters import (
+    CLOCK,
+    moved_by,
+    moved_by_measure,
+    moved_by_runs,
+    moved_by_turning,
+)
 from stages.diagnosis.sensor_results import SensorResult
 
 REPAIRED, MODELLED, CURVE, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
@@ -45,11 +50,7 @@ APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were ma
 MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
 MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
-MOST_MEMBERS = 3  # of a class in its name
-CLOCK = "clock_scale"
-OF_ENCODER = ("encoder_scale", "encoder_scale_or_eccentricity", "encoder_angles")
 ENCODER_JUMP = "encoder_jump"  # which segment takes out of the angles
-RATE_OFF, TABLE_RATE_OFF = "rate_off", "table_rate_off"
 QUANTISATION = "quantisation"
 DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
 
@@ -94,7 +95,8 @@ class Cause:
     sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns;
     `modelled`: those of them whose result has it in its model; `freed`: the manoeuvre whose own
     error it is there; `turns`: by how many sigma one of its class turns a sensor's axes; `spoilt`:
-    by how many sigma it moves the result of a sensor that nobody set right.
+    by how many sigma it moves the result of a sensor; `restored`: on which condition the stated
+    gravity is right, by which that result then is, so that it is moved no more.
     """
 
     members: tuple[ExplainedFindings, ...]
@@ -108,6 +110,7 @@ class Cause:
     freed: str | None = None
     turns: Mapping[str, float] = field(default_factory=dict)
     spoilt: Mapping[str, float] = field(default_factory=dict)
+    restored: str | None = None
 
     def of(self, sensor: str) -> Cause:
         """What it is for the result of one sensor, with its consequences there."""
@@ -116,10 +119,11 @@ class Cause:
             for member in self.members
         )
         if sensor in self.spoilt:
-            return replace(self, members=members, cure=NONE, moves=self.spoilt[sensor])
+            cure = REPAIRED if self.restored else NONE
+            return replace(self, members=members, cure=cure, moves=self.spoilt[sensor])
         cure = MODELLED if sensor in self.modelled else self.cure
         moves = max(filter(None, (self.moves, self.turns.get(sensor))), default=self.moves)
-        return replace(self, members=members, cure=cure, moves=moves)
+        return replace(self, members=members, cure=cure, moves=moves, restored=None)
 
     @property
     def main(self) -> Hypothesis:
@@ -151,6 +155,8 @@ class Cause:
     @property
     def condition(self) -> str | None:
         """What must be true for the result to be right, where nobody has confirmed it."""
+        if self.restored:
+            return self.restored
         if self.main.cause == SENSE_OF_TURNS:
             return OF_GYROS
         if self.main.cause == JUMP_NOT_TESTABLE:
@@ -189,7 +195,7 @@ class Cause:
         if of_both and self.main.sensor is None:
             words = _(" and ").join(names)
         else:
-            names = names[:MOST_MEMBERS] if self.verdict == ONE_OF_CLASS else []
+            names = names if self.verdict == ONE_OF_CLASS else []
             words = _(" or ").join(names or [in_words(self.main.cause)])
         axis = self.main.axis
         place = self.manoeuvre
@@ -255,13 +261,15 @@ class Evidence:
 
     `results`: by sensor and mount; `walks`: ids of findings about random walks, which the
     covariance includes; `performed`: by the name of the manoeuvre; `curves`: sensors and mounts
-    whose changes with temperature are known as curves, without their levels.
+    whose changes with temperature are known as curves, without their levels; `restored`: by finding
+    of a wrong latitude on which condition the stated gravity is right.
     """
 
     results: Mapping[tuple[str, str], SensorResult]
     walks: frozenset[str]
     performed: Mapping[str, Performed]
     curves: frozenset[tuple[str, str]] = frozenset()
+    restored: Mapping[str, str] = field(default_factory=dict)
 
     def causes(self, explained: Sequence[ExplainedFindings]) -> list[Cause]:
         """Every cause once: equal faults of one sensor are one."""
@@ -292,7 +300,7 @@ class Evidence:
         sensors = tuple(dict.fromkeys([*(result.sensor for result in own), *spoilt]))
         gain, turns = _gain(main, drop), {} if freed else _turns(main, own)
         given = (members, sensors, cure, done, moves, drop, gain, modelled, freed, turns, spoilt)
-        return Cause(*given)
+        return Cause(*given, self.restored.get(main.id))
 
     def _by_gravity_of_wrong_place(self, members: Sequence[ExplainedFindings]) -> dict[str, float]:
         """By how many sigma the gravity of a latitude that is wrong moves the accelerometers."""
@@ -303,7 +311,7 @@ class Evidence:
             for other in member.consequences
             if other.repair is not None and is_of_wrong_place(member.cause, other)
         ]
-        moved = [by for repair in repairs if (by := _moved_by(repair, own)) is not None]
+        moved = [by for repair in repairs if (by := moved_by(repair, own)) is not None]
         return {"accel": max(moved)} if moved else {}
 
     def _own(self, cause: Hypothesis) -> Iterator[SensorResult]:
@@ -335,10 +343,10 @@ class Evidence:
         }:
             return CURVE, None, None
         if cause.cause in PER_RUN and cause.row["unit"] != "sigma":  # no scatter stands for it
-            return NONE, _moved_by_runs(cause.row["size"], own), None
+            return NONE, moved_by_runs(cause.row["size"], own), None
         if cause.stage == MODEL:
             return self._cure_of_effect(cause, own)
-        if (moves := _moved_by_measure(cause, own)) is not None:
+        if (moves := moved_by_measure(cause, own)) is not None:
             return NONE, moves, None
         in_matrix = cause.stage == COUNTS and int(cause.row["severity"]) < SPOILS
         if in_matrix or has_own_error(cause) or _rounds(cause):  # or in the covariance
@@ -371,7 +379,7 @@ class Evidence:
         if cause.row.get("moves") is not None:
             moves.append(float(cause.row["moves"]))
         if turned:
-            moves += _moved_by_turning(modelled, others)
+            moves += moved_by_turning(modelled, others)
         drops = [result.drop for result in modelled if result.drop is not None]
         largest = max(moves, default=None)
         if modelled and not kept:
@@ -387,7 +395,7 @@ def _cure_of_repaired(
 ) -> tuple[str, float | None, None]:
     """Of what a repair sets right, if it is applied; without one it always is."""
     applied = repair is None or repair["state"] in APPLIED
-    return REPAIRED if applied else NONE, _moved_by(repair, own) if repair else None, None
+    return REPAIRED if applied else NONE, moved_by(repair, own) if repair else None, None
 
 
 def _cure_of_gap(touched: Sequence[Performed]) -> str:
@@ -415,15 +423,6 @@ def _of_sensor(findings: Sequence[Hypothesis], sensor: str) -> Iterator[Hypothes
     return (each for each in findings if each.sensor in (None, sensor))
 
 
-def _moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
-    """By how many sigma a stated value would have moved the scale factors."""
-    if repair["value"] is None or repair["stated"] is None or not repair["value"]:
-        return None
-    relative = abs(repair["stated"] / repair["value"] - 1)
-    sigmas = [sigma for result in own if (sigma := result.scale_sigma) is not None]
-    return relative / min(sigmas) if sigmas else None
-
-
 def _turns(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
     """By how many sigma it turns the axes of a sensor that does not show it, if it is that shift.
 
@@ -432,53 +431,7 @@ def _turns(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
     if (cause.causes - {cause.cause}).isdisjoint(MOUNTINGS):
         return {}
     others = [result for result in own if not result.shows(MOUNTINGS)]
-    return {r.sensor: move for r in others for move in _moved_by_turning(own, [r])}
-
-
-def _moved_by_turning(
-    showing: Sequence[SensorResult], others: Sequence[SensorResult]
-) -> list[float]:
-    """Upper bound, in sigma, of the change of cross-axis terms of the other sensor.
-
-    All its rotations may be before or all after the shift: then its terms hold for one of the two
-    mountings, and its residuals show nothing.
-    """
-    angles = (result.angle(effect) for result in showing for effect in MOUNTINGS)
-    angle = max(angles, default=0.0)
-    sigmas = [result.cross_sigma for result in others]
-    return [angle / sigma for sigma in sigmas if sigma and angle]
-
-
-def _moved_by_runs(difference: float, own: Sequence[SensorResult]) -> float | None:
-    """By how many sigma the bias is that of no run, where that of two runs differs."""
-    sigmas = [sigma for result in own if (sigma := result.bias_sigma) is not None]
-    return difference / 2 / min(sigmas) if sigmas else None
-
-
-def _moved_by_measure(cause: Hypothesis, own: Sequence[SensorResult]) -> float | None:
-    """By how many sigma a clock or an encoder that is off by a share moves the parameters.
-
-    Angles move the scale factors of the gyros. Of a clock by which increments are specific forces,
-    one of two opposite rests reads g (1 + error): half of that goes into the scale factor, half of
-    g times it into the bias. This is the difference between the results for wrong stamps and
-    for a wrong sampling interval.
-    """
-    size = abs(cause.row["size"] or 0.0)
-    if cause.cause in (RATE_OFF, TABLE_RATE_OFF) and cause.stage == PLAN:
-        shares = [(abs(size - 1), result.scale_sigma) for result in own]
-    elif cause.cause in OF_ENCODER:
-        shares = [(size, result.scale_sigma) for result in own]
-    elif cause.cause == CLOCK and cause.sensor == "gyro":
-        shares = [(1e-6 * size, result.scale_sigma) for result in own]
-    elif cause.cause == CLOCK and cause.sensor == "accel":
-        shares = [
-            (1e-6 * size / 2 * unit, sigma)
-            for result in own
-            for unit, sigma in ((1.0, result.scale_sigma), (STANDARD_GRAVITY, result.bias_sigma))
-        ]
-    else:
-        return None
-    return max((share / sigma for share, sigma in shares if sigma), default=None)
+    return {r.sensor: move for r in others for move in moved_by_turning(own, [r])}
 
 
 def _gain(cause: Hypothesis, drop: float | None) -> str | None:

@@ -2,12 +2,14 @@
 
 One with effects does where it predicts the manoeuvres not used in its fit better than the joint
 one, no finding shows that the model is still incomplete, no effect rests on a single manoeuvre, and
-no parameter is lost. What a single manoeuvre alone shows may be that manoeuvre's own error as well:
-with an unknown of its own it moves nothing, whatever it is.
+no parameter is lost. Where these manoeuvres hold little of the effects, the joint one remains
+beside it, with the weight that they give it. What a single manoeuvre alone shows may be that
+manoeuvre's own error as well: with an unknown of its own it moves nothing, whatever it is.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import exp
 
 from inertial.campaign.hypotheses import SLIP
 from inertial.campaign.records import Row
@@ -24,9 +26,10 @@ RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of
 OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
 TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
+MIN_MIXED_SNR_SQUARED = 4.0  # 2 sigma: with less they tell little of whether an effect is there
 MAX_WIDENED = 1.5  # times noise: smaller residuals without a name widen the sigmas, no more
 MIN_SHARE = 0.1  # of the SNR², of what held-out manoeuvres bear out
-MIN_WIDENED_DROP = 0.5  # of the SNR²: what effects then bring on held-out manoeuvres at least
+MIN_BORNE_OUT = 0.5  # of the SNR²: what effects bring on held-out manoeuvres that bear them out
 
 NO_JOINT = _("There is no joint result of the {sensors}.")
 DOUBTFUL = _(
@@ -67,6 +70,11 @@ NOTHING_LEFT = _(", and no finding remains unexplained")
 WIDENED = _(
     "; the residuals remain {ratio} times as large as noise, and the sigmas are widened by that"
 )
+MIXED = _(
+    " The held-out manoeuvres hold little of it (SNR² {snr_squared:.1f}, less than {least:.0f}): "
+    "the result is the mean of that with it and that without it, which has the weight {share} % by "
+    "how well each predicts them, and the sigmas include the difference of the two."
+)
 FREED = _(
     "The result of the {sensors} includes {effects}: that is the own error of "
     "{manoeuvres}, which no other manoeuvre shows, and no finding remains unexplained."
@@ -84,7 +92,8 @@ class Decision:
     `method`: joint, or that of the most probable candidate with effects; `reason`: a sentence;
     `freed`: by finding the manoeuvre whose own error it is in this candidate; `alike`: methods of
     candidates whose effects the same manoeuvres carry, which for all others say the same;
-    `widened`: by how much its sigmas are, for residuals that nothing explains (Birge 1932).
+    `widened`: by how much its sigmas are, for residuals that nothing explains (Birge 1932);
+    `joint_share`: the weight of the joint result beside it, in a mixture of both.
     """
 
     method: str
@@ -92,6 +101,7 @@ class Decision:
     freed: Mapping[str, str] = field(default_factory=dict)
     alike: frozenset[str] = frozenset()
     widened: float = 1.0
+    joint_share: float = 0.0
 
 
 def alarms_of(findings: Iterable[Row], mount: str, sensor: str) -> list[Row]:
@@ -160,7 +170,10 @@ def decided(
     )
     if best["drop"] < MIN_SHARE * best["snr_squared"]:
         reason += LITTLE.format(share=significant(100 * best["drop"] / best["snr_squared"], 2))
-    return Decision(best["method"], reason + others, widened=widened)
+    if share := _joint_share(best):
+        size, percent = best["snr_squared"], significant(100 * share, 2)
+        reason += MIXED.format(snr_squared=size, least=MIN_SNR_SQUARED, share=percent)
+    return Decision(best["method"], reason + others, widened=widened, joint_share=share)
 
 
 def likeliest(candidates: Iterable[Row]) -> Row | None:
@@ -178,8 +191,23 @@ def _widening(best: Row, alarms: Sequence[Row]) -> float:
     sizes = [float(row["size"]) for row in alarms if row["cause"] == UNEXPLAINED]
     few = bool(sizes) and len(sizes) == len(alarms) and max(sizes) <= MAX_WIDENED
     snr_squared, drop = best["snr_squared"] or 0.0, best["drop"] or 0.0
-    proven = snr_squared >= MIN_SNR_SQUARED and drop >= MIN_WIDENED_DROP * snr_squared
+    proven = snr_squared >= MIN_SNR_SQUARED and drop >= MIN_BORNE_OUT * snr_squared
     return max(sizes) if few and proven else 1.0
+
+
+def _joint_share(best: Row) -> float:
+    """The weight of the joint result beside a candidate that held-out manoeuvres bear out.
+
+    They hold too little of its effects to tell surely whether these are there, so that neither
+    result is left out. Its odds are exp(Δχ²/2), the ratio of the densities by which the two predict
+    the held-out manoeuvres (Geisser & Eddy 1979, J. Am. Stat. Assoc. 74, 153). 0 where they hold
+    enough of them, or do not bear them out.
+    """
+    snr_squared, drop = best["snr_squared"] or 0.0, best["drop"] or 0.0
+    little = MIN_MIXED_SNR_SQUARED <= snr_squared < MIN_SNR_SQUARED
+    if not little or drop < MIN_BORNE_OUT * snr_squared:
+        return 0.0
+    return 1 / (1 + exp(drop / 2))
 
 
 def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
@@ -192,7 +220,8 @@ def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
     if best["open_form"]:
         return OPEN_FORM
     if not _freed(effects):
-        if best["snr_squared"] is None or best["snr_squared"] < MIN_SNR_SQUARED:
+        enough = (best["snr_squared"] or 0.0) >= MIN_SNR_SQUARED
+        if not enough and not _joint_share(best):
             size = max(best["snr_squared"] or 0.0, 0.0)
             return NOT_VALIDATED.format(snr_squared=size, least=MIN_SNR_SQUARED)
         if best["drop"] <= 0:

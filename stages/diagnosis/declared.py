@@ -28,6 +28,7 @@ DECLARED = Declared(
         "manoeuvres": From("segment", tables.MANOEUVRES),
         "tolerances": From("plan", tables.TOLERANCES),
         "terms": From("noise", tables.NOISE_TERMS, "terms"),
+        "known": From("plan", tables.KNOWN),
         "performed": From("segment", tables.PERFORMED),
         **{
             f"{stage}_{table.name}": From(stage, table)

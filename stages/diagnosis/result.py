@@ -34,6 +34,17 @@ class Result:
         rows = [row | {"sigma": row["sigma"] and row["sigma"] * by} for row in self.rows]
         return replace(self, rows=rows, covariance=self.covariance * by**2)
 
+    def with_matrix(self, ratio: float) -> "Result":
+        """The same with M larger by a ratio, as by a gravity that is smaller by it."""
+        ones = np.eye(3).ravel()
+        rows = [
+            row | {"value": (ones[i] + row["value"]) * ratio - ones[i]}
+            if i < len(ones) and row["value"] is not None
+            else row
+            for i, row in enumerate(self.rows)
+        ]
+        return replace(self, rows=rows)
+
     def turned(self, rotation: Array, probability: float) -> "Result":
         """The mixture with the mounting as it was before a rotation (3,), rad, of the case.
 

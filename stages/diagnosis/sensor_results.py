@@ -233,7 +233,7 @@ class Estimated:
             determined = any(row["value"] is not None for row in by_method.get(JOINT, ()))
             decision = decided(candidates, effects, alarms, determined=determined)
             chosen = result_of(
-                decision.method, by_method, self._covariance, _competing(candidates, decision)
+                decision.method, by_method, self._covariance, competing(candidates, decision)
             ).widened(decision.widened)
             if (mount, sensor) in self.free and decision.method == JOINT:
                 chosen = replace(
@@ -281,15 +281,19 @@ def _with_slip(result: SensorResult, every: Sequence[SensorResult]) -> SensorRes
     return result
 
 
-def _competing(candidates: Sequence[Row], decision: Decision) -> dict[str, float]:
+def competing(candidates: Sequence[Row], decision: Decision) -> dict[str, float]:
     """The probabilities of the members of a class that say something else, by method.
 
-    Of the joint result nothing does.
+    Of the joint result nothing does. Beside effects it has the share of the decision.
     """
     if decision.method == JOINT:
         return {}
-    competing = [row for row in candidates if row["method"] not in decision.alike]
-    return {row["method"]: row["probability"] for row in competing if row["probability"] > 0}
+    others = [row for row in candidates if row["method"] not in decision.alike]
+    share = decision.joint_share
+    odds = {row["method"]: row["probability"] * (1 - share) for row in others}
+    if share:
+        odds[JOINT] = odds[JOINT] + share
+    return {method: probability for method, probability in odds.items() if probability > 0}
 
 
 def _place(row: Row) -> tuple[str, str]:

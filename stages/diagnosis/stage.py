@@ -8,7 +8,7 @@ import pandas as pd
 from inertial.campaign.competition import compete
 from inertial.campaign.hypotheses import CLEAR_SIGMAS, Findings, hypotheses
 from inertial.campaign.noise_levels import only_noise
-from inertial.campaign.records import Row, performed_of, rows_of
+from inertial.campaign.records import Row, known_of, performed_of, rows_of
 from inertial.tables import AXES
 from inertial.tables.stage import Stage, Tables
 from stages.diagnosis.causes import Cause, Evidence
@@ -18,6 +18,7 @@ from stages.diagnosis.one_event import mountings_of, rotations, with_consequence
 from stages.diagnosis.result import covariance_by_ids
 from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.sizes_of_causes import by_result, sentences, sizes
+from stages.diagnosis.stated_gravity import restored
 from stages.diagnosis.temperature_curves import curve_rows
 from stages.diagnosis.verdict import NOT_USABLE, Verdict, not_recorded, verdict
 
@@ -28,6 +29,7 @@ def diagnosis(
     effects: pd.DataFrame,
     random_walks: pd.DataFrame,
     performed: pd.DataFrame,
+    known: pd.DataFrame,
     swept: pd.DataFrame,
     noise_alone: bool,
     tolerances: pd.DataFrame,
@@ -42,19 +44,21 @@ def diagnosis(
     ----------
     estimated : the candidates for the result of each sensor and mount
     effects : of criticism: sizes of the effects
+    known : of the plan: its latitude
     swept : of criticism: changes with temperature of what one attitude shows
     noise_alone : whether the campaign is a recording of the noise
     channel_statistics : of the logs, by which it is known what is recorded
     manoeuvres : of the plan, to tell which are before a shift of the mounting
     """
     explained = list(compete(list(hypotheses(findings))))
-    results = list(estimated.results(explained))
+    results, conditions = restored(list(estimated.results(explained)), explained, known_of(known))
     curves = {(row["sensor"], row["mount"]) for row in rows_of(swept)}
     evidence = Evidence(
         {(result.sensor, result.mount): result for result in results},
         frozenset(random_walks["finding"]),
         performed_of(performed),
         frozenset(curves),
+        conditions,
     )
     causes = evidence.causes(explained)
     recorded = _recorded(channel_statistics)

@@ -173,6 +173,9 @@ def _limit(cause: Cause, result: SensorResult | None = None) -> str:
     hold it: they do where they are as large as the manoeuvres differ.
     """
     if cause.cure != NONE:
+        mixed = result is not None and result.decision.joint_share and cause.cure == MODELLED
+        if result is not None and mixed and result.models(cause.main.causes):
+            return _("in the model; the sigmas include the result without it")
         return LIMITS[cause.cure]
     if cause.moves is None:  # of an effect, its scatter is; a fault of the recording is in nothing
         if cause.main.stage == MODEL:

@@ -10,6 +10,7 @@ from inertial.campaign.competition import ExplainedFindings
 from inertial.campaign.hypotheses import Hypothesis
 from stages.diagnosis.causes import NONE, Cause
 from stages.diagnosis.decision import alarms_of, decided
+from stages.diagnosis.sensor_results import competing
 from stages.diagnosis.verdict import verdict
 
 Row = dict[str, Any]
@@ -97,6 +98,26 @@ def test_what_one_manoeuvre_alone_shows_may_be_its_own_error_whatever_else_it_ma
     assert decided(rows, [effect("mounting_shift"), off, another]).method == "extended"
 
 
+def test_what_held_out_manoeuvres_tell_a_little_of_counts_as_much_as_they_tell():
+    """A K2 of 80 µg/g²: 3 sigma at most, so that neither result is left out."""
+    rows = [
+        JOINT,
+        candidate(probability=0.9, drop=8.1, snr_squared=8.4),
+        candidate("member_1", probability=0.1, drop=7.5, snr_squared=6.4),
+    ]
+    effects = [effect("accel_quadratic"), effect("accel_hysteresis", method="member_1")]
+    decision = decided(rows, effects)
+    assert decision.method == "extended" and "the weight 1.7 %" in decision.reason
+    # A normal density of χ² larger by 8.1 is e^4.05 = 57.4 times smaller.
+    weights = {"joint": 1 / 58.4, "extended": 0.9 * 57.4 / 58.4, "member_1": 0.1 * 57.4 / 58.4}
+    assert competing(rows, decision) == pytest.approx(weights, rel=1e-3)
+    enough = decided([JOINT, candidate(drop=8.1, snr_squared=9.1)], [effect()])
+    assert competing([JOINT, candidate()], enough) == {"extended": 1.0}
+    for changes in ({"drop": 3.9, "snr_squared": 3.9}, {"drop": 2.0, "snr_squared": 8.4}):
+        little = decided([JOINT, candidate(**changes)], [effect()])
+        assert (little.method, little.joint_share) == ("joint", 0.0)
+
+
 def unexplained(size: float) -> Row:
     return {"cause": "unexplained", "size": size}
 
@@ -160,6 +181,17 @@ def test_of_what_held_out_manoeuvres_hardly_bear_out_the_share_is_said():
     assert little.method == "extended" and "That is 1.9 % of what it should be" in little.reason
     much = decided([JOINT, candidate(drop=9000.0, snr_squared=12030.0)], [effect()])
     assert "hardly bear it out" not in much.reason
+
+
+def test_the_verdict_names_every_member_of_a_class():
+    names = ["accel_scale_asymmetry", "accel_quadratic", "accel_bias_jump", "accel_hysteresis"]
+    row = {"size": 1.0, "unit": "1", "severity": 2, "axis": None, "sensor": "accel", "mount": ""}
+    row |= {"manoeuvre": None}
+    found = Hypothesis(
+        "1", "criticism", names[0], row, verdict="one_of_class", members=tuple(names)
+    )
+    cause = Cause((ExplainedFindings(found, ()),), ("accel",), NONE, "", None)
+    assert cause.name.count(" or ") == 3 and "accelerometer hysteresis" in cause.name
 
 
 def tilting(size: float) -> Cause:
