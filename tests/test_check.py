@@ -26,7 +26,7 @@ FINDINGS = ("quality/findings", "segment/findings")
 READ = (
     *FINDINGS,
     *("plan/repairs", "segment/repairs", "segment/channel_repairs"),
-    *("quality/masks", "quality/gaps", "segment/segments", "segment/performed"),
+    *("segment/masks", "quality/gaps", "segment/segments", "segment/performed"),
     *("segment/blocks", "plan/manoeuvres", "decode/accounts", "decode/clocks"),
     *("accelerometer/parameters", "gyroscope/parameters"),
     *("accelerometer/findings", "gyroscope/findings", "noise/findings", "noise/terms"),

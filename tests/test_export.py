@@ -272,9 +272,7 @@ def test_noise_rate_gravity_inputs_and_makers(
     assert raw["x-up.asc"] == hash_of_file(results.folder.parent / "short/x-up.asc")
     stages = [made["stage"] for made in content["made_by"]]
     assert stages[-1] == "export"
-    assert {"plan", "decode", "quality", "segment", "noise", "gyroscope", "diagnosis"} <= set(
-        stages
-    )
+    assert {"plan", "decode", "segment", "noise", "gyroscope", "diagnosis"} <= set(stages)
     read = {row["file"]: row["sha256"] for row in content["made_by"][-1]["inputs"]}
     table = results.folder / "diagnosis/result.parquet"
     assert read["diagnosis/result.parquet"] == hash_of_file(table)
