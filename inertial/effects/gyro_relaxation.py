@@ -17,8 +17,8 @@ from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import DEGREE_PER_HOUR
 
-RELAXATION_TIMES = (4.0, 64.0)  # s, of τ: shorter is over as the rest begins, longer than a rest
-RELAXATION_CANDIDATES = 5  # of τ, a factor of two apart; they are refined where one is found
+RELAXATION_TIMES = (5.0, 50.0)  # s, of τ: shorter is over as the rest begins, longer than a rest
+RELAXATION_CANDIDATES = 4  # of τ, a factor of two apart; they are refined where one is found
 
 
 @dataclass(frozen=True)
