@@ -35,6 +35,7 @@ from inertial.effects.gyro_hysteresis import GyroHysteresis
 from inertial.effects.gyro_latency import GyroLatency
 from inertial.effects.gyro_random_walk import GyroRandomWalk
 from inertial.effects.gyro_relaxation import GyroRelaxation
+from inertial.effects.gyro_relaxation_braking import GyroRelaxationBraking
 from inertial.effects.gyro_relaxation_sense import GyroRelaxationSense
 from inertial.effects.gyro_saturation import GyroSaturation
 from inertial.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
@@ -92,8 +93,8 @@ CATALOGUE: dict[str, Effect] = {
         GyroHysteresis(),
         GyroBiasSense(),
         GyroRelaxation(),
-        GyroRelaxationSense(in_turns=True),
-        GyroRelaxationSense(in_turns=False),
+        GyroRelaxationSense(),
+        GyroRelaxationBraking(),
         GyroSaturation(),
         GyroLatency(),
         # accelerometers

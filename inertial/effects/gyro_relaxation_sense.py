@@ -1,5 +1,7 @@
 """A gyro bias with the sense of the last turn, which relaxes."""
 
+from typing import ClassVar
+
 import numpy as np
 
 from inertial.arrays import Array
@@ -15,23 +17,16 @@ class GyroRelaxationSense(Relaxing):
 
     What carries the sense is turned about its own axis: the core, the suspension or the electrodes
     of that gyro. While the turn lasts it is b_i s_i (`in_turns`), as of what the rate strains or
-    charges, or nothing, as of what braking strains. In turns of one rate that is a scale factor,
-    so both are in the catalogue, and their spread is in the sigma of the scale factors.
+    charges. In turns of one rate that is a scale factor.
     """
 
+    name = "gyro_relaxation_sense"
+    cause = _("each turn strains or charges the sensor with its sense, which then recovers")
     source = "Nowick & Berry 1972, Anelastic Relaxation in Crystalline Solids, ch. 1"
     parameters = parameters_by_axis(
         "b", "rad/s", 0.1 * DEGREE_PER_HOUR, _("the bias of the {axis} gyro after a forward turn")
     )
-
-    def __init__(self, *, in_turns: bool) -> None:
-        self.in_turns = in_turns
-        self.name = f"gyro_relaxation_{'sense' if in_turns else 'braking'}"  # type: ignore[misc]
-        self.cause = (  # type: ignore[misc]
-            _("each turn strains or charges the sensor with its sense, which then recovers")
-            if in_turns
-            else _("the stop of each turn strains the sensor with its sense, which then recovers")
-        )
+    in_turns: ClassVar[bool] = True
 
     def added(self, truth: Truth, motion: Motion) -> Reading:
         shares = excited(motion.since, motion.seconds[:, None], self.value(motion))

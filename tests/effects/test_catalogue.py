@@ -122,6 +122,7 @@ BLIND = {
         "accel_bias_ramp", "accel_scale_ramp", "accel_warm_up", "accel_bias_jump",
         "accel_scale_jump",
         "mounting_shift", "mounting_slip",
+        "gyro_relaxation", "gyro_relaxation_sense", "gyro_relaxation_braking",
     },
     "temperature": {
         "gyro_bias_temperature", "gyro_scale_temperature",
