@@ -27,8 +27,8 @@ HIDDEN = {
     "gyro_hysteresis": ({"offset_deg_h": [0, 1.5, 0]}, {"h_y": 1.5 * DEGREE_PER_HOUR}),
     "gyro_bias_sense": ({"offset_deg_h": [0, 1.5, 0]}, {"b_y": 1.5 * DEGREE_PER_HOUR}),
     "gyro_relaxation": (
-        {"in_turn_deg_h": [0, 0, 0], "after_deg_h": [0, 0, 15], "time_constant_s": 12},
-        {"b_z": 15 * DEGREE_PER_HOUR, "d_z": 0.0},
+        {"in_turn_deg_h": [0, 0, 0], "after_deg_h": [0, 0, 6], "time_constant_s": 12},
+        {"d_z": 0.0},  # one rest after each turn: b goes with τ
     ),
     "gyro_relaxation_sense": ({"offset_deg_h": [0, 20, 0], "time_constant_s": 12}, {}),
     "gyro_relaxation_braking": ({"offset_deg_h": [20, 0, 0], "time_constant_s": 12}, {}),
