@@ -26,6 +26,12 @@ HIDDEN = {
     "gyro_scale_asymmetry": ({"asymmetry_ppm": [120, 0, 0]}, {"a_x": 120 * PPM}),
     "gyro_hysteresis": ({"offset_deg_h": [0, 1.5, 0]}, {"h_y": 1.5 * DEGREE_PER_HOUR}),
     "gyro_bias_sense": ({"offset_deg_h": [0, 1.5, 0]}, {"b_y": 1.5 * DEGREE_PER_HOUR}),
+    "gyro_relaxation": (
+        {"in_turn_deg_h": [0, 0, 0], "after_deg_h": [0, 0, 6], "time_constant_s": 12},
+        {"d_z": 0.0},  # one rest after each turn: b goes with τ
+    ),
+    "gyro_relaxation_sense": ({"offset_deg_h": [0, 20, 0], "time_constant_s": 12}, {}),
+    "gyro_relaxation_braking": ({"offset_deg_h": [20, 0, 0], "time_constant_s": 12}, {}),
     "accel_quadratic": ({"k2_micro_g_g2": [0, 200, 0]}, {"k2_y": 200e-6 / G}),
     "accel_bias_ramp": ({"ramp_m_s2_h": [0, 0, 1.0e-3]}, {"c_z": 1e-3 / 3600}),
     "accel_bias_jump": ({"size_micro_g": [60, 0, 0], "at_s": 700}, {"b_x": 60 * MICRO_G}),
@@ -48,6 +54,8 @@ CLASS = {
     "accel_quadratic": {"accel_scale_asymmetry"},
     "gyro_hysteresis": {"gyro_bias_sense"},  # but for a scale factor
     "gyro_bias_sense": {"gyro_hysteresis"},
+    "gyro_relaxation_sense": {"gyro_relaxation_braking"},  # likewise
+    "gyro_relaxation_braking": {"gyro_relaxation_sense"},
     "gyro_scale_asymmetry": {"turn_angle_error"},  # of one of the two turns about x
     "lever_arm": {"size_effect"},
 }

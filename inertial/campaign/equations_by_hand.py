@@ -187,6 +187,8 @@ def motion_of(
         tumbled=np.zeros((n, 3)),
         square=rate**2,
         log_time=np.full(n, np.nan),
+        since=unknown,
+        turned=np.zeros((n, 3)),
     )
 
 

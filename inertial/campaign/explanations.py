@@ -144,6 +144,7 @@ class Explanation:
     where: Where
 
 
+RELAXATIONS = ("gyro_relaxation", "gyro_relaxation_sense", "gyro_relaxation_braking")
 EXPLANATIONS = (
     # Readings that are no readings of this motion: the manoeuvre looks other than planned.
     Explanation(
@@ -222,7 +223,7 @@ EXPLANATIONS = (
     # A rate that is another after each turn looks like a bias that wanders, or that remembers.
     Explanation(
         ("motion_after_turns",),
-        (*MISFITS, "gyro_random_walk", "gyro_hysteresis", "gyro_bias_sense"),
+        (*MISFITS, "gyro_random_walk", "gyro_hysteresis", "gyro_bias_sense", *RELAXATIONS),
         same_sensor,
     ),
     # What was recorded is no turn as planned, at whatever rate it is.

@@ -8,6 +8,7 @@ import numpy as np
 
 from inertial.arrays import Array, Booleans
 from inertial.campaign.campaign_data import CampaignData
+from inertial.campaign.last_turns import LastTurns
 from inertial.campaign.rate_segments import position_of
 from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Manoeuvre, runs_of
@@ -219,6 +220,7 @@ class CampaignMotions:
         self._runs = {m.name: float(runs[m.log]) for m in data.plan}
         self._switched_on = {m.name: data.switched_on.get(m.switch_on, 0.0) for m in data.plan}
         self._switches_per_log = not data.shared_clock and _switches_per_log(data.plan)
+        self._turns = LastTurns(data)
         self._at_rest: dict[tuple[str, float], Motion] = {}
 
     def at_rest(self, position: StaticPosition) -> Motion:
@@ -230,6 +232,7 @@ class CampaignMotions:
         if place not in self._at_rest:
             self._at_rest[place] = at_rest(self._data, position, time)
         peaks, senses = self._on_the_way(name, 1)
+        since, turned = self._turns.before(position.manoeuvre, np.array([log_time]))
         return replace(
             self._at_rest[place],
             time=np.array([time]),
@@ -243,32 +246,35 @@ class CampaignMotions:
             vibration=self._data.noise.of_samples(name, "rest", ACCEL)[None],
             peaks=peaks,
             senses=senses,
+            since=since,
+            turned=turned,
         )
 
     def turning(self, rotation: Rotation, turn: RateSegment) -> Motion:
         """A rotation from rest to rest in its blocks."""
         blocks = rotation.blocks
         motion = in_blocks(self._data, rotation.plan, turn, self._time_of(blocks))
-        return self._placed(rotation.plan.name, motion, rotation.blocks, turn)
+        return self._placed(rotation.plan, motion, rotation.blocks, turn)
 
     def at_rate(self, rotation: Rotation, steady: SteadyRate) -> Motion:
         """The part of a rotation at a known rate in its blocks."""
         motion = at_rate(self._data, rotation.plan, steady, self._time_of(rotation.steady))
-        return self._placed(rotation.plan.name, motion, rotation.steady, steady)
+        return self._placed(rotation.plan, motion, rotation.steady, steady)
 
     def _time_of(self, blocks: Blocks) -> Array:
         return blocks.time if self._data.shared_clock else np.full(len(blocks), np.nan)
 
     def _placed(
-        self, name: str, motion: Motion, blocks: Blocks, turn: RateSegment | SteadyRate
+        self, m: Manoeuvre, motion: Motion, blocks: Blocks, turn: RateSegment | SteadyRate
     ) -> Motion:
         """With its place in the plan; the vibration is known only where the axis is vertical."""
-        time = motion.time
+        time, name = motion.time, m.name
         upright = abs(float(turn.position.up @ turn.about)) > MIN_UPRIGHT_COSINE
         vibration = (
             self._data.noise.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
         )
         peaks, senses = self._on_the_way(name, len(time))
+        since, turned = self._turns.before(m, blocks.time)
         return replace(
             motion,
             log_time=blocks.time if self._switches_per_log else np.full(len(time), np.nan),
@@ -280,6 +286,8 @@ class CampaignMotions:
             vibration=np.tile(vibration, (len(time), 1)),
             peaks=peaks,
             senses=senses,
+            since=since,
+            turned=turned,
         )
 
     def _on_the_way(self, name: str, count: int) -> tuple[Array, Array]:
@@ -323,7 +331,16 @@ def mean_motions(motion: Motion, merged: Merged) -> list[Motion]:
     names = [field.name for field in fields(Motion) if field.name != "about"]
     means: dict[str, Any] = {name: merged.mean(getattr(motion, name)) for name in names}
     means["seconds"] = merged.seconds
-    for name in ("surveyed", "switched_on", "position", "run", "peaks", "senses", "tumbled"):
+    for name in (
+        "surveyed",
+        "switched_on",
+        "position",
+        "run",
+        "peaks",
+        "senses",
+        "tumbled",
+        "turned",
+    ):
         means[name] = getattr(motion, name)[merged.starts]
     return [
         Motion(about=motion.about, **{name: values[i : i + 1] for name, values in means.items()})

@@ -146,6 +146,7 @@ class Performed:
     sense_x: float | None = None
     sense_y: float | None = None
     sense_z: float | None = None
+    stopped: float | None = None
 
     @property
     def peaks(self) -> tuple[float, ...]:

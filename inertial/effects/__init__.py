@@ -34,6 +34,9 @@ from inertial.effects.gyro_g_sensitivity import GyroGSensitivity
 from inertial.effects.gyro_hysteresis import GyroHysteresis
 from inertial.effects.gyro_latency import GyroLatency
 from inertial.effects.gyro_random_walk import GyroRandomWalk
+from inertial.effects.gyro_relaxation import GyroRelaxation
+from inertial.effects.gyro_relaxation_braking import GyroRelaxationBraking
+from inertial.effects.gyro_relaxation_sense import GyroRelaxationSense
 from inertial.effects.gyro_saturation import GyroSaturation
 from inertial.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
 from inertial.effects.gyro_scale_cubic import GyroScaleCubic
@@ -89,6 +92,9 @@ CATALOGUE: dict[str, Effect] = {
         *(GyroDeadBand(axis) for axis in "xyz"),
         GyroHysteresis(),
         GyroBiasSense(),
+        GyroRelaxation(),
+        GyroRelaxationSense(),
+        GyroRelaxationBraking(),
         GyroSaturation(),
         GyroLatency(),
         # accelerometers

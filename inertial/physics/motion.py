@@ -129,6 +129,10 @@ class Motion:
     turned the table to the position since its start, along its axis; else 0. `square`: (n,),
     rad²/s², the mean of the squared rate. `log_time`: (n,), s since the first sample of its log
     where each log begins with a switch-on, NaN where that is not so.
+
+    `since`: (n, 3), s, from the end of the last turn about each axis in the same log to the middle
+    of the stretch, negative in a turn, NaN where none is known; `turned`: (n, 3), its sense, ±1, 0
+    where none is known.
     """
 
     time: Array
@@ -151,6 +155,8 @@ class Motion:
     tumbled: Array
     square: Array
     log_time: Array
+    since: Array
+    turned: Array
 
     @property
     def running(self) -> Array:
@@ -242,6 +248,8 @@ def turning(
         np.zeros((n, 3)),
         rate**2 + (acceleration * seconds) ** 2 / 12,  # as constant as the acceleration is
         np.full(n, np.nan),
+        np.full((n, 3), np.nan),
+        np.zeros((n, 3)),
     )
 
 
@@ -262,6 +270,8 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         np.zeros((n, 3)),
         zero,
         np.full(n, np.nan),
+        unknown,
+        np.zeros((n, 3)),
     )
 
 

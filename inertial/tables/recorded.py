@@ -226,7 +226,7 @@ SEGMENTS = Table(
 )
 PERFORMED = Table(
     "performed",
-    5,
+    6,
     (
         Column("manoeuvre", TEXT, "", "as in manoeuvres"),
         Column("found", TRUTH, "", "found in its log"),
@@ -284,6 +284,15 @@ PERFORMED = Table(
                 True,
             )
             for axis in AXES
+        ),
+        Column(
+            "stopped",
+            DOUBLE,
+            "s",
+            "when the last turn about any axis on the way to it ended, as `time` of the samples;"
+            " none where these do not show one",
+            "",
+            True,
         ),
         Column("sentence", SENTENCE, "", "what was recorded of it, in words"),
     ),

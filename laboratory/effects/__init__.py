@@ -47,6 +47,11 @@ from laboratory.effects.gyro_late_drift import GyroLateDrift
 from laboratory.effects.gyro_latency import GyroLatency
 from laboratory.effects.gyro_low_pass import GyroLowPass
 from laboratory.effects.gyro_rate_power import GyroRatePower
+from laboratory.effects.gyro_relaxation import (
+    GyroRelaxation,
+    GyroRelaxationBraking,
+    GyroRelaxationSense,
+)
 from laboratory.effects.gyro_remanence import GyroRemanence
 from laboratory.effects.gyro_saturation import GyroSaturation
 from laboratory.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
@@ -137,6 +142,9 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_telegraph": GyroTelegraph.specified,
     "gyro_hysteresis": GyroHysteresis.specified,
     "gyro_bias_sense": GyroBiasSense.specified,
+    "gyro_relaxation": GyroRelaxation.specified,
+    "gyro_relaxation_sense": GyroRelaxationSense.specified,
+    "gyro_relaxation_braking": GyroRelaxationBraking.specified,
     "gyro_flicker": GyroFlicker.specified,
     "gyro_low_pass": GyroLowPass.specified,
     "gyro_saturation": GyroSaturation.specified,

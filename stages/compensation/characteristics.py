@@ -56,6 +56,7 @@ OF_INPUT = {
     *("gyro_scale_asymmetry", "gyro_scale_quadratic", "gyro_scale_cubic"),
     *("gyro_dead_band_x", "gyro_dead_band_y", "gyro_dead_band_z", "gyro_hysteresis"),
     "gyro_bias_sense",
+    *("gyro_relaxation", "gyro_relaxation_sense", "gyro_relaxation_braking"),
 }
 OF_FORCE = {"gyro_g_sensitivity", "gyro_g2_sensitivity"}
 FIGURES = {  # of input and output, and their unit where it is not that of the sensor

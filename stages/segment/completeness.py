@@ -108,8 +108,9 @@ def with_ways(
 ) -> Iterator[Performed]:
     """The manoeuvres with what sensors remember of the way to them, as read; `level`: see `turn`.
 
-    That is the peak of the force along each axis, and the sense of the last rate about it. The
-    table may turn an axis over between two positions, which the plan does not tell.
+    That is the peak of the force along each axis, the sense of the last rate about it, and when the
+    last turn ended. The table may turn an axis over between two positions, which the plan does not
+    tell.
     """
     binned, since = located.binned, 0
     found = ((place, name) for name, place in located.matched.items() if place is not None)
@@ -121,10 +122,14 @@ def with_ways(
             x, y, z = (_peak(axis) for axis in way.T)
             done = replace(done, peak_x=x, peak_y=y, peak_z=z)
         if located.axes.gyro == AS_NAMED:
-            moves = [binned.rates[s.first : s.after] for s in before if s.moves]
-            rates = np.concatenate([np.empty((0, 3)), *moves]) - level
+            moves = [np.arange(s.first, s.after) for s in before if s.moves]
+            bins = np.concatenate([np.empty(0, np.int64), *moves])
+            rates = binned.rates[bins] - level
             x, y, z = (_sense(axis) for axis in rates.T)
-            done = replace(done, sense_x=x, sense_y=y, sense_z=z)
+            turns = bins[(np.abs(rates) > MIN_SENSE_RATE).any(axis=1)]
+            ends = binned.last_s[turns[np.isfinite(binned.last_s[turns])]]
+            stopped = float(ends[-1]) if len(ends) else None
+            done = replace(done, sense_x=x, sense_y=y, sense_z=z, stopped=stopped)
         yield done
         since = place + 1
 

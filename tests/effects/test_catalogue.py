@@ -94,6 +94,7 @@ def test_what_is_scanned_has_candidates_of_its_own(motion):
     assert {e.name for e in scanned} == {
         "gyro_warm_up", "gyro_bias_jump", "gyro_scale_jump",
         "gyro_dead_band_x", "gyro_dead_band_y", "gyro_dead_band_z",
+        "gyro_relaxation", "gyro_relaxation_sense", "gyro_relaxation_braking",
         "accel_warm_up", "accel_bias_jump", "accel_scale_jump",
         "table_ripple", "table_position_error", "table_axis_error",
         "turn_angle_error", "mounting_shift", "mounting_slip",
@@ -121,6 +122,7 @@ BLIND = {
         "accel_bias_ramp", "accel_scale_ramp", "accel_warm_up", "accel_bias_jump",
         "accel_scale_jump",
         "mounting_shift", "mounting_slip",
+        "gyro_relaxation", "gyro_relaxation_sense", "gyro_relaxation_braking",
     },
     "temperature": {
         "gyro_bias_temperature", "gyro_scale_temperature",

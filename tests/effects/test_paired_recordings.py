@@ -47,7 +47,8 @@ GROUPS = (
     ),
     ("table_wobble", "table_angle_scale"),
     ("mounting_shift",),
-    ("gyro_scale_ramp", "accel_scale_ramp"),
+    ("gyro_scale_ramp", "accel_scale_ramp", "gyro_relaxation", "gyro_relaxation_braking"),
+    ("gyro_relaxation_sense",),
     ("accel_scale_jump",),
 )
 

@@ -63,6 +63,14 @@ def _products(v: Array) -> dict[str, Any]:
     return {"matrix_micro_g_g2": (v.reshape(3, 3)[:, [1, 2, 0]] / (PPM / G)).tolist()}
 
 
+def _relaxing(v: Array) -> dict[str, Any]:
+    """In the turn, and as it ends."""
+    keys = ("in_turn_deg_h", "after_deg_h")
+    return {
+        key: (v[i : i + 3] / DEGREE_PER_HOUR).tolist() for key, i in zip(keys, (0, 3), strict=True)
+    }
+
+
 def _leaning(v: Array) -> dict[str, Any]:
     lean, quarter = v / ARC_SECOND
     return {"lean_arcsec": float(lean), "quarter_arcsec": float(quarter)}
@@ -71,6 +79,7 @@ def _leaning(v: Array) -> dict[str, Any]:
 TURNS, RATES = ("stops", "rates"), ("rates",)
 MEMORY = ("positions", "rates")  # in `stops` every rest but the first follows a turn backwards
 AT: dict[str, Any] = {"scan": ("at_s", 0.12, 0.85), "share": True}
+RELAXES: dict[str, Any] = {"scan": ("time_constant_s", 8.0, 25.0)}
 TAU: dict[str, Any] = {"scan": ("time_constant_s", 200.0, 900.0)}
 
 WAYS: Mapping[str, Way] = {
@@ -88,6 +97,11 @@ WAYS: Mapping[str, Way] = {
     "gyro_bias_jump": _three("size_deg_h", DEGREE_PER_HOUR, "b", **AT),
     "gyro_hysteresis": _three("offset_deg_h", DEGREE_PER_HOUR, "h", plans=MEMORY),
     "gyro_bias_sense": _three("offset_deg_h", DEGREE_PER_HOUR, "b", plans=MEMORY),
+    "gyro_relaxation": Way(
+        tuple(f"{stem}_{axis}" for stem in "db" for axis in "xyz"), _relaxing, **RELAXES
+    ),
+    "gyro_relaxation_sense": _three("offset_deg_h", DEGREE_PER_HOUR, "b", **RELAXES),
+    "gyro_relaxation_braking": _three("offset_deg_h", DEGREE_PER_HOUR, "b", **RELAXES),
     "accel_quadratic": _three("k2_micro_g_g2", PPM / G, "k2"),
     "accel_cubic": _three("k3_micro_g_g3", PPM / G**2, "k3", plans=RATES),
     "accel_cross_products": Way(

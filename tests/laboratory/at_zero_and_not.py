@@ -103,6 +103,18 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     ),
     "gyro_hysteresis": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
     "gyro_bias_sense": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
+    "gyro_relaxation": (
+        {"in_turn_deg_h": ZERO, "after_deg_h": ZERO, "time_constant_s": 10},
+        {"in_turn_deg_h": ONE, "after_deg_h": ONE, "time_constant_s": 10},
+    ),
+    "gyro_relaxation_sense": (
+        {"offset_deg_h": ZERO, "time_constant_s": 10},
+        {"offset_deg_h": ONE, "time_constant_s": 10},
+    ),
+    "gyro_relaxation_braking": (
+        {"offset_deg_h": ZERO, "time_constant_s": 10},
+        {"offset_deg_h": ONE, "time_constant_s": 10},
+    ),
     "accel_flicker": ({"instability_micro_g": 0}, {"instability_micro_g": 10}),
     "gyro_flicker": ({"instability_deg_h": 0}, {"instability_deg_h": 1}),
     "gyro_saturation": ({"limit_deg_s": [300] * 3}, {"limit_deg_s": [30] * 3}),

@@ -623,3 +623,24 @@ def test_a_low_pass_lessens_white_noise_by_its_bandwidth(performed: Performed) -
     ratio = slow.var(axis=0) / plain.var(axis=0)
     assert ratio[0] == pytest.approx(0.05, rel=0.1)
     assert ratio[1:] == pytest.approx(1)
+
+
+def test_gyros_recover_after_a_turn_about_any_axis(performed: Performed) -> None:
+    """About z: x and y too have it; with the sense of the turn only z has, and as it was in it."""
+    plan = [turn(40) | {"rate_deg_s": 40, "log": "turn", "id": "turn", "degrees": -360}]
+    del plan[0]["seconds"]
+    both = {"in_turn_deg_h": [9, 0, 0], "after_deg_h": [0, 4, 8], "time_constant_s": 5}
+    own = {"offset_deg_h": [1, 1, 8], "time_constant_s": 5}
+    for name, hidden, expected, in_turn in (
+        ("gyro_relaxation", both, [0, 4, 8], [9, 0, 0]),
+        ("gyro_relaxation_sense", own, [0, 0, -8], [0, 0, -8]),
+        ("gyro_relaxation_braking", own, [0, 0, -8], [0, 0, 0]),
+    ):
+        recording = performed(*plan, effects={name: hidden})
+        steady = deviation(recording, "turn", "gyro")[1300:1699]
+        assert steady == pytest.approx(np.tile(in_turn, (399, 1)) * DEG_H, abs=4e-3 * DEG_H)
+        first, later = deviation(recording, "turn", "gyro")[[-301, -101]] / DEG_H
+        assert later == pytest.approx(np.exp(-0.4) * first, abs=0.02)  # 2 s, 100 Hz
+        shares = first[np.nonzero(expected)] / np.array(expected)[np.nonzero(expected)]
+        assert shares == pytest.approx(shares[0], abs=0.01) and 0.1 < shares[0] < 1
+        assert first[np.equal(expected, 0)] == pytest.approx(0, abs=0.01)
