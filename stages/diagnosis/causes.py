@@ -28,6 +28,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
 from stages.diagnosis.decision import UNEXPLAINED
+from stages.diagnosis.gravity_by_latitude import Gravity
 from stages.diagnosis.moved_parameters import (
     CLOCK,
     moved_by,
@@ -95,8 +96,8 @@ class Cause:
     sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns;
     `modelled`: those of them whose result has it in its model; `freed`: the manoeuvre whose own
     error it is there; `turns`: by how many sigma one of its class turns a sensor's axes; `spoilt`:
-    by how many sigma it moves the result of a sensor; `restored`: on which condition the stated
-    gravity is right, by which that result then is, so that it is moved no more.
+    by how many sigma it moves the result of a sensor; `restored`: on which condition the
+    gravity is right to which that result is referred, so that it is moved no more.
     """
 
     members: tuple[ExplainedFindings, ...]
@@ -261,15 +262,15 @@ class Evidence:
 
     `results`: by sensor and mount; `walks`: ids of findings about random walks, which the
     covariance includes; `performed`: by the name of the manoeuvre; `curves`: sensors and mounts
-    whose changes with temperature are known as curves, without their levels; `restored`: by finding
-    of a wrong latitude on which condition the stated gravity is right.
+    whose changes with temperature are known as curves, without their levels; `gravity`: by finding
+    of a wrong latitude the one to which the accelerometers are referred.
     """
 
     results: Mapping[tuple[str, str], SensorResult]
     walks: frozenset[str]
     performed: Mapping[str, Performed]
     curves: frozenset[tuple[str, str]] = frozenset()
-    restored: Mapping[str, str] = field(default_factory=dict)
+    gravity: Mapping[str, Gravity] = field(default_factory=dict)
 
     def causes(self, explained: Sequence[ExplainedFindings]) -> list[Cause]:
         """Every cause once: equal faults of one sensor are one."""
@@ -300,10 +301,13 @@ class Evidence:
         sensors = tuple(dict.fromkeys([*(result.sensor for result in own), *spoilt]))
         gain, turns = _gain(main, drop), {} if freed else _turns(main, own)
         given = (members, sensors, cure, done, moves, drop, gain, modelled, freed, turns, spoilt)
-        return Cause(*given, self.restored.get(main.id))
+        gravity = self.gravity.get(main.id)
+        return Cause(*given, None if gravity is None else gravity.condition)
 
     def _by_gravity_of_wrong_place(self, members: Sequence[ExplainedFindings]) -> dict[str, float]:
         """By how many sigma the gravity of a latitude that is wrong moves the accelerometers."""
+        if members[0].cause.id in self.gravity:
+            return {"accel": self.gravity[members[0].cause.id].moved}
         own = [result for (sensor, _), result in self.results.items() if sensor == "accel"]
         repairs = [
             other.repair

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 import pandas as pd
@@ -34,16 +35,18 @@ class Result:
         rows = [row | {"sigma": row["sigma"] and row["sigma"] * by} for row in self.rows]
         return replace(self, rows=rows, covariance=self.covariance * by**2)
 
-    def with_matrix(self, ratio: float) -> "Result":
-        """The same with M larger by a ratio, as by a gravity that is smaller by it."""
+    def with_matrix(self, ratio: float, sigma: float) -> "Result":
+        """The same with M larger by a ratio of this sigma, as by a gravity that is smaller."""
         ones = np.eye(3).ravel()
-        rows = [
-            row | {"value": (ones[i] + row["value"]) * ratio - ones[i]}
-            if i < len(ones) and row["value"] is not None
-            else row
-            for i, row in enumerate(self.rows)
-        ]
-        return replace(self, rows=rows)
+        rows, common = list(self.rows), np.zeros(len(self.rows))
+        for i, row in enumerate(rows[: len(ones)]):
+            if row["value"] is not None:
+                common[i] = (ones[i] + row["value"]) * ratio
+                of_all = row["sigma"] and hypot(row["sigma"], common[i] * sigma)
+                rows[i] = row | {"value": common[i] - ones[i], "sigma": of_all}
+        return replace(
+            self, rows=rows, covariance=self.covariance + sigma**2 * np.outer(common, common)
+        )
 
     def turned(self, rotation: Array, probability: float) -> "Result":
         """The mixture with the mounting as it was before a rotation (3,), rad, of the case.

@@ -14,11 +14,11 @@ from inertial.tables.stage import Stage, Tables
 from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
+from stages.diagnosis.gravity_by_latitude import referred
 from stages.diagnosis.one_event import mountings_of, rotations, with_consequences
 from stages.diagnosis.result import covariance_by_ids
 from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.sizes_of_causes import by_result, sentences, sizes
-from stages.diagnosis.stated_gravity import restored
 from stages.diagnosis.temperature_curves import curve_rows
 from stages.diagnosis.verdict import NOT_USABLE, Verdict, not_recorded, verdict
 
@@ -44,21 +44,21 @@ def diagnosis(
     ----------
     estimated : the candidates for the result of each sensor and mount
     effects : of criticism: sizes of the effects
-    known : of the plan: its latitude
+    known : of the plan: latitude and gravity
     swept : of criticism: changes with temperature of what one attitude shows
     noise_alone : whether the campaign is a recording of the noise
     channel_statistics : of the logs, by which it is known what is recorded
     manoeuvres : of the plan, to tell which are before a shift of the mounting
     """
     explained = list(compete(list(hypotheses(findings))))
-    results, conditions = restored(list(estimated.results(explained)), explained, known_of(known))
+    results, gravity = referred(list(estimated.results(explained)), explained, known_of(known))
     curves = {(row["sensor"], row["mount"]) for row in rows_of(swept)}
     evidence = Evidence(
         {(result.sensor, result.mount): result for result in results},
         frozenset(random_walks["finding"]),
         performed_of(performed),
         frozenset(curves),
-        conditions,
+        gravity,
     )
     causes = evidence.causes(explained)
     recorded = _recorded(channel_statistics)

@@ -119,10 +119,19 @@ def rests_of(
             m.up,
             m.mark if as_stated else None,
             seen.rate + level,
-            seen.unsure,
+            _sigma_at_rest(seen.unsure, located.binned.quantum[3:]),
             max(one for one in places if one[0] <= place)[1] if places[0][0] <= place else m.name,
             min((one for one in places if one[0] >= place), default=(0, m.name))[1],
         )
+
+
+def _sigma_at_rest(unsure: Array, quantum: Array) -> Array:
+    """Of the mean rates, (3,), rad/s; of coarse counts that never toggle that of rounding.
+
+    Where the count is not known either, the rest tells nothing of the size of the earth's rate.
+    """
+    of_counts = np.nan_to_num(quantum / np.sqrt(12), nan=EARTH_RATE)
+    return np.where(unsure > 0, unsure, of_counts)
 
 
 def _change(
