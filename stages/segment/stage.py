@@ -129,14 +129,15 @@ def segment(
     index = RecordIndex()
     of_encoder = EncoderJumps(places.parts, made.plan, stated.angle_sigma)
     read_once(samples, [block_sums, segment_times, traces, rests, index, of_encoder.sums], read_as)
-    jumps = of_encoder.result()
-    of_rests, tilts = masked_tilts(list(rests.detections("segment")), block_sums.table(), made.plan)
+    blocks, jumps = block_sums.table(), of_encoder.result()
+    of_rests, tilts = masked_tilts(list(rests.detections("segment")), blocks, made.plan)
     if jumps or tilts:
         masks += tilts
         masked = Masks(MASKS.frame(masks), read_as)
         block_sums = reduction.Blocks(places.parts, examined.gaps, masked, *by_clock)
         read_once(samples, [WithoutJumps(block_sums, of_encoder.by_log())], read_as)
-    blocks, segments = block_sums.table(), segment_times.table()
+        blocks = block_sums.table()
+    segments = segment_times.table()
     by_encoder = plan_by_encoder(made.plan, blocks, stated.angle_sigma, angle_tolerance)
     by_encoder = with_jumps(by_encoder, jumps)
     turned, by_encoder = _turned(
