@@ -4,7 +4,7 @@ import chain
 import pytest
 
 TILT_S = 0.05  # s, of the tilt by 0.06 degrees
-ONSET_S = 12  # s after the start of the rest
+ONSET_S = 8  # s after the start of the rest
 
 
 def document(onset=None):

@@ -3,20 +3,22 @@
 What disturbs a manoeuvre need not have a name for the others to be free of it.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.hypotheses import UNKNOWN_STRUCTURE
-from inertial.campaign.records import Row
 from inertial.sensors import SENSORS
 from inertial.text.messages import _
 from inertial.text.parameters import WITHOUT_ONE
 from stages.extension.candidates import Candidate
 from stages.extension.estimates import Solved, solved
 from stages.extension.models import PRIOR_SIGMA, SelectedSizes
+
+Row = Mapping[str, Any]
 
 MIN_P = 0.01  # of the fit without it: with less, noise alone does not describe the others either
 LEFT_OUT = _("it alone carries a structure of the residuals that has no name")
