@@ -57,6 +57,7 @@ OF_TEMPERATURE = {
 
 JOINT, EXTENDED = "joint", "extended"  # results: of the joint fit, with the unmodelled effects
 MIXTURE = "mixture"  # of several members of a class, each by its probability
+WITHOUT_ONE = "without_one"  # of the joint fit without the manoeuvre that alone is disturbed
 FREE = "free_positions"  # of static positions of unknown attitude
 STAGES = {"gyro": "gyroscope", "accel": "accelerometer"}  # by the sensor as columns call it
 SENSOR_OF = {"accelerometer": "accel", "gyroscope": "gyro"}

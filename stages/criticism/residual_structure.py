@@ -316,8 +316,8 @@ NO_TEMPERATURE = _(
 )
 NOT_CARRIED = _("No small group of manoeuvres was found without which it vanishes.")
 CONSEQUENCE = _(
-    "The joint result stands as it is: no effect by name is added to it for this "
-    "sensor, and its sigmas do not allow for the structure."
+    "No effect by name is added to the joint result of this sensor, and its sigmas do not allow "
+    "for the structure."
 )
 MOVES = _(" With and without {manoeuvres} a parameter differs by {moves} σ at most.")
 ACTION = _("Inspect the picture of the residuals for what they depend on.")

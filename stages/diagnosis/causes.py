@@ -27,7 +27,7 @@ from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
-from stages.diagnosis.decision import UNEXPLAINED
+from stages.diagnosis.decision import MAX_MOVE, UNEXPLAINED
 from stages.diagnosis.gravity_by_latitude import Gravity
 from stages.diagnosis.moved_parameters import (
     CLOCK,
@@ -49,7 +49,6 @@ REPAIRED, MODELLED, CURVE, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
 )
 APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were made with
 MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
-MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
 ENCODER_JUMP = "encoder_jump"  # which segment takes out of the angles
 QUANTISATION = "quantisation"
@@ -73,6 +72,7 @@ NO_JUMP = _("The biases of the {sensors} did not change when those of the others
 ONE_CHANGE = _(
     "The biases of the {sensors} changed at that place alone, and do not differ from run to run."
 )
+ALONE = _("What disturbs {manoeuvre}, which is left out, is in this manoeuvre alone.")
 OF_GYROS = _("The asymmetry is that of the gyros, and not of the table.")
 STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
 HARMLESS = _("Nothing need be done about it for this result.")
@@ -95,9 +95,10 @@ class Cause:
     `moves`: largest shift of a parameter of the result that it causes or, undone, caused, in its
     sigma; None where it is not known. `sensors`: gyro, accel, those whose result it concerns;
     `modelled`: those of them whose result has it in its model; `freed`: the manoeuvre whose own
-    error it is there; `turns`: by how many sigma one of its class turns a sensor's axes; `spoilt`:
-    by how many sigma it moves the result of a sensor; `restored`: on which condition the
-    gravity is right to which that result is referred, so that it is moved no more.
+    error it is there, or that is left out for it; `turns`: by how many sigma one of its class turns
+    a sensor's axes; `spoilt`: by how many sigma it moves the result of a sensor; `restored`: on
+    which condition the gravity is right to which that result is referred, so that it is moved no
+    more.
     """
 
     members: tuple[ExplainedFindings, ...]
@@ -158,6 +159,8 @@ class Cause:
         """What must be true for the result to be right, where nobody has confirmed it."""
         if self.restored:
             return self.restored
+        if self.cure == LEFT_OUT and self.main.stage == MODEL:
+            return ALONE.format(manoeuvre=self.manoeuvre)
         if self.main.cause == SENSE_OF_TURNS:
             return OF_GYROS
         if self.main.cause == JUMP_NOT_TESTABLE:
@@ -278,7 +281,7 @@ class Evidence:
         for number, each in enumerate(explained):
             cause = each.cause
             alone = cause.stage == MODEL or cause.cause in DIFFERENT_THINGS or cause.repair
-            key = number if alone else (cause.cause, cause.mount, cause.sensor)
+            key = number if alone else (cause.cause, cause.mount, cause.sensor, cause.masked)
             groups.setdefault(key, []).append(each)
         return [self._cause(tuple(group)) for group in groups.values()]
 
@@ -286,14 +289,17 @@ class Evidence:
         main = max(members, key=lambda m: m.cause.row["severity"]).cause
         own = list(self._own(main))
         cure, moves, drop = self._cure(main, own, members)
-        freed = next(filter(None, (result.decision.freed.get(main.id) for result in own)), None)
+        apart = [{**result.decision.freed, **result.decision.left_out} for result in own]
+        freed = next(filter(None, (manoeuvres.get(main.id) for manoeuvres in apart)), None)
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
         done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
         if main.id in self.walks or _rounds(main):
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
             done = HARMLESS
-        elif freed := freed or (main.manoeuvre if has_own_error(main) else None):
+        elif cure != LEFT_OUT and (
+            freed := freed or (main.manoeuvre if has_own_error(main) else None)
+        ):
             done = OWN_ERROR.format(manoeuvre=freed)
         elif cure == NONE and modelled:
             done = ONLY_MODELLED.format(sensors=_(" and ").join(PLURAL[s] for s in modelled))
@@ -374,6 +380,8 @@ class Evidence:
             return MODELLED, None, None
         if cause.cause == UNEXPLAINED and all(result.decision.widened > 1 for result in own):
             return MODELLED, None, None
+        if any(cause.id in result.decision.left_out for result in own):
+            return LEFT_OUT, cause.row["moves"], None
         modelled = [result for result in own if result.models(cause.causes)]
         others = [result for result in own if result not in modelled]
         freed = any(cause.id in result.decision.freed for result in modelled)

@@ -4,7 +4,8 @@ One with effects does where it predicts the manoeuvres not used in its fit bette
 one, no finding shows that the model is still incomplete, no effect rests on a single manoeuvre, and
 no parameter is lost. Where these manoeuvres hold little of the effects, the joint one remains
 beside it, with the weight that they give it. What a single manoeuvre alone shows may be that
-manoeuvre's own error as well: with an unknown of its own it moves nothing, whatever it is.
+manoeuvre's own error as well: with an unknown of its own it moves nothing, whatever it is. A
+manoeuvre that alone carries a structure without a name, and moves the joint one by it, is left out.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,13 +19,14 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.parameters import JOINT
+from inertial.text.parameters import JOINT, WITHOUT_ONE
 
 UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
 OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
 TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
+MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
 MIN_MIXED_SNR_SQUARED = 4.0  # 2 sigma: with less they tell little of whether an effect is there
 MAX_WIDENED = 1.5  # times noise: smaller residuals without a name widen the sigmas, no more
@@ -79,6 +81,10 @@ FREED = _(
     "The result of the {sensors} includes {effects}: that is the own error of "
     "{manoeuvres}, which no other manoeuvre shows, and no finding remains unexplained."
 )
+ONE_LEFT_OUT = _(
+    "The result of the {sensors} is the joint one without {manoeuvre}: that alone carries a "
+    "structure of the residuals without a name, and moves a parameter by {moves} σ."
+)
 OTHER_MEMBERS = _(
     " Instead of {effect} it may be {others}: that would do the same to these data, "
     "within their noise."
@@ -89,7 +95,8 @@ OTHER_MEMBERS = _(
 class Decision:
     """Which candidate counts for a sensor, and why.
 
-    `method`: joint, or that of the most probable candidate with effects; `reason`: a sentence;
+    `method`: joint, with one manoeuvre left out or not, or that of the most probable candidate with
+    effects; `reason`: a sentence; `left_out`: by finding the manoeuvre that is;
     `freed`: by finding the manoeuvre whose own error it is in this candidate; `alike`: methods of
     candidates whose effects the same manoeuvres carry, which for all others say the same;
     `widened`: by how much its sigmas are, for residuals that nothing explains (Birge 1932);
@@ -102,6 +109,7 @@ class Decision:
     alike: frozenset[str] = frozenset()
     widened: float = 1.0
     joint_share: float = 0.0
+    left_out: Mapping[str, str] = field(default_factory=dict)
 
 
 def alarms_of(findings: Iterable[Row], mount: str, sensor: str) -> list[Row]:
@@ -143,6 +151,8 @@ def decided(
 
     best = likeliest(candidates)
     if best is None:
+        if without := _without_one(candidates, alarms):
+            return without
         reason = DOUBTFUL if alarms else NO_EFFECT
         return Decision(JOINT, reason.format(sensors=sensors, causes=causes))
     carried = _carriers(effects_of(best))
@@ -176,9 +186,25 @@ def decided(
     return Decision(best["method"], reason + others, widened=widened, joint_share=share)
 
 
+def _without_one(candidates: Sequence[Row], alarms: Sequence[Row]) -> Decision | None:
+    """The joint result without the manoeuvre that alone carries all that is not explained.
+
+    None where there is none, or where its structure moves the joint result by less than its sigma.
+    """
+    own = next((row for row in candidates if row["method"] == WITHOUT_ONE), None)
+    if own is None or [row["cause"] for row in alarms] != [UNKNOWN]:
+        return None
+    (alarm,) = alarms
+    if (moves := alarm["moves"]) is None or moves <= MAX_MOVE:
+        return None
+    sensors, manoeuvre = PLURAL[own["sensor"]], own["carried_by"]
+    reason = ONE_LEFT_OUT.format(sensors=sensors, manoeuvre=manoeuvre, moves=significant(moves, 2))
+    return Decision(WITHOUT_ONE, reason, left_out={alarm["id"]: manoeuvre})
+
+
 def likeliest(candidates: Iterable[Row]) -> Row | None:
     """The most probable candidate with effects; None where there is none."""
-    extended = [row for row in candidates if row["method"] != JOINT]
+    extended = [row for row in candidates if row["method"] not in (JOINT, WITHOUT_ONE)]
     return max(extended, key=lambda row: float(row["probability"]), default=None)
 
 

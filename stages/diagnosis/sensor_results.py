@@ -17,7 +17,7 @@ from inertial.campaign.records import Row, rows_of
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
-from inertial.text.parameters import BIAS, CROSS, FREE, JOINT, SCALE
+from inertial.text.parameters import BIAS, CROSS, FREE, JOINT, SCALE, WITHOUT_ONE
 from stages.diagnosis.decision import Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
@@ -286,7 +286,7 @@ def competing(candidates: Sequence[Row], decision: Decision) -> dict[str, float]
 
     Of the joint result nothing does. Beside effects it has the share of the decision.
     """
-    if decision.method == JOINT:
+    if decision.method in (JOINT, WITHOUT_ONE):
         return {}
     others = [row for row in candidates if row["method"] not in decision.alike]
     share = decision.joint_share

@@ -19,7 +19,8 @@ class Candidate:
     `effects`: those of the model that the sensor shows or absorbs; `findings`: by the name of an
     effect; `columns`: of the effects that it shows, in its equations; `absorbed`: of those that its
     parameters absorb, whose size the other sensor tells; `probability`: of the members of classes,
-    those of the joint fit being the members that this sensor does not show.
+    those of the joint fit being the members that this sensor does not show; `left_out`: the
+    manoeuvre without which it is fitted.
     """
 
     method: str
@@ -28,6 +29,7 @@ class Candidate:
     columns: tuple[str, ...] = ()
     absorbed: tuple[str, ...] = ()
     probability: float = 0.0
+    left_out: str | None = None
 
 
 def candidates_of(
@@ -89,6 +91,7 @@ def carriers_of(trainings: Trainings, sensor: str, candidate: Candidate) -> dict
 # ---- The gain of a candidate in words
 
 WITHOUT = _("Joint fit of all manoeuvres, without effects.")
+BUT_ONE = _("Joint fit of all manoeuvres but {manoeuvre}, without effects.")
 REDUCED = _(
     "With {effects} χ² of manoeuvres that the fit has not seen is reduced by {drop:.1f}, of "
     "{expected:.1f} that exactly known effects would bring."
@@ -113,6 +116,8 @@ def sentence_of(
     carriers: Mapping[str, str | None],
 ) -> str:
     """What the model gains on held-out data, and which manoeuvres alone show its effects."""
+    if candidate.left_out:
+        return BUT_ONE.format(manoeuvre=candidate.left_out)
     if validated is None:
         return WITHOUT
     effects = listed([in_words(e.name) for e in candidate.effects])

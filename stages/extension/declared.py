@@ -10,6 +10,7 @@ DECLARED = Declared(
         "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
         "members": From("criticism", tables.MEMBERS),
         "effects": From("criticism", tables.EFFECTS),
+        "structure_manoeuvres": From("criticism", tables.STRUCTURE_MANOEUVRES),
         "cause_positions": From("criticism", tables.CAUSE_POSITIONS),
         "random_walks": From("criticism", tables.RANDOM_WALKS),
         "drifts_at_rest": From("criticism", tables.DRIFTS_AT_REST),

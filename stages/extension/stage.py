@@ -50,6 +50,7 @@ from stages.extension.restarts import with_spreads
 from stages.extension.scanned_values import over_moments, with_scanned_values
 from stages.extension.temperature_shapes import with_shapes
 from stages.extension.warm_up import warm_up_rows
+from stages.extension.without_one import LEFT_OUT, carried_alone, fit_without
 
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]
@@ -61,6 +62,7 @@ def extension(
     mounts: Sequence[CampaignData],
     simulated: Stream,
     causes: tuple[Sequence[Row], Sequence[Row], Sequence[Row], Sequence[Row]],
+    structure_manoeuvres: pd.DataFrame,
     random_walks: pd.DataFrame,
     drifts_at_rest: pd.DataFrame,
     joint: Mapping[str, tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame]],
@@ -71,11 +73,13 @@ def extension(
     """Candidates for the result, with parameters and covariance of each.
 
     Where nothing was named there is nothing to extend: the joint result is the only candidate, and
-    all tables but that of the candidates are empty.
+    all tables but that of the candidates are empty. Beside it is the one without a manoeuvre, where
+    that alone carries a structure without a name.
 
     Parameters
     ----------
     causes : rows of the findings, effects, members and positions of criticism
+    structure_manoeuvres : of criticism: which manoeuvres alone carry a structure without a name
     joint : by sensor, parameters, fit and manoeuvres of the joint result
     settled_accel, settled_gyro : bands about the last value of a bias, m/s² and rad/s
     """
@@ -95,6 +99,7 @@ def extension(
             (walk_of[data.mount, "gyro"], walk_of[data.mount, "accel"]),
             replaced.loc[replaced["mount"] == data.mount, "sensor"].tolist(),
             {"gyro": settled_gyro, "accel": settled_accel},
+            carried_alone(causes[0], rows_of(structure_manoeuvres), data.mount),
         )
         for table, row in extended.rows(simulated):
             rows[table].append(row)
@@ -146,7 +151,8 @@ class Extension:
 
     `joint`: rows of the joint result, by sensor; `random_walks`: of the biases of gyros and
     accelerometers given the named effects; `replaced`: the sensors whose drift at rest is not in
-    the equations; `bands`: in which a bias counts as settled, by sensor.
+    the equations; `bands`: in which a bias counts as settled, by sensor; `disturbed`: by sensor the
+    fit without the one manoeuvre that carries a structure.
     """
 
     def __init__(
@@ -157,9 +163,10 @@ class Extension:
         random_walks: tuple[float, float],
         replaced: Sequence[str],
         bands: Mapping[str, float],
+        disturbed: Mapping[str, Candidate],
     ) -> None:
         self.data, self.named, self.joint, self.bands = data, named, joint, bands
-        self.random_walks, self.replaced = random_walks, replaced
+        self.random_walks, self.replaced, self.disturbed = random_walks, replaced, disturbed
         self.scatters: dict[str, tuple[float, float | None]] = {}
         self.switch_ons: dict[str, SwitchOns] = {}
 
@@ -172,8 +179,17 @@ class Extension:
         else:
             for sensor in SENSORS:
                 yield from self._candidates(sensor, [Candidate(JOINT, probability=1.0)], {}, {})
+        yield from self._without_one()
         if self.named.in_spectrum and self.data.result.gyro is not None:
             yield from self._of_spectrum(simulated)
+
+    def _without_one(self) -> Iterator[tuple[str, Any]]:
+        """The joint fits without a disturbed manoeuvre; no probability weighs them with others."""
+        for sensor, candidate in self.disturbed.items():
+            campaign = self._campaign().with_random_walks(self.random_walks)
+            if solution := fit_without(campaign, sensor, candidate, self.data):
+                yield from self._candidates(sensor, [candidate], {candidate.method: solution}, {})
+                yield from self._solution(solution, candidate.left_out)
 
     def _of_blocks(self) -> Iterator[tuple[str, Any]]:
         campaign = self._campaign()
@@ -213,7 +229,7 @@ class Extension:
                 )
             }
             there = [c for c in candidates if c.method in (JOINT, *solutions)]
-            yield from self._candidates(sensor, there, solutions, tested, trainings)
+            yield from self._candidates(sensor, normalised(there), solutions, tested, trainings)
             for _solution, mean in pairs.values():
                 yield from self._solution(mean)
             if EXTENDED in solutions:
@@ -287,8 +303,11 @@ class Extension:
         stretches = models.extended.stretches(sensor)
         return solution, with_drift_in_the_bias(mean, candidate.effects, motion, stretches)
 
-    def _solution(self, solution: Solved) -> Iterator[tuple[str, Any]]:
-        """The rows of a fit, and of the likeliest how far its parameters move."""
+    def _solution(self, solution: Solved, without: str | None = None) -> Iterator[tuple[str, Any]]:
+        """The rows of a fit, and of the likeliest how far its parameters move.
+
+        `without`: a manoeuvre that is not used.
+        """
         sensor, mount = solution.sensor, self.data.mount
         yield "covariance", solution.covariance_rows()
         lacking = {row["parameter"]: row for row in self._joint_of(sensor) if row["value"] is None}
@@ -300,7 +319,9 @@ class Extension:
         scatter, seconds = self.scatters.get(sensor, (0.0, None))
         yield "fit", solution.fit_row(self.data.noise.degrees, scatter, seconds) | between
         for row in self.joint[sensor].manoeuvres:
-            yield "fit_manoeuvres", {**row, "method": solution.method}
+            left_out = row["manoeuvre"] == without and row["used"]
+            omitted = {"used": False, "reason": LEFT_OUT} if left_out else {}
+            yield "fit_manoeuvres", {**row, "method": solution.method, **omitted}
         if solution.method == EXTENDED:
             own = self._joint_of(sensor)
             scatter = any(row["scatter"] for row in self.joint[sensor].fit)
@@ -332,7 +353,7 @@ class Extension:
     ) -> Iterator[TableRow]:
         """The rows of the candidates of a sensor and of their effects."""
         before = [row["parameter"] for row in self._joint_of(sensor) if row["value"] is not None]
-        for candidate in normalised(candidates):
+        for candidate in candidates:
             method = candidate.method
             own = {"mount": self.data.mount, "sensor": sensor, "method": method}
             carriers = {} if trainings is None else carriers_of(trainings, sensor, candidate)
@@ -358,7 +379,7 @@ class Extension:
                     "snr_squared": validated.expected_drop if validated else None,
                     "folds": len(validated.folds) if validated else None,
                     "counted": len(validated.counted) if validated else None,
-                    "carried_by": carried[0] if carried else None,
+                    "carried_by": carried[0] if carried else candidate.left_out,
                     "undetermined": len(set(before) - set(after)),
                     "open_form": trainings is not None
                     and form_is_open(sensor, candidate, trainings.models.extended),

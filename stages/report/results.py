@@ -8,7 +8,16 @@ from dataclasses import dataclass
 from inertial.campaign.records import Part, grouped, parts_of
 from inertial.text import numbers, units
 from inertial.text.messages import _
-from inertial.text.parameters import EXTENDED, JOINT, MIXTURE, PARTS, SENSOR_OF, STAGES, sign_of
+from inertial.text.parameters import (
+    EXTENDED,
+    JOINT,
+    MIXTURE,
+    PARTS,
+    SENSOR_OF,
+    STAGES,
+    WITHOUT_ONE,
+    sign_of,
+)
 from inertial.text.typography import capital
 from stages.report.outline import Tone
 from stages.report.tables import DECISION_TABLES, Record, Tables, once
@@ -22,6 +31,7 @@ WITH_EFFECTS = _("fit with effects in the model")  # also by the other members o
 METHOD = {
     JOINT: _("joint fit of all manoeuvres"),
     EXTENDED: WITH_EFFECTS,
+    WITHOUT_ONE: _("joint fit without the manoeuvre that alone is disturbed"),
     MIXTURE: _("mean over the members of a class, by their probability"),
     "six_position": _("six positions, closed formula"),
     "free_positions": _("static positions of unknown attitude, by |f| = g"),

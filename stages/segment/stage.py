@@ -37,6 +37,7 @@ from stages.segment.matching import Part, between_parts, position_parts, rest_pa
 from stages.segment.plan_and_recording import ExaminationOfRests, Recording, compare, recorded_of
 from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken
+from stages.segment.rests_that_tilt import masked_tilts
 from stages.segment.span_offsets import logs_in_doubt, moved_back, spans_off, whole_logs
 from stages.segment.windows import Binned, Bins, Selection, Window, windows
 
@@ -92,7 +93,7 @@ def segment(
 
     Two passes over the samples: blocks and the records of a rest are known only after manoeuvres
     were found in short means. Where the plan selects records by time or label, one of these two
-    columns before; where the encoder jumps, blocks once more, without its jumps.
+    columns before; where the encoder jumps, or a rest tilts, blocks once more, without it.
 
     Parameters
     ----------
@@ -120,19 +121,23 @@ def segment(
     by_name = {name: log_as_read(log, read_as) for name, log in logs.items()}
     places = _places(made, margin)
 
-    in_samples = stated.means_of_known_noise
-    by_blocks = (examined.gaps, masked, clock, in_samples, rest_block, turn_block)
-    block_sums = reduction.Blocks(places.parts, *by_blocks)
+    by_clock = (clock, stated.means_of_known_noise, rest_block, turn_block)
+    block_sums = reduction.Blocks(places.parts, examined.gaps, masked, *by_clock)
     segment_times, traces = reduction.Segments(places.parts), reduction.Traces(ends)
     known = {m.name for m in made.plan if m.up is not None}
     rests = ExaminationOfRests(OF_RESTS, places.parts, by_name, masked, known)
     index = RecordIndex()
     of_encoder = EncoderJumps(places.parts, made.plan, stated.angle_sigma)
     read_once(samples, [block_sums, segment_times, traces, rests, index, of_encoder.sums], read_as)
-    if jumps := of_encoder.result():
-        block_sums = reduction.Blocks(places.parts, *by_blocks)
+    blocks, jumps = block_sums.table(), of_encoder.result()
+    of_rests, tilts = masked_tilts(list(rests.detections("segment")), blocks, made.plan)
+    if jumps or tilts:
+        masks += tilts
+        masked = Masks(MASKS.frame(masks), read_as)
+        block_sums = reduction.Blocks(places.parts, examined.gaps, masked, *by_clock)
         read_once(samples, [WithoutJumps(block_sums, of_encoder.by_log())], read_as)
-    blocks, segments = block_sums.table(), segment_times.table()
+        blocks = block_sums.table()
+    segments = segment_times.table()
     by_encoder = plan_by_encoder(made.plan, blocks, stated.angle_sigma, angle_tolerance)
     by_encoder = with_jumps(by_encoder, jumps)
     turned, by_encoder = _turned(
@@ -158,7 +163,7 @@ def segment(
         angle_tolerance,
     )
     of_plan = compare("segment", OF_PLAN, recorded)
-    detections = [*(each for each, _by in of_plan), *rests.detections("segment")]
+    detections = [*(each for each, _by in of_plan), *of_rests]
     return {
         "manoeuvres": plan_as_taken(manoeuvres, plan),
         "repairs": list(_with_findings(made.rows, of_plan, examined.quality_findings)),
