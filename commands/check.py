@@ -40,9 +40,9 @@ from stages.diagnosis.causes import (
     LEFT_OUT,
     MASKED,
     MAX_HARMLESS_MOVE,
-    MAX_MOVE,
     NONE,
 )
+from stages.diagnosis.decision import MAX_MOVE
 from stages.diagnosis.declared import DECLARED
 
 # ---- What leaves the report without a result, though nothing need be wrong with the recording.
