@@ -29,3 +29,12 @@ def test_what_is_told_is_within_its_sigma(turned, seed):
         for name, row in made.reindex(linear_names()).dropna(subset="sigma").iterrows()
     ]
     assert len(pulls) >= 6 and np.abs(pulls).max() < 4.0, np.round(pulls, 1)
+
+
+def test_one_rest_alone_is_criticised_without_a_time_between():
+    """All that may set in or change sets in between two stretches, of which there is one."""
+    document = chain.short()
+    rest = document["campaign"]["plan"][0]
+    document["campaign"]["plan"] = [{**rest, "seconds": 6}]
+    results = chain.in_memory_of(document, "criticism")
+    assert results["criticism/findings"].empty

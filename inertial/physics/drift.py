@@ -160,7 +160,7 @@ def evenly(motion: Motion, count: int) -> Array:
     """`count` equally spaced times between the first stretch and the last, s, without the ends."""
     if without_clock(motion):
         return np.zeros(0)
-    return np.linspace(motion.time.min(), motion.time.max(), count + 2)[1:-1]
+    return np.unique(np.linspace(motion.time.min(), motion.time.max(), count + 2)[1:-1])
 
 
 def after(motion: Motion, time: float) -> Array:
