@@ -54,10 +54,10 @@ EffectKeys = tuple[EffectKey, ...]
 def _prior_sigmas(effects: Sequence[Effect], prior_sigma: float) -> dict[str, float]:
     """Prior sigmas of the parameters of effects, by column; `prior_sigma`: in typical sizes."""
     return {
-        f"{effect.label}.{parameter.name}": effect.prior_sigma(parameter)
-        or prior_sigma * parameter.typical
+        f"{effect.label}.{parameter.name}": prior_sigma * parameter.typical if own is None else own
         for effect in effects
         for parameter in effect.parameters
+        for own in [effect.prior_sigma(parameter)]
     }
 
 

@@ -30,9 +30,9 @@ from inertial.physics.effect import (
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
-SETTLING_TIMES = (30.0, 3000.0)  # s, of τ: a shorter one is over before the first rest is
+SETTLING_TIMES = (10.0, 3000.0)  # s, of τ: a shorter one is over before the first rest is
 ON = "on_"  # and a number: the constants of a warm-up that begins anew
-SETTLING_CANDIDATES = 9  # of τ; between two of them the trace changes by a tenth
+SETTLING_CANDIDATES = 11  # of τ; between two of them the trace changes by a tenth
 THERMOMETER_ERROR = 1.0  # K beyond the coldest and the warmest mean; resolution of many
 
 SLOPE_SHARE = 0.5  # of the thermometer's time constant, over which its slope is taken

@@ -109,6 +109,7 @@ LAW_OR_WALK = _(
     "{subject}: {form}, {numbers}; no effect of the catalogue does this. It may also be {walk}: "
     "this campaign cannot distinguish them."
 )
+NO_SIZES = _("of whose terms this campaign shows the sum alone")
 ONE = {"gyro": _("{axis} gyro"), "accel": _("{axis} accelerometer")}
 ACTION = _(
     "Look for its physical cause: {file} proposes it as an effect, in the form of the catalogue. "
@@ -142,7 +143,7 @@ def law_sentence(cause: Cause, law: Law, parameters: Sequence[Estimated]) -> str
     values = {
         "subject": subject,
         "form": form_of(law),
-        "numbers": "; ".join(_numbers(law, parameters)),
+        "numbers": "; ".join(_numbers(law, parameters)) or NO_SIZES,
     }
     if cause.verdict == ONE_OF_CLASS:
         return LAW_OR_WALK.format(walk=in_words(cause.members[-1]), **values)
@@ -179,7 +180,7 @@ def form_of(law: Law) -> str:
 
 
 def _numbers(law: Law, parameters: Sequence[Estimated]) -> list[str]:
-    """The sizes that are clear, or the first."""
+    """The sizes that are clear, or the first; none where no term is told from the others."""
     sizes = [one for one in parameters if one.sigma and one.value is not None]
     clear = [one for one in sizes if abs(one.value or 0.0) > MIN_SIGMAS * (one.sigma or 0.0)]
     written = []

@@ -161,15 +161,19 @@ def carrying(tested: Tested, sensor: str) -> tuple[str, ...]:
 def moved_by(
     campaign: Campaign, sensor: str, carried: Sequence[str], effects: Sequence[Effect] = ()
 ) -> float | None:
-    """The largest shift of a parameter by the manoeuvres that carry a structure, in its sigma.
+    """The largest shift of a parameter of the joint result by what is not noise, in its sigma.
 
-    Without them there is none, so what the parameters then are differs by what it does to them, and
-    by noise. None where no few carry it, or where not all are determined without.
+    Without the manoeuvres that carry a structure, and with the named effects, there is none, so
+    what the parameters then are differs by what these do to them, and by noise. None where no few
+    carry it, or where not all are determined without.
     """
     if not carried:
         return None
     others = set(campaign.manoeuvres).difference(carried)
-    systems = [campaign.system(sensor, effects, PRIOR_SIGMA, only) for only in (None, others)]
+    systems = [
+        campaign.system(sensor, [], PRIOR_SIGMA),
+        campaign.system(sensor, effects, PRIOR_SIGMA, others),
+    ]
     whole, without = (None if one is None else one.solve_shared() for one in systems)
     if whole is None or without is None:
         return None

@@ -1,7 +1,8 @@
 """By what the biases of runs differ that restarts of the IMU part, beside other effects.
 
 Then the result is that of stated switch-ons: of the mean of the biases, about which those of the
-runs scatter by what they show themselves.
+runs scatter by what they show themselves. Two runs do not show how well biases repeat: the mean
+holds for these two alone, and its sigma is half their difference.
 """
 
 from collections.abc import Sequence
@@ -16,6 +17,8 @@ from inertial.estimation.scatter_and_random_walk import SwitchOns, between
 from inertial.physics.effect import Effect
 from stages.extension.models import PRIOR_SIGMA
 from stages.extension.named_effects import NamedClass
+
+MIN_RUNS = 3  # that show how well biases repeat: one difference has 6 times the interval of many
 
 
 def with_spreads(campaign: Campaign, classes: Sequence[NamedClass]) -> tuple[NamedClass, ...]:
@@ -50,4 +53,5 @@ def _spread(campaign: Campaign, restarts: Restarts, known: Sequence[Effect]) -> 
     for axis in range(3):
         own = [place[name] for name in restarts.columns[axis::3]]
         found.append(between(rest.information[np.ix_(own, own)], rest.right[own]))
-    return SwitchOns(len(restarts.times) + 1, *np.array(found).T).covering
+    runs = SwitchOns(len(restarts.times) + 1, *np.array(found).T)
+    return runs.covering if runs.count >= MIN_RUNS else np.nan_to_num(runs.value)

@@ -12,12 +12,17 @@ import numpy as np
 import pytest
 from ruamel.yaml import YAML
 
+from inertial.campaign.equations import Campaign
+from inertial.campaign.observations import campaign_of
 from inertial.effects.restarts import Restarts
+from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Reading, Truth
 from inertial.physics.motion import stretches
 from laboratory.folder import campaign_yaml
+from stages.criticism.residual_structure import moved_by
 from tests.expressions import value_of
 
+XYZ = "xyz"
 PAUSE_S = 2.0
 AFTER_RESTART = ("z-down", "x-up", "y-up")  # positions of which the first manoeuvre is the first
 BIASES = {"gyro_deg_h": 4, "accelerometer_micro_g": 100}
@@ -40,6 +45,36 @@ def test_each_run_has_a_bias_of_its_own_and_the_terms_say_the_same() -> None:
         factor = value_of(term.factor, {"t": time, **names})
         by_terms[:, "xyz".index(term.channel[-1])] += sizes[term.parameter] * factor
     assert (by_terms == expected).all()
+
+
+def _short(**effects: Any) -> Campaign:
+    tables = chain.in_memory_of(chain.short(effects=effects, seed=3), "gyroscope")
+    (data,) = chain.mounts(tables)
+    return campaign_of(data)
+
+
+def test_a_bias_that_does_not_scatter_is_the_same_in_every_run() -> None:
+    """It was taken for one of which nothing is known, and the mean bias with it."""
+    campaign, scatter = _short(), 1e-3  # m/s²
+    middle = float(np.median(campaign.motion.time))
+    restarts = Restarts("accel", [middle]).with_spread(np.array([0, scatter, 0]))
+    biases = [linear_names().index(f"bias_{axis}") for axis in XYZ]
+    systems = [campaign.system("accel", effects, 1e4) for effects in ([], [restarts])]
+    alone, beside = [each.solve_shared().sigma[biases] for each in systems if each is not None]
+    assert beside[[0, 2]] == pytest.approx(alone[[0, 2]], rel=1e-6)
+    assert scatter / 2 < beside[1] < scatter
+
+
+def test_what_a_structure_does_is_counted_in_the_joint_result() -> None:
+    """A step of a bias that the joint result averages moves it, whatever beside it is small."""
+    place = _short()
+    at = float(np.median(place.motion.time))
+    jumped = _short(gyro_bias_jump={"size_deg_h": [0, 200, 0], "at_s": at})
+    step = [Restarts("gyro", [at], first=1)]
+    clean = moved_by(place, "gyro", ["x-up"])
+    moved = moved_by(jumped, "gyro", ["x-up"], step)
+    assert clean is not None and clean < 1
+    assert moved is not None and moved > 3
 
 
 def recorded(
@@ -157,6 +192,10 @@ def test_a_restart_at_one_gap_has_the_time_of_the_gap(
     result = made["diagnosis/result"].set_index("parameter")["value"]
     times = result[result.index.str.match(r"gyro_restarts\.t\d")]
     assert times.to_numpy() == pytest.approx([middle])
+    sigma = made["diagnosis/result"].set_index(["sensor", "parameter"])["sigma"]
+    for axis in XYZ:  # of the mean of two biases, half their difference
+        assert sigma["gyro", f"bias_{axis}"] < np.radians(3 * BIASES["gyro_deg_h"] / 3600)
+        assert sigma["accel", f"bias_{axis}"] < 3e-6 * BIASES["accelerometer_micro_g"] * 9.81
     assert set(made["diagnosis/verdict"]["verdict"]) == {"usable_within_limits"}
 
 

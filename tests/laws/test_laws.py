@@ -7,15 +7,18 @@ import numpy as np
 import pytest
 from hidden_plans import PLANS
 
+from inertial.campaign.effect_sentences import Estimated
 from inertial.effects import LAWS
 from inertial.effects.law import Law
 from inertial.estimation.triad import linear_names
+from inertial.model_selection.cause import LAW, Cause
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.law_evidence import best_paths, chance_of, law_odds
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics import laws
 from inertial.physics.motion import stretches
 from inertial.text.units import DEGREE_PER_HOUR, HOUR
+from stages.criticism.laws import law_sentence
 from stages.extension.estimates import Solved
 from stages.extension.laws import with_drift_in_the_bias
 
@@ -213,3 +216,14 @@ def test_the_path_of_a_telegraph():
     found = best_paths(Equations(9 * steps.T @ steps, 9 * right), range(120))
     (path,) = (path for path in found if len(path) == 4)
     assert np.abs(np.array(path) - [20, 41, 66, 90]).max() <= 1
+
+
+def test_a_law_whose_terms_the_plan_does_not_tell_apart_is_said_without_their_sizes() -> None:
+    """Of forces that are -1, 0 or 1 g all odd powers are equal: the list of sizes was empty."""
+    law = Law("gyro", "z", "polynomial", "force_x", (4.0,))
+    unknown = [Estimated(p.name, p.unit, "") for p in law.parameters]
+    one, none = (1.0,), np.zeros(0)
+    cause = Cause(law.name, 0, LAW, (law.name,), (0,), one, one, 90.0, 2, 0.0, 9.0, (), none, none)
+    assert ", ;" not in str(law_sentence(cause, law, unknown))
+    known = [replace(unknown[0], value=0.1, sigma=0.01), *unknown[1:]]
+    assert "± " in str(law_sentence(cause, law, known))
