@@ -302,6 +302,29 @@ def test_parameters_drawn_from_their_covariance_fill_the_corridor(clean):
     assert squares.mean().between(0.5, 1.6).all(), squares.mean()
 
 
+def test_a_rest_that_is_predicted_does_not_reach_back_before_the_switch_on(clean):
+    """Of a warm-up known to b, 600 s of turning bring b τ at the most, ∫ b exp(−t/τ) dt."""
+    result, size, tau = clean[0]["diagnosis/result"], 1e-4, 40.0
+    one = result[result["sensor"] == "gyro"].iloc[[0]].assign(effect="gyro_warm_up")
+
+    def row(name, value, sigma, unit):
+        name = f"gyro_warm_up.{name}"
+        own = {"id": f"diagnosis/gyroscope/{name}", "parameter": name, "unit": unit}
+        return one.assign(**own, value=value, sigma=sigma)
+
+    rows = [row(f"b_{axis}", 1e-3, size, "rad/s") for axis in "xyz"]
+    rows.append(row("tau", tau, np.nan, "s"))
+    made = chain.again(clean[0], "navigation", result=pd.concat([result, *rows]))
+    own = errors_of(made, "attitude").xs(600.0, level="seconds")["by_parameters"]
+    without = errors_of(chain.again(clean[0], "navigation"), "attitude")
+    before = without.xs(600.0, level="seconds")["by_parameters"]
+    added = np.sqrt(np.fmax(own**2 - before**2, 0.0))
+    assert (added < np.sqrt(3) * size * tau).all()
+    assert added.max() > 0.3 * size * tau  # of the rest that begins the recording
+    first = errors_of(made, "attitude").xs(60.0, level="seconds")["by_parameters"]
+    assert (first < np.hypot(before.max(), np.sqrt(3) * size * tau)).all()
+
+
 def true_values(known):
     """The twelve parameters of the laboratory's truth, by name."""
     bias = known.get("bias_m_s2", known.get("bias_rad_s"))

@@ -21,13 +21,15 @@ class Pair:
     """Two members of a class, and their separation without and with an additional manoeuvre.
 
     Separation: root of the expected difference of chi-squared between the best fit of the wrong
-    member and of the right one, whichever of the two is right.
+    member and of the right one, whichever of the two is right. `weight`: the product of their
+    posterior probabilities, how much the class leaves open between them.
     """
 
     first: str
     second: str
     present: float
     extended: float
+    weight: float = 1.0
 
     @property
     def distinct(self) -> bool:
@@ -46,16 +48,16 @@ class Split:
     pairs: tuple[Pair, ...]
 
     @property
-    def separation(self) -> float:
-        """The smallest separation of the distinct pairs; if there is none, the largest of all."""
-        distinct = [pair.extended for pair in self.pairs if pair.distinct]
-        return min(distinct) if distinct else self.pairs[0].extended
+    def pair(self) -> Pair:
+        """The distinct pair that leaves most open; if there is none, the most separate of all."""
+        distinct = [pair for pair in self.pairs if pair.distinct]
+        return max(distinct, key=lambda pair: pair.weight, default=self.pairs[0])
 
     @property
-    def rank(self) -> tuple[int, float]:
-        """The number of distinct pairs, then the sum of the squared separations."""
-        squares = sum(pair.extended**2 for pair in self.pairs)
-        return sum(pair.distinct for pair in self.pairs), float(squares)
+    def rank(self) -> tuple[float, float]:
+        """The weight of the distinct pairs, then the weighted sum of the squared separations."""
+        squares = sum(pair.weight * pair.extended**2 for pair in self.pairs)
+        return sum(pair.weight for pair in self.pairs if pair.distinct), float(squares)
 
 
 def split(
@@ -81,10 +83,11 @@ def split(
     if len(rivals.names) < 2:
         return []
     separations = rivals.separations(present.information)
+    weights = dict(zip(causes[number].members, causes[number].weights, strict=True))
     splits = []
     for manoeuvre, with_manoeuvre in extended.items():
         pairs = [
-            Pair(*names, separations[names], separation)
+            Pair(*names, separations[names], separation, weights[names[0]] * weights[names[1]])
             for names, separation in rivals.separations(with_manoeuvre.information).items()
         ]
         splits.append(Split(manoeuvre, tuple(sorted(pairs, key=lambda pair: -pair.extended))))

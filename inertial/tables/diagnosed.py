@@ -70,7 +70,7 @@ CHANNEL_REPAIRS = Table(
 
 CANDIDATES = Table(
     "candidates",
-    1,
+    2,
     (
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
@@ -88,6 +88,13 @@ CANDIDATES = Table(
             "1",
             "reduction of chi-squared of held-out manoeuvres against the joint model; none: not"
             " cross-validated",
+        ),
+        optional(
+            "drop_without_walk",
+            DOUBLE,
+            "1",
+            "the same against the joint model without its random walk of the biases; none: it has"
+            " none",
         ),
         optional("snr_squared", DOUBLE, "1", "what exactly known effects would bring"),
         optional("folds", INTEGER, "1", "number of groups of manoeuvres held out"),

@@ -128,6 +128,9 @@ SAME_RATE = _(
 )
 
 SPLIT = _(" To distinguish them, {manoeuvre}: expected separation {sigmas} sigma.")
+SPLIT_PAIR = _(
+    " To distinguish {first} from {second}, {manoeuvre}: expected separation {sigmas} sigma."
+)
 SPLIT_NONE = _(" No further manoeuvre would distinguish them.")
 SPLIT_TOO_WEAK = _(
     " No further manoeuvre would distinguish them: the best of those that were tried, {manoeuvre}, "
@@ -246,8 +249,14 @@ def split_sentence(split: Splitting | None) -> str:
         return ""
     if not split.distinguishes and split.separation < MIN_SEPARATION:
         return SPLIT_NONE
-    template = SPLIT if split.distinguishes else SPLIT_TOO_WEAK
-    return template.format(manoeuvre=split.manoeuvre, sigmas=significant(split.separation, 2))
+    first, second = (in_words(name) for name in split.pair)
+    template = SPLIT if split.members == 2 else SPLIT_PAIR
+    return (template if split.distinguishes else SPLIT_TOO_WEAK).format(
+        first=first,
+        second=second,
+        manoeuvre=split.manoeuvre,
+        sigmas=significant(split.separation, 2),
+    )
 
 
 def same_rate_sentence(now: float, then: float) -> str:

@@ -123,10 +123,15 @@ MIN_MIMICRY = 0.9  # share of a signal that another effect can mimic, to compare
 
 @dataclass(frozen=True)
 class Splitting:
-    """The manoeuvre that distinguishes best, and its signal-to-noise ratio."""
+    """The manoeuvre that distinguishes best; which pair, and its signal-to-noise ratio.
+
+    `members`: of the class, how many are compared.
+    """
 
     manoeuvre: str
+    pair: tuple[str, str]
     separation: float
+    members: int = 2
 
     @property
     def distinguishes(self) -> bool:
@@ -160,7 +165,11 @@ class ExtendedCampaigns:
             extended[manoeuvre] = equations.total
             present = self._selection.evidence.total.of(equations.names)
         best = next(iter(split(present, extended, searched, causes, number)), None)
-        return Splitting(best.manoeuvre, best.separation) if best else None
+        if best is None:
+            return None
+        pair, members = best.pair, {name for p in best.pairs for name in (p.first, p.second)}
+        names = sorted((pair.first, pair.second), key=causes[number].members.index)
+        return Splitting(best.manoeuvre, (names[0], names[1]), pair.extended, len(members))
 
     def mimicry(self, effect: str, other: str, manoeuvre: str) -> tuple[float, float] | None:
         """Which share of an effect another can mimic, without and with a manoeuvre.

@@ -64,6 +64,11 @@ REPLACED_WALK = _(
     "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {drop} "
     "against the joint fit, with its random walk if it has one{left}."
 )
+BESIDE_WALK = _(
+    "The result of the {sensors} includes {effects}: χ² of held-out manoeuvres falls by {whole} "
+    "against the joint fit without its random walk, of {expected} to be expected; a random walk of "
+    "the biases alone would explain all but {drop} of it{left}."
+)
 LITTLE = _(
     " That is {share} % of what it should be: the held-out manoeuvres hardly bear it out. Compare "
     "the sigmas with those of the joint fit."
@@ -170,15 +175,18 @@ def decided(
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
         same = frozenset(one["method"] for one in alike if not _turns(effects_of(one)))
         return Decision(best["method"], reason + others, freed, same)
+    whole = best["drop_without_walk"]
+    beside_walk = whole is not None and best["drop"] < whole
     replaced = REPLACED if best["drop"] <= best["snr_squared"] else REPLACED_WALK
-    reason = replaced.format(
+    reason = (BESIDE_WALK if beside_walk else replaced).format(
         sensors=sensors,
         effects=names,
+        whole=significant(whole, 5),
         drop=significant(best["drop"]),
-        expected=significant(best["snr_squared"]),
+        expected=significant(best["snr_squared"], 5 if beside_walk else 4),
         left=WIDENED.format(ratio=significant(widened, 2)) if widened > 1 else NOTHING_LEFT,
     )
-    if best["drop"] < MIN_SHARE * best["snr_squared"]:
+    if not beside_walk and best["drop"] < MIN_SHARE * best["snr_squared"]:
         reason += LITTLE.format(share=significant(100 * best["drop"] / best["snr_squared"], 2))
     if share := _joint_share(best):
         size, percent = best["snr_squared"], significant(100 * share, 2)

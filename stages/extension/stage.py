@@ -376,6 +376,9 @@ class Extension:
                     **own,
                     "probability": candidate.probability,
                     "drop": validated.drop_against_walk if validated else None,
+                    "drop_without_walk": validated.drop
+                    if validated and validated.walk_drop
+                    else None,
                     "snr_squared": validated.expected_drop if validated else None,
                     "folds": len(validated.folds) if validated else None,
                     "counted": len(validated.counted) if validated else None,

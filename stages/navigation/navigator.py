@@ -39,11 +39,16 @@ NO_NOISE = _("its noise is not known")
 
 @dataclass(frozen=True)
 class Mean:
-    """Mean readings at rest, (6,), forces first; time, s, and temperature, K, of their middle."""
+    """Mean readings at rest, (6,), forces first; time, s, and temperature, K, of their middle.
+
+    `begins`: s, when what they stand for is navigated: after the alignment, or from the beginning
+    of a rest that is shorter.
+    """
 
     recorded: Array
     time: float
     temperature: float
+    begins: float
 
 
 @dataclass(frozen=True)
@@ -135,7 +140,8 @@ class Navigator:
         for horizon in HORIZONS:
             after = round(horizon / window.step)
             if after <= samples:
-                self._errors(window.part, horizon, stretch, runs, after)
+                own = _lasting(stretch, at_rest, horizon)
+                self._errors(window.part, horizon, own, runs, after)
         if samples * window.step > self._longest:
             self._longest = samples * window.step
             self._course(window.part, stretch, runs, samples)
@@ -191,7 +197,7 @@ class Navigator:
         after: int,
     ) -> None:
         self._navigated.add((part.label, horizon))
-        expected = corridor(self.data, self.known, replace(stretch, step=horizon), [1])
+        expected = corridor(self.data, self.known, stretch, [1])
         self._add(part, "rest", horizon, stretch.azimuth, expected, runs, after)
 
     def _add(
@@ -270,7 +276,8 @@ class Navigator:
                 if (part.label, horizon) in self._navigated:
                     continue
                 first = len(self._rows)
-                expected = corridor(self.data, self.known, replace(stretch, step=horizon), [1])
+                own = _lasting(stretch, mean, horizon)
+                expected = corridor(self.data, self.known, own, [1])
                 self._add(part, "rest", horizon, azimuth, expected, {}, 0)
                 reason = reasons.get(part.label, _("it is not recorded for so long"))
                 for row in self._rows[first:]:
@@ -289,7 +296,9 @@ class Navigator:
             there = np.isfinite(values[:, :6]).all(axis=1) & (counts > 0)
             if there.any():
                 mean = np.average(values[there], axis=0, weights=counts[there])
-                means[Part(str(name), str(phase))] = Mean(mean[:6], mean[6], mean[7])
+                begins = (rows["time"] - rows["seconds"] / 2).min()
+                part = Part(str(name), str(phase))
+                means[part] = Mean(mean[:6], mean[6], mean[7], float(begins))
         return means
 
     def _without_noise(self, m: Manoeuvre) -> str:
@@ -339,14 +348,20 @@ class Navigator:
         )
 
 
+def _lasting(stretch: NavigatedStretch, mean: Mean, seconds: float) -> NavigatedStretch:
+    """A rest in one step of some seconds from its beginning on, and none before it."""
+    return replace(stretch, step=seconds, time=np.array([mean.begins + seconds / 2]))
+
+
 def _mean(each: Readings) -> Mean:
     at_rest = slice(0, max(each.aligned, 1))
     if not len(each.recorded):
-        return Mean(np.full(6, np.nan), np.nan, np.nan)
+        return Mean(np.full(6, np.nan), np.nan, np.nan, np.nan)
     values: list[Any] = [
         part[at_rest].mean(axis=0) for part in (each.recorded, each.time, each.temperature)
     ]
-    return Mean(values[0], float(values[1]), float(values[2]))
+    ends = float(each.time[at_rest][-1])
+    return Mean(values[0], float(values[1]), float(values[2]), ends)
 
 
 def _corrected(known: Uncertain, mean: Mean) -> tuple[Array, Array]:

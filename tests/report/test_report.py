@@ -270,6 +270,39 @@ def test_effects_of_the_result_stand_below_its_parameters() -> None:
     assert cells[3] == "°/h/g"
 
 
+def test_effects_whose_constants_come_last_are_listed_whole() -> None:
+    """All bias terms first and the constants of both effects after them, as the result has them."""
+    made = synthetic.brief()
+    one = made["result"].query("sensor == 'gyro'").iloc[:1]
+
+    def row(effect: str, name: str, sigma: float, unit: str, frame: str) -> pd.DataFrame:
+        name = f"{effect}.{name}"
+        own = {"id": f"diagnosis/gyroscope/{name}", "effect": effect, "parameter": name}
+        return one.assign(**own, value=41.0, sigma=sigma, unit=unit, frame=frame)
+
+    made["result"] = pd.concat(
+        [
+            made["result"],
+            *(row("gyro_warm_up", f"b_{axis}", 1e-4, "rad/s", "body") for axis in "xyz"),
+            row("gyro_temperature", "bias_x_1", 1e-4, "rad/s/K", "body"),
+            row("gyro_warm_up", "tau", np.nan, "s", ""),
+            row("gyro_temperature", "T0", np.nan, "K", ""),
+        ],
+        ignore_index=True,
+    )
+    tables = [part for part in parameters_of(made) if isinstance(part, Table)]
+    (own,) = (
+        part for part in tables if "value and sigma" in part.caption and "Gyr" in part.caption
+    )
+    last = [row.cells[-1].rpartition("/")[2] for row in own.rows[-8:]]
+    assert [name for name in last if "." in name] == [
+        *(f"gyro_warm_up.{name}" for name in ("b_x", "b_y", "b_z", "tau")),
+        *(f"gyro_temperature.{name}" for name in ("bias_x_1", "T0")),
+    ]
+    heads = [row.cells[0] for row in own.rows if "frame" in row.cells[0]]
+    assert heads[-1].endswith("frame: case")  # constants have none
+
+
 def test_a_model_that_does_not_fit_says_so_plainly() -> None:
     parts = parameters_of(synthetic.brief())
     said = words_of(parts)

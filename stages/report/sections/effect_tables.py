@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
+from inertial.campaign.records import grouped
 from inertial.sensors import SINGULAR
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
@@ -133,10 +134,7 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
 
 def _shifts(each: Sequence[Shift]) -> Iterator[outline.Row]:
     cells: list[tuple[str, str]] = []
-    kinds = {
-        kind: list(own)
-        for kind, own in groupby(each, lambda shift: kind_of(shift.extended["parameter"]))
-    }
+    kinds = grouped(each, lambda shift: kind_of(shift.extended["parameter"]))
     for own in kinds.values():
         gap = {"value": None, "sigma": None}
         both = [r for shift in own for r in (shift.extended, shift.joint or shift.extended | gap)]

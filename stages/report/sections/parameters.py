@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inertial.campaign.records import labels, omissions
+from inertial.campaign.records import grouped, labels, omissions
 from inertial.tables import AXES
 from inertial.text import units
 from inertial.text.cause_names import in_words
@@ -252,13 +252,17 @@ def _rows(
     kind_in: Callable[[Record], str] = lambda row: kind_of(row["parameter"]),
 ) -> Iterator[Row]:
     """One row per parameter below the name of its kind, digits under digits."""
-    groups = {kind: list(own) for kind, own in groupby(parameters, kind_in)}
+    groups = grouped(parameters, kind_in)
     cells = [line for group in groups.values() for line in written(group)]
     lines = iter(zip(*map(aligned, zip(*cells, strict=True)), strict=True))
     for kind, group in groups.items():
         name = KIND.get(kind, capital(shortened(kind, 60)))
-        frames = _(" and ").join(dict.fromkeys(term(row["frame"]) for row in group))
-        yield head(_("{name}; frame: {frames}", name=name, frames=shortened(frames, 60)))
+        frames = listed(list(dict.fromkeys(term(row["frame"]) for row in group if row["frame"])))
+        yield head(
+            _("{name}; frame: {frames}", name=name, frames=shortened(frames, 60))
+            if frames
+            else name
+        )
         for row, (value, sigma) in zip(group, lines, strict=False):
             yield table_row(
                 symbol(row["parameter"]),
