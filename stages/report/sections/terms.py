@@ -79,7 +79,11 @@ TERMS: tuple[tuple[str, str], ...] = (  # each with what it means
     ),
     (
         "SNR",
-        _("Signal-to-noise ratio of an effect: its size over its σ, all else fitted."),
+        _(
+            "Signal-to-noise ratio of an effect with all its axes together, √(value′ covariance⁻¹ "
+            "value), as it was detected in the readings; the size shown is that of its largest "
+            "axis in the final result."
+        ),
     ),
 )
 DRAWN = "drawn"  # the field of a figure that is no text
