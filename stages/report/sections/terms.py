@@ -23,7 +23,10 @@ TERMS: tuple[tuple[str, str], ...] = (  # each with what it means
     ),
     (
         _("class"),
-        _("Effects that these data cannot distinguish: each explains the residuals about as well."),
+        _(
+            "Effects that these data cannot distinguish: the most probable ones, with 95 % of the "
+            "probability together, and those whose signature is nearly that of the first."
+        ),
     ),
     (
         _("detection limit"),
