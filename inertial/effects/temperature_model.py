@@ -38,20 +38,27 @@ TYPICAL = {
     ("gyro", "bias"): ("rad/s", 5e-3 * DEGREE),
 }
 RELATIVE = ("1", 1e-4)  # of scale factors and cross terms
-POWER = _("coefficient of {function} of power {power} of T − T0")
+IN_WORDS = {
+    "bias": _("bias {axes}"),
+    "scale": _("scale error {axes}"),
+    "cross": _("cross-axis term {axes}"),
+}
 MEANINGS = {
-    BEND: _("change of the slope of {function} at its knot"),
+    1: _("change of the {function} per kelvin"),
+    2: _("of the {function}, times (T − T0)²"),
+    3: _("of the {function}, times (T − T0)³"),
+    BEND: _("change of the slope of the {function} at its knot"),
     SHIFT: _("the same times what its knot is uncertain by"),
-    BELOW: _("change of the slope of {function} at the lower of the knots that it may have"),
-    ABOVE: _("change of the slope of {function} at the upper of the knots that it may have"),
+    BELOW: _("change of the slope of the {function} at the lower of the knots that it may have"),
+    ABOVE: _("change of the slope of the {function} at the upper of the knots that it may have"),
 }
 KNOTS = {
-    "": _("knot of {function}"),
-    "_below": _("lower of the knots that {function} may have"),
-    "_above": _("upper of the knots that {function} may have"),
+    "": _("knot of the {function}"),
+    "_below": _("lower of the knots that the {function} may have"),
+    "_above": _("upper of the knots that the {function} may have"),
 }
-OF_DEGREE = _("degree of the likeliest shape of {function}; 1: a line with a knot")
-LIKELIEST = _("probability of the likeliest shape of {function}")
+OF_DEGREE = _("degree of the likeliest shape of the {function}; 1: a line with a knot")
+LIKELIEST = _("probability of the likeliest shape of the {function}")
 LAG = "lag"  # constant: of the sensors behind the thermometer
 POWERS = {1: "/K", 2: "/K²", 3: "/K³", BEND: "/K", SHIFT: "", BELOW: "/K", ABOVE: "/K"}
 
@@ -72,6 +79,12 @@ class Piece:
     def knot(self) -> str:
         """The key of its knot: the function, or the function and the side."""
         return self.function + SIDES.get(self.power, "")
+
+
+def _in_words(function: str) -> str:
+    """The bias x for bias_x."""
+    kind, axes = PARTS[function]
+    return IN_WORDS[kind].format(axes=axes)
 
 
 def polynomials(orders: Mapping[str, int]) -> tuple[Piece, ...]:
@@ -120,9 +133,7 @@ class TemperatureModel(Effect):
 
     def _parameter(self, piece: Piece) -> Parameter:
         unit, size = TYPICAL.get((self.sensor, PARTS[piece.function].kind), RELATIVE)
-        meaning = MEANINGS.get(piece.power, POWER).format(
-            function=piece.function, power=piece.power
-        )
+        meaning = MEANINGS[piece.power].format(function=_in_words(piece.function))
         return Parameter(
             piece.name,
             f"{unit}{POWERS[piece.power]}",
@@ -152,7 +163,12 @@ class TemperatureModel(Effect):
 
     def constants(self, motion: Motion) -> Sequence[Constant]:
         knots = [
-            Constant(knot_name(f + side), "K", KNOTS[side].format(function=f), self.knots[f + side])
+            Constant(
+                knot_name(f + side),
+                "K",
+                KNOTS[side].format(function=_in_words(f)),
+                self.knots[f + side],
+            )
             for f in FUNCTIONS
             for side in SIDES.values()
             if f + side in self.knots
@@ -166,9 +182,10 @@ class TemperatureModel(Effect):
         shapes = [
             constant
             for f, (degree, probability) in self.likeliest.items()
+            for words in (_in_words(f),)
             for constant in (
-                Constant(degree_name(f), "1", OF_DEGREE.format(function=f), degree),
-                Constant(probability_name(f), "1", LIKELIEST.format(function=f), probability),
+                Constant(degree_name(f), "1", OF_DEGREE.format(function=words), degree),
+                Constant(probability_name(f), "1", LIKELIEST.format(function=words), probability),
             )
         ]
         return [

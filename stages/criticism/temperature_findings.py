@@ -214,10 +214,10 @@ def _parameters(dependence: TemperatureDependence) -> Iterator[Estimated]:
         values, sigmas = model.curve.coefficients(model.described_degree, dependence.middle)
         for power, (value, sigma) in enumerate(zip(values, sigmas, strict=True), 1):
             powers = unit if power == 1 else f"{unit}{'²³'[power - 2]}"
-            meaning = _(
-                "coefficient of {axis} of power {power} of the temperature less T0",
-                axis=axis,
-                power=power,
+            meaning = (
+                _("change of {axis} per kelvin", axis=axis)
+                if power == 1
+                else _("of {axis}, times (T − T0)^{power}", axis=axis, power=power)
             )
             yield Estimated(f"k{power}_{axis}", powers, meaning, float(value), float(sigma))
 

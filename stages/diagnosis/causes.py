@@ -25,8 +25,11 @@ from inertial.campaign.hypotheses import (
 from inertial.campaign.records import Performed, Row
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
+from inertial.text.enumeration import listed
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
+from inertial.text.parameters import sign_of
+from inertial.text.units import quantity
 from stages.diagnosis.decision import MAX_MOVE, UNEXPLAINED
 from stages.diagnosis.gravity_by_latitude import Gravity
 from stages.diagnosis.moved_parameters import (
@@ -113,6 +116,7 @@ class Cause:
     turns: Mapping[str, float] = field(default_factory=dict)
     spoilt: Mapping[str, float] = field(default_factory=dict)
     restored: str | None = None
+    most_moved: str = ""
 
     def of(self, sensor: str) -> Cause:
         """What it is for the result of one sensor, with its consequences there."""
@@ -246,7 +250,7 @@ class Cause:
             "held_out_drop": self.held_out_drop,
             "moves": self.moves,
             "condition": self.condition,
-            "consequence": main.row["consequence"],
+            "consequence": self.most_moved + main.row["consequence"],
             "done": self.done,
             "action": main.row["action"],
         }
@@ -305,10 +309,11 @@ class Evidence:
             done = ONLY_MODELLED.format(sensors=_(" and ").join(PLURAL[s] for s in modelled))
         spoilt = self._by_gravity_of_wrong_place(members)
         sensors = tuple(dict.fromkeys([*(result.sensor for result in own), *spoilt]))
-        gain, turns = _gain(main, drop), {} if freed else _turns(main, own)
+        gain, turns = _gain(main, drop, own), {} if freed else _turns(main, own)
         given = (members, sensors, cure, done, moves, drop, gain, modelled, freed, turns, spoilt)
         gravity = self.gravity.get(main.id)
-        return Cause(*given, None if gravity is None else gravity.condition)
+        condition = None if gravity is None else gravity.condition
+        return Cause(*given, condition, _most_moved(main, moves, own))
 
     def _by_gravity_of_wrong_place(self, members: Sequence[ExplainedFindings]) -> dict[str, float]:
         """By how many sigma the gravity of a latitude that is wrong moves the accelerometers."""
@@ -446,7 +451,8 @@ def _turns(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
     return {r.sensor: move for r in others for move in moved_by_turning(own, [r])}
 
 
-def _gain(cause: Hypothesis, drop: float | None) -> str | None:
+def _gain(cause: Hypothesis, drop: float | None, own: Sequence[SensorResult]) -> str | None:
+    """What it gains, with the other effects of that result."""
     repair = cause.repair
     if repair is not None and repair["fitting_after"] != repair["fitting_before"]:
         return _(
@@ -455,9 +461,31 @@ def _gain(cause: Hypothesis, drop: float | None) -> str | None:
             before=repair["fitting_before"],
             all=repair["observations"],
         )
-    if drop is not None:
-        return _(
-            "χ² of held-out manoeuvres falls by {drop}.",
-            drop=significant(drop),
-        )
-    return None
+    having = [result for result in own if result.models(cause.causes) and result.drop == drop]
+    if drop is None or not having:
+        return None
+    rows = having[0].chosen.rows
+    others = dict.fromkeys(row["effect"] for row in rows if row["effect"])
+    together = [in_words(name) for name in others if name not in cause.causes]
+    return _(
+        "χ² of the held-out manoeuvres of the {sensors} falls by {drop}{together}.",
+        sensors=PLURAL[having[0].sensor],
+        drop=significant(drop),
+        together=_(", together with {others}", others=listed(together)) if together else "",
+    )
+
+
+def _most_moved(cause: Hypothesis, moves: float | None, own: Sequence[SensorResult]) -> str:
+    """Which parameter it shifts by `moves` of its sigma, as a sentence; "" where none is known."""
+    each = ((result.most_moved(cause.causes), result) for result in own)
+    for most, result in each:
+        if most is not None and most.sigmas == moves and moves > MAX_HARMLESS_MOVE:
+            shown = quantity(most.parameter, most.unit).shown
+            return _(
+                "Most of all {parameter} of the {sensors}, by {by} {unit}. ",
+                parameter=sign_of(most.parameter),
+                sensors=PLURAL[result.sensor],
+                by=significant(shown.of(most.by), 2),
+                unit=shown.name,
+            )
+    return ""

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -27,6 +28,15 @@ TWELVE = frozenset(linear_names())
 BY_FREE_POSITIONS = _(
     "No attitude is known, so the result is that of static positions of unknown attitude."
 )
+
+
+class Moved(NamedTuple):
+    """A parameter that an effect shifts: by how many of its sigma, its name, by how much."""
+
+    sigmas: float
+    parameter: str
+    by: float
+    unit: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,19 +125,24 @@ class SensorResult:
         return not self.effects.keys().isdisjoint(effects)
 
     def moves(self, effects: Collection[str]) -> float | None:
-        """The largest shift of one of the twelve parameters by one of these effects, in sigma.
+        """The largest shift of one of the twelve parameters by one of these effects, in sigma."""
+        most = self.most_moved(effects)
+        return most and most.sigmas
+
+    def most_moved(self, effects: Collection[str]) -> Moved | None:
+        """The parameter of the twelve that one of these effects shifts by most of its sigma.
 
         In the sigma of the result; None where no candidate has such an effect, or only one whose
         size is chance: gyros know a shift in the fixture to a degree that is one of arc seconds.
         """
-        sigma = {row["parameter"]: row["sigma"] for row in self.chosen.rows}
-        shifts = [
-            abs(by) / sigma[name]
+        rows = {row["parameter"]: row for row in self.chosen.rows if row["sigma"]}
+        shifts = (
+            Moved(abs(by) / rows[name]["sigma"], name, abs(by), rows[name]["unit"])
             for effect, method in self.effects.items()
             if effect in effects
             for name, by in shift(self.candidates[method], effect).items()
-            if sigma.get(name)
-        ]
+            if name in rows
+        )
         return max(shifts, default=None)
 
 

@@ -8,6 +8,7 @@ from functools import partial
 from math import degrees
 
 from inertial.campaign.hypotheses import MODEL
+from inertial.effects import KNOWN
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed, significant
 from inertial.text.parameters import CROSS, SCALE, sign_of
@@ -36,11 +37,12 @@ HEADINGS = {"gyro": _("Gyros"), "accel": _("Accelerometers")}
 LIMITS = {
     REPAIRED: _("set right"),
     MODELLED: _("in the model"),
-    CURVE: _("as a curve of the temperature"),
-    MASKED: _("masked"),
+    CURVE: _("corrected by a curve of the temperature: use it"),
+    MASKED: _("masked: its data were not used"),
     INTERPOLATED: _("interpolated"),
-    LEFT_OUT: _("left out"),
+    LEFT_OUT: _("left out: its manoeuvres were not used"),
 }
+FURTHER_TERM = _("corrected by a further term: use it")  # of an effect that readings contain
 IF_SET_RIGHT = _("{sensors}: {causes}. Set right; the result is valid on condition: {conditions}.")
 IF_ASSUMED = _("{sensors}: {causes}. The result is valid on condition: {conditions}.")
 # What is known to no better is said of a usable result.
@@ -114,7 +116,7 @@ def verdict(
         return Verdict(ON_CONDITION, sentence + _others(own, unconfirmed), " ".join(conditions))
     if own:
         sentence = _(
-            "{sensors}: {causes}. Usable within these limits.",
+            "{sensors}: usable, with these departures from the ideal: {causes}.",
             sensors=sensors,
             causes=_names(own, partial(_limit, result=result)),
         )
@@ -173,10 +175,14 @@ def _limit(cause: Cause, result: SensorResult | None = None) -> str:
     hold it: they do where they are as large as the manoeuvres differ.
     """
     if cause.cure != NONE:
-        mixed = result is not None and result.decision.joint_share and cause.cure == MODELLED
-        if result is not None and mixed and result.models(cause.main.causes):
-            return _("in the model; the sigmas include the result without it")
-        return LIMITS[cause.cure]
+        limit = LIMITS[cause.cure]
+        if cause.cure != MODELLED or result is None or not result.models(cause.main.causes):
+            return limit
+        if any(KNOWN[name].terms for name in cause.main.causes & KNOWN.keys()):
+            limit = FURTHER_TERM
+        if result.decision.joint_share:
+            return _("{limit}; the sigmas include the result without it", limit=limit)
+        return limit
     if cause.moves is None:  # of an effect, its scatter is; a fault of the recording is in nothing
         if cause.main.stage == MODEL:
             return _("included in the sigmas")

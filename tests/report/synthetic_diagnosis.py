@@ -36,7 +36,8 @@ CURES: dict[str, dict[str, Any]] = {
     },
 }
 SENTENCES = {
-    "gyro": "Gyros: gyro g-sensitivity (in the model). Usable within these limits.",
+    "gyro": "Gyros: usable, with these departures from the ideal: gyro g-sensitivity "
+    "(corrected by a further term: use it).",
     "accel": "Accelerometers: usable. "
     "No fault was detected; the report states the detection limits.",
 }

@@ -104,7 +104,7 @@ def test_a_class_names_its_members_in_title_and_certainty() -> None:
     assert "accelerometer quadratic term, lever arm (SNR 12" in answers(card)["How sure"]
     made["cause_members"]["probability"] = [0.75, 0.25]
     shares = answers(cards(made)["criticism/accel_quadratic"])["How sure"]
-    assert "accelerometer quadratic term (0.75), lever arm (0.25)" in shares
+    assert "quadratic term with probability 75 %, lever arm with probability 25 %" in shares
 
 
 def test_the_worst_comes_first_and_what_is_harmless_last() -> None:
@@ -139,7 +139,7 @@ def test_the_text_says_what_the_cards_say() -> None:
     ("given", "word"),
     [
         (("usable", "usable"), "Usable"),
-        (("usable", "usable_within_limits"), "Usable within limits"),
+        (("usable", "usable_within_limits"), "Usable, with departures from the ideal"),
         (("on_condition", "usable_within_limits"), "Usable on condition"),
         (("on_condition", "not_usable"), "Not usable"),
     ],

@@ -48,10 +48,12 @@ from stages.report.results import (
 from stages.report.sections import basis, unmodelled_effects
 from stages.report.sections.certified_values import (
     NOT_USABLE,
+    added_to_readings,
     conformity,
     earlier_values,
     frame_of,
     further_terms,
+    of_classes,
     values,
 )
 from stages.report.sections.comparisons import changed_in_words
@@ -147,7 +149,8 @@ def parts(tables: Tables) -> Iterator[Part]:
         own = [result for result in shown if result.mount == mount]
         yield values(own, mount, earlier)
         if effects := [row for result in own for row in result.effects]:
-            yield further_terms(effects)
+            yield further_terms(effects, of_classes(tables))
+            yield from added_to_readings(effects)
     yield from _not_for_use(tables)
     yield from conformity(tables)
     yield Sentences(tuple(_statements(tables, earlier)))

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from inertial.campaign.records import grouped
+from inertial.effects import KNOWN
+from inertial.physics.effect import Term
 from inertial.sensors import PLURAL, SINGULAR
 from inertial.tables import BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
+from inertial.text.parameters import sign_of
 from inertial.text.statements import RULES, STATEMENTS
 from inertial.text.typography import capital
 from inertial.text.units import COVERAGE_FACTOR, Unit
 from stages.report.outline import (
     Column,
+    Equation,
     Heading,
     Paragraph,
     Part,
@@ -26,6 +31,7 @@ from stages.report.outline import (
     table_row,
 )
 from stages.report.results import KIND_IN_A_SENTENCE, Estimate, kind_of, quantity_of, symbol
+from stages.report.sections.findings import members
 from stages.report.tables import Record, Tables, once
 from stages.report.words import term
 
@@ -106,14 +112,29 @@ def _expanded(row: Record, unit: Unit) -> float | None:
     return None if row["sigma"] is None else unit.of(COVERAGE_FACTOR * row["sigma"])
 
 
-def further_terms(rows: Sequence[Record]) -> Table:
-    """The parameters of effects, by effect and, where both show it, by sensor."""
+def of_classes(tables: Tables) -> Mapping[str, int]:
+    """The effects that are a member of a class, each with how many members that has."""
+    classes = [members(tables, row) for row in tables.rows("causes")]
+    return {each["member"]: len(own) for own in classes for each in own}
+
+
+def further_terms(rows: Sequence[Record], classes: Mapping[str, int]) -> Table:
+    """The parameters of effects, by effect and, where both show it, by sensor.
+
+    `classes`: see `of_classes`.
+    """
     lines: list[Row] = []
     by_place = grouped(rows, lambda row: (row["effect"], row["sensor"]))
     for (effect, sensor), own in by_place.items():
         heading = capital(in_words(effect))
         if sum(other == effect for other, _sensor in by_place) > 1:
             heading = _("{effect}, from the {sensors}", effect=heading, sensors=PLURAL[sensor])
+        if count := classes.get(effect):
+            heading = _(
+                "{effect}: one of {count} effects that these data do not distinguish (section 2)",
+                effect=heading,
+                count=count,
+            )
         lines.append(head(heading))
         for row in own:
             if row["value"] is not None:
@@ -139,6 +160,51 @@ def further_terms(rows: Sequence[Record]) -> Table:
         if any(symbol(row["parameter"]) == "T0" for row in rows)
         else "",
     )
+
+
+SYMBOLS = {  # of the factors of effects
+    r"f_\w": _("f: specific force, m/s²"),
+    r"ω_\w": _("ω: angular rate, rad/s"),
+    r"t": _("t: time, s, from the first sample"),
+    r"T": _("T: temperature of the IMU, K"),
+    r"[tT] >": _("(… > …): 1 where that is true, else 0"),
+}
+
+
+def added_to_readings(rows: Sequence[Record]) -> Iterator[Equation]:
+    """What each effect of a result adds to the readings, an equation for each.
+
+    An effect of the table, or of the site, adds nothing that is to be taken off.
+    """
+    for (effect, _sensor), own in grouped(rows, lambda row: (row["effect"], row["sensor"])).items():
+        names = {row["parameter"].rpartition(".")[2] for row in own if row["value"] is not None}
+        sums: dict[str, list[str]] = {}
+        for each in KNOWN[effect].terms if effect in KNOWN else ():
+            if each.parameter in names:
+                sums.setdefault(each.channel[-1], []).append(_term(each))
+        if not sums:
+            continue
+        by_axis = {axis: " + ".join(terms) for axis, terms in sums.items()}
+        alike = {re.sub(rf"_{axis}\b", "_i", text) for axis, text in by_axis.items()}
+        if len(by_axis) > 1 and len(alike) == 1:
+            lines, axes = [f"+ {alike.pop()}"], [f"i = {', '.join(by_axis)}"]
+        else:
+            lines, axes = [f"{axis}: + {text}" for axis, text in by_axis.items()], []
+        text = "; ".join(lines)
+        used = [says for sign, says in SYMBOLS.items() if re.search(rf"\b{sign}", text)]
+        yield Equation(text, "; ".join([capital(in_words(effect)), *axes, *used]) + ".")
+
+
+def _term(each: Term) -> str:
+    """A parameter times its factor as it is written, k_x · f_x² for k_x * f_x * f_x."""
+    factors: dict[str, int] = {}
+    for factor in each.factor.split(" * "):
+        factors[factor] = factors.get(factor, 0) + 1
+    written = [f + {1: "", 2: "²", 3: "³"}[count] for f, count in factors.items()]
+    factor = re.sub(r"abs\((\w+)\)", r"|\1|", " · ".join(written)).replace("-", "−")
+    factor = re.sub(r"\w+", lambda name: sign_of(re.sub("^w_", "ω_", name[0])), factor)
+    sign = sign_of(each.parameter)
+    return f"({sign}) · {factor}" if " " in sign else f"{sign} · {factor}"
 
 
 # ---- The last calibration before this one.

@@ -72,7 +72,10 @@ def parts(tables: Tables) -> Iterator[Part]:
             "along axis j."
         ),
     )
-    yield Equation(_("truth = M⁻¹ · (reading − bias)"), _("the compensation of a reading."))
+    correction = _("truth = M⁻¹ · (reading − bias)")
+    if any(result.effects for result in final_results(tables)):
+        correction = _("truth = M⁻¹ · (reading − bias − further terms)")
+    yield Equation(correction, _("the compensation of a reading."))
     if not any(estimate.parameters for estimate in estimates(tables)):
         yield Paragraph(_("None: no method estimated a parameter."), "poor")
         return
@@ -287,8 +290,14 @@ def _matrices(estimate: Estimate) -> Matrices | None:
     except (KeyError, np.linalg.LinAlgError):
         return None
     unit = known["bias_x"]["unit"]
+    caption = _("{name}: ready for use.", name=estimate.name)
+    if estimate.effects:
+        caption = _(
+            "{name}: ready for use, together with the further terms of section 1.",
+            name=estimate.name,
+        )
     return Matrices(
-        _("{name}: ready for use.", name=estimate.name),
+        caption,
         (
             Matrix("M", _entries(matrix, 7)),
             Matrix("M⁻¹", _entries(inverse, 7)),

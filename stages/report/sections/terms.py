@@ -23,7 +23,10 @@ TERMS: tuple[tuple[str, str], ...] = (  # each with what it means
     ),
     (
         _("class"),
-        _("Effects that these data cannot distinguish: each explains the residuals about as well."),
+        _(
+            "Effects that these data cannot distinguish: the most probable ones, with 95 % of the "
+            "probability together, and those whose signature is nearly that of the first."
+        ),
     ),
     (
         _("detection limit"),
@@ -79,7 +82,11 @@ TERMS: tuple[tuple[str, str], ...] = (  # each with what it means
     ),
     (
         "SNR",
-        _("Signal-to-noise ratio of an effect: its size over its σ, all else fitted."),
+        _(
+            "Signal-to-noise ratio of an effect with all its axes together, √(value′ covariance⁻¹ "
+            "value), as it was detected in the readings; the size shown is that of its largest "
+            "axis in the final result."
+        ),
     ),
 )
 DRAWN = "drawn"  # the field of a figure that is no text

@@ -12,7 +12,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import (
     fixed,
     p_is,
-    probability,
     shortened,
     significant,
     whole,
@@ -56,11 +55,11 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         ),
     ),
     "usable_within_limits": (
-        _("usable within limits"),
+        _("usable, with departures from the ideal"),
         "fair",
         _(
             "Departures from the ideal were found, or a parameter is known coarsely. The sentence "
-            "of each sensor says what, and what became of it: its result holds within these limits."
+            "of each sensor says what, and what became of it."
         ),
     ),
     "usable": (
@@ -162,8 +161,13 @@ def _sure(tables: Tables, row: Record) -> str:
     shares = [one["probability"] is not None for one in own]
     if own:
         each = [
-            in_words(one["member"])
-            + (f" ({probability(one['probability'])})" if all(shares) else "")
+            _(
+                "{member} with probability {percent} %",
+                member=in_words(one["member"]),
+                percent=significant(100 * one["probability"], 2),
+            )
+            if all(shares)
+            else in_words(one["member"])
             for one in own
         ]
         words += ": " + ", ".join(each)

@@ -1,0 +1,56 @@
+"""What is said of a cause in a result: what it gains, which parameter it shifts, its remedy."""
+
+from math import radians
+from types import SimpleNamespace
+
+import pytest
+
+from stages.diagnosis.causes import MASKED, MODELLED, _gain, _most_moved
+from stages.diagnosis.sensor_results import Moved
+from stages.diagnosis.verdict import _limit
+
+WARM_UP = SimpleNamespace(causes=frozenset({"gyro_warm_up"}), repair=None)
+
+
+def result(*effects, drop=96.05, joint_share=0.0):
+    rows = [{"effect": None}, *({"effect": name} for name in effects)]
+    return SimpleNamespace(
+        sensor="gyro",
+        drop=drop,
+        chosen=SimpleNamespace(rows=rows),
+        models=lambda causes: not causes.isdisjoint(effects),
+        decision=SimpleNamespace(joint_share=joint_share),
+        # 5 °/h of a bias known to 0.25 °/h
+        most_moved=lambda _: Moved(20.0, "bias_z", radians(5) / 3600, "rad/s"),
+    )
+
+
+def test_a_gain_says_of_which_sensor_and_with_which_other_effects_it_is():
+    alone = _gain(WARM_UP, 96.05, [result("gyro_warm_up")])
+    assert alone == "χ² of the held-out manoeuvres of the gyros falls by 96.05."
+    both = _gain(WARM_UP, 96.05, [result("gyro_warm_up", "gyro_temperature")])
+    assert both.endswith("falls by 96.05, together with gyro parameters with temperature.")
+    assert _gain(WARM_UP, None, [result("gyro_warm_up")]) is None
+
+
+def test_the_parameter_that_is_shifted_most_is_named_with_its_shift():
+    said = _most_moved(WARM_UP, 20.0, [result("gyro_warm_up")])
+    assert said == "Most of all b_z of the gyros, by 5.0 °/h. "
+    assert not _most_moved(WARM_UP, 31.0, [result("gyro_warm_up")])  # by something else
+    assert not _most_moved(WARM_UP, None, [result("gyro_warm_up")])
+
+
+@pytest.mark.parametrize(
+    ("effect", "share", "said"),
+    [
+        ("gyro_warm_up", 0.0, "corrected by a further term: use it"),
+        ("gyro_warm_up", 0.1, "use it; the sigmas include the result without it"),
+        ("table_tilt", 0.0, "in the model"),  # it is in no reading of the IMU elsewhere
+    ],
+)
+def test_a_further_term_is_to_be_used(effect, share, said):
+    main = SimpleNamespace(causes=frozenset({effect}))
+    cause = SimpleNamespace(cure=MODELLED, main=main)
+    assert _limit(cause, result(effect, joint_share=share)).endswith(said)
+    masked = SimpleNamespace(cure=MASKED, main=main)
+    assert _limit(masked, result(effect)) == "masked: its data were not used"

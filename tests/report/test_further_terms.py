@@ -1,0 +1,79 @@
+"""What the report says of the effects in a result: their equations, and the compensation."""
+
+from __future__ import annotations
+
+import re
+from html import unescape
+
+import pandas as pd
+import pytest
+
+from stages.report.sections import certificate, certified_values
+from stages.report.sections.parameters import PARAMETERS
+from tests.report import synthetic, synthetic_unmodelled
+
+
+def said(html: str) -> str:
+    return unescape(re.sub(r"<[^>]*>", "", html))
+
+
+@pytest.mark.parametrize(
+    ("parameter", "equation"),
+    [
+        ("accel_quadratic.k2_x", "x: + k2_x · f_x²"),
+        ("accel_cubic.k3_z", "z: + k3_z · f_z³"),
+        ("accel_scale_asymmetry.a_y", "y: + a_y · |f_y|"),
+        ("accel_warm_up.b_z", "z: + b_z · exp(−t / τ)"),
+        ("accel_temperature.bias_y_1", "y: + (b_y per K) · (T − T0)"),
+        ("gyro_scale_temperature.k_x", "x: + k_x · (T − T0) · ω_x"),
+    ],
+)
+def test_a_further_term_has_its_equation(parameter: str, equation: str) -> None:
+    effect = parameter.partition(".")[0]
+    row = {"effect": effect, "sensor": effect.partition("_")[0], "parameter": parameter, "value": 1}
+    (line,) = certified_values.added_to_readings([row])
+    assert line.text == equation
+
+
+def test_the_same_term_of_three_axes_is_one_equation() -> None:
+    rows = [
+        {"effect": "gyro_warm_up", "sensor": "gyro", "parameter": f"gyro_warm_up.b_{i}", "value": 1}
+        for i in "xyz"
+    ]
+    (line,) = certified_values.added_to_readings(rows)
+    assert line.text == "+ b_i · exp(−t / τ)"
+    assert line.meaning == "Gyro warm-up; i = x, y, z; t: time, s, from the first sample."
+
+
+def test_what_is_no_term_of_a_reading_has_no_equation() -> None:
+    tilt = {"effect": "table_tilt", "sensor": "accel", "parameter": "table_tilt.x", "value": 1e-6}
+    assert not [*certified_values.added_to_readings([tilt])]
+
+
+def with_quadratic_term(made: dict[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
+    effect = made["result"].query("sensor == 'accel'").iloc[:1].assign(
+        id="diagnosis/accelerometer/accel_quadratic.k2_x",
+        parameter="accel_quadratic.k2_x",
+        effect="accel_quadratic",
+        value=2e-5,
+        sigma=4e-7,
+        unit="(m/s²)/(m/s²)²",
+    )  # fmt: skip
+    return made | {"result": pd.concat([made["result"], effect], ignore_index=True)}
+
+
+def test_an_effect_of_a_class_is_said_to_be_one_of_several() -> None:
+    one_of = "Accelerometer quadratic term: one of 2 effects that these data do not distinguish"
+    of_class = with_quadratic_term(synthetic_unmodelled.of_a_class())
+    assert one_of in said(synthetic.section_on(of_class, certificate.SECTION))
+    alone = with_quadratic_term(synthetic.brief())
+    assert "do not distinguish" not in said(synthetic.section_on(alone, certificate.SECTION))
+
+
+def test_the_compensation_takes_further_terms_off_where_there_are_some() -> None:
+    alone = said(synthetic.section_on(synthetic.brief(), PARAMETERS))
+    assert "truth = M⁻¹ · (reading − bias)" in alone
+    assert "further terms" not in alone
+    both = said(synthetic.section_on(with_quadratic_term(synthetic.brief()), PARAMETERS))
+    assert "truth = M⁻¹ · (reading − bias − further terms)" in both
+    assert "ready for use, together with the further terms of section 1." in both
