@@ -48,7 +48,7 @@ class Binned:
     recorded; where a gyro is masked its rate is on a straight line; `seconds`: (k,), what the
     means are sums over; `first_s`, `last_s`: (k,); `censored`: (k, 6), where a channel is cut off
     at the end of its range, None where none is; `quantum`: (6,), step of each channel, NaN where it
-    is not known.
+    is not known; `unread`: (k, 6), where a channel has no reading, None where it is not known.
     """
 
     window: Window
@@ -60,6 +60,14 @@ class Binned:
     last_s: Array
     censored: Booleans | None = None
     quantum: Array = field(default_factory=lambda: np.full(6, np.nan))
+    unread: Booleans | None = None
+
+    @property
+    def read_rates(self) -> Array:
+        """The rates, (k, 3), NaN where a gyro is masked too: what is measured, not sought in."""
+        if self.unread is None:
+            return self.rates
+        return np.where(self.unread[:, 3:], np.nan, self.rates)
 
     @property
     def bins(self) -> int:
@@ -239,6 +247,7 @@ class Bins:
                 own.last[part],
                 cut_off,
                 self._quanta.get(window.log, np.full(6, np.nan)),
+                ~np.isfinite(own.mean[part]),
             )
 
 
