@@ -33,7 +33,7 @@ class AxisSwap(Detector):
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         for exchange in exchanges_of(piece, log, self.sensor):
             if exchange.permutation.in_place is self.in_place:
-                yield exchange.event(piece, log)
+                yield exchange.event(piece, log, self.sensor)
 
     def describe(self, event: Event, name: str) -> Description:
         return describe_exchange(event, name, self.sensor)

@@ -12,6 +12,7 @@ from inertial.physics.motion import cross
 from inertial.sensors import COLUMNS, SINGULAR
 from inertial.signal.detector import Description, Event, Log, Piece, read_in
 from inertial.signal.scatter import MAD_TO_SIGMA
+from inertial.signal.side_of_a_change import reversed_before
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 from inertial.text.parameters import AXES
@@ -104,6 +105,7 @@ class Exchange:
     """Places [start, end) of a piece, exchanged; before, after: (3,), readings beside its start.
 
     lasting: to the end of what is seen; with_it: the same of the other sensor, at the same time.
+    earlier: gravity shows that what was read before it is wrong, and not what is read from it on.
     """
 
     start: int
@@ -113,10 +115,23 @@ class Exchange:
     after: Array
     lasting: bool
     with_it: Permutation | None = None
+    earlier: bool = False
 
-    def event(self, piece: Piece, log: Log) -> Event:
-        """It as an event, to the end of the log if its end is not seen in this piece."""
+    def event(self, piece: Piece, log: Log, sensor: str) -> Event:
+        """It as an event, to the end of the log if its end is not seen in this piece.
+
+        It concerns the axis, or the sensor, alone unless the other one changes with it.
+        """
         event = piece.event(self.start, self.end, float(self.end - self.start), facts=self)
+        if self.with_it is None and self.permutation.moved == 1:
+            axis = self.permutation.changed.index(True)
+            event = replace(event, channel=COLUMNS[sensor].start + axis)
+        elif self.with_it is None:
+            event = replace(event, sensor=sensor)
+        if self.earlier:
+            begin, end = float(log.windows.time[0]), float(piece.time[self.start - 1])
+            number = float(event.first)
+            return replace(event, first=0, after=event.first, from_s=begin, to_s=end, size=number)
         if not self.lasting or piece.after == len(piece):
             return event
         number = float(log.records - event.first)
@@ -137,6 +152,29 @@ def describe_exchange(event: Event, name: str, sensor: str) -> Description:
     before, after = (
         significant(scale * float(part[worst]), 5) for part in (exchange.before, exchange.after)
     )
+    if exchange.earlier:
+        return Description(
+            _(
+                "{name}: before line {line}, for {size} records, the axes of the {what}s differ "
+                "from those of the records from there on: {in_words}. No motion does that from "
+                "one record to the next; and only from there on do the gyros turn gravity as the "
+                "accelerometers see it turn.",
+                name=name,
+                line=event.line,
+                size=whole(event.size),
+                what=what,
+                in_words=exchange.permutation.in_words,
+            ),
+            _(
+                "Used, their mean on {axes} would be {before} in place of {after} {unit}: bias, "
+                "scale factor and cross terms would be wrong.",
+                axes=AXES[worst],
+                after=after,
+                before=before,
+                unit=unit,
+            ),
+            _("These records are masked. Turn the sign in the log, and run it again."),
+        )
     return Description(
         _(
             "{name}: from line {line} on, {value}for {size} records, the axes of the "
@@ -169,14 +207,22 @@ def describe_exchange(event: Event, name: str, sensor: str) -> Description:
 def exchanges_of(piece: Piece, log: Log, sensor: str) -> list[Exchange]:
     """The exchanges of a sensor; with those of the accelerometers what the gyros do with them.
 
-    The records are masked as a whole, so that no later detector examines their gyros.
+    Where both change the records are masked as a whole, so that no later detector finds it again.
     """
     own = _exchanges(piece, log, sensor)
     others = _exchanges(piece, log, "gyro") if own and sensor == "accel" else []
     made = []
     for exchange in own:
         alike = [o for o in others if o.start < exchange.end and exchange.start < o.end]
-        made.append(replace(exchange, with_it=alike[0].permutation) if alike else exchange)
+        if alike:
+            exchange = replace(exchange, with_it=alike[0].permutation)
+        elif exchange.lasting and exchange.permutation.in_place:
+            signs = np.ones(6)
+            signs[COLUMNS[sensor]] = exchange.permutation.signs
+            change_s = float(piece.time[exchange.start])
+            earlier = reversed_before(log.windows, change_s, signs)
+            exchange = replace(exchange, earlier=earlier)
+        made.append(exchange)
     return made
 
 

@@ -212,15 +212,18 @@ class _Campaign:
         repairs = Repairs(tables.CHANNEL_REPAIRS.frame(channels))
         self._channels += channels
         for k, one in enumerate(self._binned):
-            log, cut_off = one.window.log, one.censored
+            log, cut_off, unread = one.window.log, one.censored, one.unread
             six = repairs.readings(log, np.hstack([one.forces, one.rates]))
             if cut_off is not None:
                 cut_off = repairs.channel_masks(log, cut_off)
+            if unread is not None:
+                unread = repairs.channel_masks(log, unread)
             self._binned[k] = replace(
                 one,
                 forces=six[:, :3],
                 rates=six[:, 3:],
                 censored=cut_off,
+                unread=unread,
                 quantum=np.abs(repairs.readings(log, one.quantum[None])[0]),
             )
 

@@ -37,7 +37,9 @@ from stages.segment.windows import Binned
 
 def axes_by_gravity(binned: Sequence[Binned], level: Array) -> Turned | None:
     """How the gyros turn gravity; `level`: (3,), rad/s, the gyros at rest."""
-    return turned([(one.forces, one.rates - level, one.bin_seconds) for one in binned if one.bins])
+    return turned(
+        [(one.forces, one.read_rates - level, one.bin_seconds) for one in binned if one.bins]
+    )
 
 
 def misread_by_gravity(binned: Sequence[Binned], seen: Turned) -> list[Misread]:

@@ -80,7 +80,7 @@ def reversals(
     stated = {m.name: m for m in plan}
     rests = [rest for k, one in enumerate(windows) for rest in rests_of(k, one, stated, level)]
     means = [one.binned for one in windows]
-    stretches = [(one.forces, one.rates - level, one.bin_seconds) for one in means]
+    stretches = [(one.forces, one.read_rates - level, one.bin_seconds) for one in means]
     alike, signs = signs_of_motions(stretches, seen)
     axes = alike.axes_of_most
     if axes is None or not axes.in_place:

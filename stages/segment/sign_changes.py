@@ -111,14 +111,15 @@ def rests_of(
             continue
         m, turned, as_stated = ups[place]
         assert m.up is not None
-        seen = located.observed[place]
+        seen, stretch = located.observed[place], located.stretches[place]
+        read = np.isfinite(located.binned.read_rates[stretch.first : stretch.after]).any(axis=0)
         yield Rest(
             (window, place),
             located.binned.window.log,
             (m.position, turned),
             m.up,
             m.mark if as_stated else None,
-            seen.rate + level,
+            np.where(read, seen.rate + level, np.nan),
             _sigma_at_rest(seen.unsure, located.binned.quantum[3:]),
             max(one for one in places if one[0] <= place)[1] if places[0][0] <= place else m.name,
             min((one for one in places if one[0] >= place), default=(0, m.name))[1],

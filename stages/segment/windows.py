@@ -10,8 +10,10 @@ from inertial.campaign.masked_samples import Batch, Masks, regular
 from inertial.campaign.records import Clock, Manoeuvre
 from inertial.campaign.sums import MeansOver
 from inertial.signal.rests_and_motions import MAX_KNOCK_TILT, bridged
+from inertial.signal.runs import runs
 
 BIN_S = 0.1  # s, of the short means in which motion is sought
+MAX_BRIDGED_S = 30.0  # s, masked of one gyro alone: in a turn that goes on on both sides it is less
 MIN_PAUSE_S = 1.0  # s without a record, in which an IMU may be set anew
 MAX_BINS = 2_000_000  # of them in a campaign; one of more than two days has longer ones
 MIN_BINS_OF_A_JUMP = 7  # three before it, three after it, and one that may hold readings of both
@@ -46,7 +48,7 @@ class Binned:
     recorded; where a gyro is masked its rate is on a straight line; `seconds`: (k,), what the
     means are sums over; `first_s`, `last_s`: (k,); `censored`: (k, 6), where a channel is cut off
     at the end of its range, None where none is; `quantum`: (6,), step of each channel, NaN where it
-    is not known.
+    is not known; `unread`: (k, 6), where a channel has no reading, None where it is not known.
     """
 
     window: Window
@@ -58,6 +60,14 @@ class Binned:
     last_s: Array
     censored: Booleans | None = None
     quantum: Array = field(default_factory=lambda: np.full(6, np.nan))
+    unread: Booleans | None = None
+
+    @property
+    def read_rates(self) -> Array:
+        """The rates, (k, 3), NaN where a gyro is masked too: what is measured, not sought in."""
+        if self.unread is None:
+            return self.rates
+        return np.where(self.unread[:, 3:], np.nan, self.rates)
 
     @property
     def bins(self) -> int:
@@ -225,15 +235,37 @@ class Bins:
             used[number][window.log] += len(first)
             edges = np.append(first, after[-1:])
             own = results[number][window.log]
+            cut_off = self._censoring.censored_between(window.log, edges) if len(first) else None
+            long = round(MAX_BRIDGED_S / BIN_S) if window.log in self._clocks else len(first)
             yield Binned(
                 window,
                 edges,
-                # A turn stays one where a stretch is masked; no angle is made of these rates.
-                bridged(own.mean[part, 3:]),
+                _sought_in(own.mean[part, 3:], long, cut_off),
                 own.mean[part, :3],
                 own.count[part] * self._clocks[window.log].step if len(first) else np.array([]),
                 own.first[part],
                 own.last[part],
-                self._censoring.censored_between(window.log, edges) if len(first) else None,
+                cut_off,
                 self._quanta.get(window.log, np.full(6, np.nan)),
+                ~np.isfinite(own.mean[part]),
             )
+
+
+def _sought_in(rates: Array, long: int, cut_off: Booleans | None) -> Array:
+    """The rates in which motion is sought, (k, 3), from means, NaN where masked.
+
+    A turn stays one where a stretch is masked; no angle is made of these rates. A gyro that is
+    masked alone for more bins than `long`, and not cut off, shows no motion there: those beside it
+    may have been within a turn.
+    """
+    filled = bridged(rates)
+    there = np.isfinite(rates)
+    for i in range(3):
+        if not there[:, i].any():
+            continue
+        for first, after in runs(~there[:, i]):
+            alone = there[first:after].any()
+            held = cut_off is not None and cut_off[first:after, 3 + i].any()
+            if after - first > long and alone and not held:
+                filled[first:after, i] = np.median(rates[there[:, i], i])
+    return filled
