@@ -689,3 +689,30 @@ def test_a_rest_in_which_counts_toggle_holds_no_slow_motion():
     turning[100:200, 1] += np.radians(0.1)  # 1° in 10 s
     first, after = slow_motion(turning, 0.1, np.full(3, COUNT))
     assert abs(first - 100) <= 1 and abs(after - 200) <= 1
+
+
+def test_a_gyro_masked_for_long_from_within_a_turn_does_not_turn_on():
+    rates = np.zeros((2000, 3))
+    rates[1000:1050, 1] = 0.4  # rad/s, a turn in which its mask ends
+    rates[500:600, 0] = 0.5  # meanwhile another one turns
+    rates[:1010, 1] = np.nan
+    filled = windows._sought_in(rates, 300, None)
+    assert (filled[:1010, 1] == 0).all()
+    assert (filled[:, 0] == rates[:, 0]).all()
+    short = rates.copy()
+    short[:1010, 1] = 0.0
+    short[1010:1040, 1] = np.nan  # within the turn: it stays one
+    short[1000:1010, 1] = 0.4
+    assert windows._sought_in(short, 300, None)[1000:1050, 1] == pytest.approx(0.4)
+
+
+def test_what_a_masked_gyro_is_taken_to_read_is_no_reading():
+    window = windows.Window("log", 0, 100, [])
+    time, unread = 0.1 * np.arange(10), np.zeros((10, 6), bool)
+    unread[:5, 4] = True
+    one = windows.Binned(
+        window, np.arange(11), np.zeros((10, 3)), np.ones((10, 3)), np.full(10, 0.1), time, time,
+        unread=unread,
+    )  # fmt: skip
+    assert np.isnan(one.read_rates[:5, 1]).all()
+    assert np.isfinite(one.read_rates[:, [0, 2]]).all()

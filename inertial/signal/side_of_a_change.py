@@ -46,7 +46,7 @@ def _misfit(means: Array, interval: Array) -> Array:
     """How far each mean force is from where the gyros turn the one before, m/s², (k − 1,)."""
     forces, rates = means[:, :3], (means[1:, 3:] + means[:-1, 3:]) / 2
     misfit = np.full(len(interval), np.nan)
-    there = np.isfinite(means).all(axis=1)
+    there = np.asarray(np.isfinite(means).all(axis=1))
     both = there[1:] & there[:-1]
     turned = Rotation.from_rotvec(-rates[both] * interval[both, None]).apply(forces[:-1][both])
     misfit[both] = np.linalg.norm(forces[1:][both] - turned, axis=1)

@@ -1,5 +1,7 @@
 """An axis that changes its sign within a log is found to the record."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from on_a_table import BIAS, RAMP, askew, profile, recorded, rest, tumble, turn
@@ -11,6 +13,7 @@ from inertial.detectors.misread_axes_and_signs import (
     SignFlip,
     SignFlipOfGyros,
 )
+from inertial.signal.detector import Windows
 
 EACH = (AxisSwap(), AxisSwapOfGyros(), SignFlip(), SignFlipOfGyros())
 
@@ -99,3 +102,25 @@ def test_a_lever_arm_that_pulls_as_far_below_zero_as_the_bias_is_above_turns_no_
         2 * BIAS[0] * np.where(np.abs(speeding) > RAMP * INTERVAL / 4, np.sign(speeding), 0)
     )
     assert found(values) == []
+
+
+@pytest.mark.parametrize(
+    ("channel", "first", "after"),
+    [(3, 0, 2500), (3, 2500, 5800), (1, 0, 2500), (1, 2500, 5800)],
+)
+def test_gravity_tells_which_side_of_a_lasting_change_is_reversed(channel, first, after):
+    values = tumble()
+    one, log = recorded(flipped(values, channel, first, min(after, len(values))))
+    number = round(1 / INTERVAL)
+    whole = len(values) // number * number
+    means = one.values[:whole].reshape(-1, number, 6)
+    time = one.time[:whole].reshape(-1, number).mean(axis=1)
+    windows = Windows(means.mean(axis=1), means.var(axis=1), time, np.full(len(time), np.nan))
+    log = replace(log, windows=windows)
+    detector = (SignFlip(), SignFlipOfGyros())[channel >= 3]
+    (event,) = detector.detect(one, log)
+    assert (event.first, event.after) == (first, min(after, len(values)))
+    assert tuple(event.channels) == (channel,)  # and not the other sensor
+    assert_told(detector, event, "log")
+    words = detector.describe(event, "log").sentence
+    assert ("before line 2501" in words) is (first == 0)
