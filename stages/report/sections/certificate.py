@@ -147,7 +147,7 @@ def parts(tables: Tables) -> Iterator[Part]:
         own = [result for result in shown if result.mount == mount]
         yield values(own, mount, earlier)
         if effects := [row for result in own for row in result.effects]:
-            yield further_terms(effects)
+            yield further_terms(effects, tables.rows("effects"))
     yield from _not_for_use(tables)
     yield from conformity(tables)
     yield Sentences(tuple(_statements(tables, earlier)))

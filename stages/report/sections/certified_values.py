@@ -106,8 +106,13 @@ def _expanded(row: Record, unit: Unit) -> float | None:
     return None if row["sigma"] is None else unit.of(COVERAGE_FACTOR * row["sigma"])
 
 
-def further_terms(rows: Sequence[Record]) -> Table:
-    """The parameters of effects, by effect and, where both show it, by sensor."""
+def further_terms(rows: Sequence[Record], detected: Sequence[Record] = ()) -> Table:
+    """The parameters of effects, by effect and, where both show it, by sensor.
+
+    `detected`: the same as criticism has them, which knows the sigma of a scanned time constant.
+    """
+    known = {(row["mount"], f"{row['effect']}.{row['parameter']}"): row for row in detected}
+    rows = [row | {"sigma": row["sigma"] or _scanned(row, known)} for row in rows]
     lines: list[Row] = []
     by_place = grouped(rows, lambda row: (row["effect"], row["sensor"]))
     for (effect, sensor), own in by_place.items():
@@ -135,10 +140,19 @@ def further_terms(rows: Sequence[Record]) -> Table:
             Column(_("meaning"), "note"),
         ),
         lines,
-        note=_("Where a parameter depends on the temperature, the value above is that at T0.")
-        if any(symbol(row["parameter"]) == "T0" for row in rows)
-        else "",
+        note=" ".join(
+            [_("—: a constant of the effect, set and not estimated.")]
+            * any(row["value"] is not None and not row["sigma"] for row in rows)
+            + [_("Where a parameter depends on the temperature, the value above is that at T0.")]
+            * any(symbol(row["parameter"]) == "T0" for row in rows)
+        ),
     )
+
+
+def _scanned(row: Record, known: Mapping[tuple[str, str], Record]) -> float | None:
+    """The sigma of a constant that was scanned; None where it is not known, or of another value."""
+    own = known.get((row["mount"], row["parameter"]))
+    return own["sigma"] if own and own["value"] == row["value"] else None
 
 
 # ---- The last calibration before this one.
