@@ -389,6 +389,14 @@ def test_the_budget_has_the_shares_of_each_kind() -> None:
     ]
 
 
+def test_parameters_without_shares_are_said() -> None:
+    made = synthetic.brief()
+    made["uncertainty_budget"] = made["uncertainty_budget"].iloc[:0]
+    shown = synthetic.section_on(made, uncertainty_budget.SECTION)
+    assert "Not split: accelerometer: " in shown and "gyro: " in shown
+    assert "another σ than the result" in shown
+
+
 def test_an_unmodelled_effect_is_named_with_its_numbers() -> None:
     page = Page(synthetic.documents()["html"])
     assert "Detected: gyro g-sensitivity and oscillation." in page.text
