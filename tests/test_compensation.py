@@ -1,5 +1,6 @@
 """Compensated samples: they hold what is known, in the order of the log, and are made once."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import chain
@@ -9,14 +10,17 @@ import pytest
 from in_memory import MemoryStream
 from ruamel.yaml import YAML
 
-from inertial.campaign.measurement import measurement_of
-from inertial.effects import CATALOGUE
+from inertial.campaign.measurement import EffectOfResult, measurement_of
+from inertial.campaign.observations import campaign_of
+from inertial.campaign.records import rows_of
+from inertial.effects import CATALOGUE, KNOWN
 from inertial.physics.forward import Triad, force_of, rate_of
 from inertial.physics.motion import Motion, stretches
 from inertial.physics.site import EARTH_RATE
 from inertial.tables import CHANNELS, SIMULATED, parquet
 from inertial.tables.errors import Refusal
 from stages.compensation.correction import ALL, held, mounted
+from stages.compensation.stage import _of_sensor
 
 DEGREE_PER_HOUR = np.radians(1 / 3600)  # rad/s
 QUANTITIES = ["gravity", "force_up", "rate_up", "angle"]
@@ -384,3 +388,20 @@ def test_without_a_latitude_the_gyros_tell_the_earths_rate(tmp_path):
     assert not len(checks_of(results, "rate_up"))  # with what is not known
     left = in_sigmas(results["compensation/residuals"], "rest")[GYRO].to_numpy()
     assert np.sqrt(np.nanmean(left**2)) < 1.2
+
+
+def test_terms_that_the_result_does_without_take_nothing_of_the_budget(clean):
+    """Of a polynomial of temperature on all parameters one term of y: x keeps the sigma it has."""
+    (data,) = chain.mounts(clean[0])
+    result, fits = clean[0]["diagnosis/result"], rows_of(clean[0]["accelerometer/fit"])
+    measurement = measurement_of(rows_of(result))
+    own = measurement.accelerometer
+    method = next(iter(own.rows.values()))["method"]
+    (fit,) = (row for row in fits if row["method"] == method)
+    term = {"parameter": "accel_temperature.bias_y_1", "value": 0.0, "sigma": 1e-5}
+    effect = EffectOfResult(KNOWN["accel_temperature"], {"bias_y_1": term}, {})
+    rows = list(_of_sensor(campaign_of(data), replace(own, effects=[effect]), fit, data.mount))
+    assert {"scale_x", "bias_x", "scale_z"} <= {row["quantity"] for row in rows}
+    for name in ("scale_x", "bias_x", "scale_z"):
+        variance = sum(row["sigma"] ** 2 for row in rows if row["quantity"] == name)
+        assert np.sqrt(variance) == pytest.approx(own.rows[name]["sigma"], rel=0.1)

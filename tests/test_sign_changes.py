@@ -103,6 +103,13 @@ def test_a_gyro_that_is_reversed_between_two_rests_is_left_out_there(first, afte
     (finding,) = findings[findings["cause"] == "sign_flip"].to_dict("records")
     assert (finding["sensor"], finding["axis"]) == ("gyro", "y")
     assert "reads its negative in a part of the recording" in finding["sentence"]
+    segments = results["segment/segments"].sort_values("from_record")
+    order = segments.drop_duplicates("manoeuvre")["manoeuvre"].tolist()
+    inside = order[order.index(first) : order.index(after)]
+    # One on either side may be in it too, where no motion tells.
+    assert len(inside) <= finding["size"] <= len(inside) + 2 and finding["unit"] == "manoeuvres"
+    own = segments[segments["manoeuvre"].isin(inside)]
+    assert finding["from_s"] < own["from_s"].min() + 1 and own["to_s"].max() - 1 < finding["to_s"]
     masks = results["segment/masks"]
     (mask,) = masks[masks["finding"] == finding["id"]].to_dict("records")
     assert (mask["sensor"], mask["axis"]) == ("gyro", "y")

@@ -189,8 +189,8 @@ def temperature_constants(
     low, high = valid or (float(motion.temperature.min()), float(motion.temperature.max()))
     return [
         mean_temperature(motion, reference),
-        Constant(COLDEST, "K", _("lowest temperature of the campaign"), low),
-        Constant(WARMEST, "K", _("highest temperature of the campaign"), high),
+        Constant(COLDEST, "K", _("lowest mean temperature of a block that the fit used"), low),
+        Constant(WARMEST, "K", _("highest mean temperature of a block that the fit used"), high),
     ]
 
 

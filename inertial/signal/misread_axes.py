@@ -27,13 +27,14 @@ def deviation(misread: Misread, recorded: Recorded) -> Deviation:
     """A misread sensor as a deviation: of its log, or of the campaign."""
     of_log = [i for i, log in enumerate(recorded.log) if log == misread.log]
     alone = of_log[0] if len(of_log) == 1 else None
+    of_log = _inside(misread.part, recorded) if misread.part else of_log
     first = min((int(recorded.first[i]) for i in of_log), default=-1)
     after = max((int(recorded.after[i]) for i in of_log), default=-1)
     times = [float(t) for t in (*recorded.from_s[of_log], *recorded.to_s[of_log]) if np.isfinite(t)]
     return Deviation(
         alone,
         misread.log,
-        float(len(misread.explains)),
+        float(len(of_log if misread.part else misread.explains)),
         misread.sensor,
         next((AXES[of.axis] for of in (misread.change, misread.part) if of is not None), None),
         first=first,
@@ -43,6 +44,19 @@ def deviation(misread: Misread, recorded: Recorded) -> Deviation:
         facts=misread,
         repair=misread.repair,
     )
+
+
+def _inside(part: ReversedPart, recorded: Recorded) -> list[int]:
+    """The manoeuvres of which any may be in a part of the recording, in the order of the plan."""
+    place = {name: i for i, name in enumerate(recorded.name)}
+    first, last = 0, len(place) - 1
+    if begins := part.begins:
+        after = place.get(begins.after, last)
+        first = min(place.get(begins.before, after - 1) + 1, after)
+    if ends := part.ends:
+        before = place.get(ends.before, first)
+        last = max(place.get(ends.after, before + 1) - 1, before)
+    return [i for i in range(first, last + 1) if recorded.log[i] in part.logs]
 
 
 def describe_misread(misread: Misread, recorded: Recorded) -> Description:

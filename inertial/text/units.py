@@ -36,14 +36,15 @@ def written_in(system: str) -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit and its size in the SI unit of the quantity."""
+    """A unit and its size in the SI unit of the quantity; `zero`: its zero, in SI."""
 
     name: str
     size: float
+    zero: float = 0.0
 
     def of(self, value: float | None) -> float | None:
         """`value` from the SI into this unit."""
-        return None if value is None else value / self.size
+        return None if value is None else (value - self.zero) / self.size
 
 
 @dataclass(frozen=True)
@@ -77,6 +78,8 @@ RANDOM_WALK = {
 _RATIO = Quantity(PPM, Unit("10⁻⁶", 1e-6))
 _SHARE = Quantity(PER_CENT, PER_CENT)  # of a whole, 0 to 1
 _ANGLE = Quantity(SECONDS_OF_ARC, Unit("µrad", 1e-6))
+_TEMPERATURES = ("T0", "T_min", "T_max")  # constants of effects, which have no sigma
+_CELSIUS = Quantity(Unit("°C", 1.0, ICE_POINT), Unit("°C", 1.0, ICE_POINT))
 _NUMBER = Quantity(Unit("", 1.0), Unit("", 1.0))
 _NUMBERS = ("shape", "degree", "probability")  # of laws and functions of temperature: no ratios
 _BY_UNIT = {
@@ -155,6 +158,8 @@ def quantity(parameter: str, unit: str) -> Quantity:
     kind, _, axes = parameter.partition("_")
     if axes in ("xx", "yy", "zz") and unit in ("1", ""):
         return _RATIO
+    if parameter in _TEMPERATURES and unit == "K":
+        return _CELSIUS
     if kind in _NUMBERS and unit == "1":
         return _NUMBER
     if kind in _DIMENSIONLESS and unit in ("1", "rad", ""):

@@ -1,6 +1,7 @@
 """The samples with the errors of the result taken out, and the check against what is known."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -189,6 +190,7 @@ def fits_of(
 # ---- What the uncertainty of each parameter of the result comes from
 
 MAX_SIGMA_RATIO = 1.1  # of the result's sigma and that of these equations, which are not the same
+HELD = 1e-9  # of its prior, by which a parameter that the result does without is held at zero
 BLOCKS = "blocks"  # effects that are sought elsewhere have no columns in the equations
 
 
@@ -216,6 +218,11 @@ def _of_sensor(campaign: Campaign, result: SensorResult, fit: Row, mount: str) -
     equations = campaign.equations(result.sensor, effects, PRIOR_SIZE, walking=bool(walk))
     if equations is None:
         return
+    # A polynomial has all its terms in the equations, and in the result those that it needs.
+    estimated = {row["parameter"] for one in result.effects for row in one.parameters.values()}
+    absent = [kind == "effect" and name not in estimated for kind, name in equations.names]
+    held = np.where(absent, HELD, 1.0) * equations.prior_sigma
+    equations = replace(equations, prior_sigma=held)
     variances, parts = budget(Model(equations, scatter, walk))
     for i, name in enumerate(linear_names()):
         row, sigma = result.rows[name], np.sqrt(variances[i])

@@ -19,7 +19,14 @@ from inertial.tables import CERTIFICATE
 from inertial.text.units import DEGREES_PER_HOUR
 from stages.report import origins
 from stages.report.outline import Heading, Paragraph, Part, Section, Table
-from stages.report.sections import certificate, characteristics, ideal_triad, uncertainty_budget
+from stages.report.sections import (
+    certificate,
+    certified_values,
+    characteristics,
+    ideal_triad,
+    uncertainty_budget,
+    unmodelled_effects,
+)
 from stages.report.sections.parameters import PARAMETERS
 from stages.report.stage import ANNEXES, EVIDENCE, STAGE, report
 from tests.report import synthetic, synthetic_faults, synthetic_unmodelled
@@ -303,6 +310,44 @@ def test_effects_whose_constants_come_last_are_listed_whole() -> None:
     assert heads[-1].endswith("frame: case")  # constants have none
 
 
+def test_constants_of_effects_are_no_gaps_and_temperatures_are_in_celsius() -> None:
+    """τ of 41.7 s was scanned and is known to 2.1 s; 298.38 K are 25.23 °C."""
+    own = {"mount": "", "sensor": "gyro", "effect": "gyro_warm_up", "meaning": "", "id": "a"}
+
+    def row(name: str, value: float, sigma: float | None, unit: str) -> dict[str, Any]:
+        return own | {"parameter": name, "value": value, "sigma": sigma, "unit": unit}
+
+    rows = [
+        row("gyro_warm_up.b_z", 0.00438, 8e-5, "rad/s"),
+        row("gyro_warm_up.tau", 41.674, None, "s"),
+        row("gyro_warm_up.T_min", 298.38, None, "K"),
+    ]
+    detected = [row("tau", 41.674, 2.126, "s")]
+    table = certified_values.further_terms(rows, detected)
+    _head, _b, tau, low = (line.cells for line in table.rows)
+    assert tau[1:4] == ("41.7", "4.3", "s")  # U is twice sigma
+    assert float(low[1]) == pytest.approx(25.23) and low[2:4] == ("—", "°C")
+    assert "constant of the effect" in table.note
+    assert "constant of" not in certified_values.further_terms(rows[:2], detected).note
+
+
+def test_a_constant_of_an_effect_is_not_called_undetermined() -> None:
+    made = synthetic.brief()
+    one = made["result"].query("sensor == 'gyro'").iloc[:1].assign(effect="gyro_warm_up")
+    size = one.assign(parameter="gyro_warm_up.b_z", value=0.00438, sigma=8e-5)
+    tau = one.assign(parameter="gyro_warm_up.tau", value=41.674, sigma=np.nan)
+    made["result"] = pd.concat([made["result"], size, tau], ignore_index=True)
+    known = [
+        {"parameter": "b_z", "value": 0.0044, "sigma": 9e-5},
+        {"parameter": "tau", "value": 41.674, "sigma": 2.126},
+        {"parameter": "b_y", "value": 1e-5, "sigma": 9e-5},  # the result does without it
+    ]
+    tables = synthetic.tables_of({name: made[name] for name in ("result", "provenance")})
+    finding = {"mount": "", "cause": "gyro_warm_up"}
+    values = [row["value"] for row in unmodelled_effects._of_result(tables, finding, known)]
+    assert values == [0.00438, 41.674, None]
+
+
 def test_a_model_that_does_not_fit_says_so_plainly() -> None:
     parts = parameters_of(synthetic.brief())
     said = words_of(parts)
@@ -342,6 +387,14 @@ def test_the_budget_has_the_shares_of_each_kind() -> None:
         *("Accelerometer, scale error", "5.0", "ppm", "36", "64"),
         *("Gyro, scale error", "5.0", "ppm", "36", "64"),
     ]
+
+
+def test_parameters_without_shares_are_said() -> None:
+    made = synthetic.brief()
+    made["uncertainty_budget"] = made["uncertainty_budget"].iloc[:0]
+    shown = synthetic.section_on(made, uncertainty_budget.SECTION)
+    assert "Not split: accelerometer: " in shown and "gyro: " in shown
+    assert "another σ than the result" in shown
 
 
 def test_an_unmodelled_effect_is_named_with_its_numbers() -> None:

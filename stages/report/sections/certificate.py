@@ -149,7 +149,7 @@ def parts(tables: Tables) -> Iterator[Part]:
         own = [result for result in shown if result.mount == mount]
         yield values(own, mount, earlier)
         if effects := [row for result in own for row in result.effects]:
-            yield further_terms(effects, of_classes(tables))
+            yield further_terms(effects, of_classes(tables), tables.rows("effects"))
             yield from added_to_readings(effects)
     yield from _not_for_use(tables)
     yield from conformity(tables)
@@ -295,7 +295,8 @@ def _known(tables: Tables) -> Iterator[tuple[str, str, str]]:
     sources = {row["source"] for row in tables.rows("uncertainty_budget")}
     for quantity, source in TABLE_ERRORS.items():
         row = known.get(quantity)
-        if source in sources and row is not None and row["sigma"]:
+        counts = source in sources or not sources  # without a budget nothing says which do
+        if counts and row is not None and row["sigma"]:
             unit = basis.UNIT[quantity]
             spread = numbers.significant(unit.of(COVERAGE_FACTOR * row["sigma"]), 2)
             text = _("as set, U = {spread} {unit}", spread=spread, unit=unit.name)

@@ -118,11 +118,16 @@ def of_classes(tables: Tables) -> Mapping[str, int]:
     return {each["member"]: len(own) for own in classes for each in own}
 
 
-def further_terms(rows: Sequence[Record], classes: Mapping[str, int]) -> Table:
+def further_terms(
+    rows: Sequence[Record], classes: Mapping[str, int], detected: Sequence[Record] = ()
+) -> Table:
     """The parameters of effects, by effect and, where both show it, by sensor.
 
-    `classes`: see `of_classes`.
+    `classes`: see `of_classes`; `detected`: the parameters as criticism has them, which knows the
+    sigma of a scanned time constant.
     """
+    known = {(row["mount"], f"{row['effect']}.{row['parameter']}"): row for row in detected}
+    rows = [row | {"sigma": row["sigma"] or _scanned(row, known)} for row in rows]
     lines: list[Row] = []
     by_place = grouped(rows, lambda row: (row["effect"], row["sensor"]))
     for (effect, sensor), own in by_place.items():
@@ -156,9 +161,12 @@ def further_terms(rows: Sequence[Record], classes: Mapping[str, int]) -> Table:
             Column(_("meaning"), "note"),
         ),
         lines,
-        note=_("Where a parameter depends on the temperature, the value above is that at T0.")
-        if any(symbol(row["parameter"]) == "T0" for row in rows)
-        else "",
+        note=" ".join(
+            [_("—: a constant of the effect, set and not estimated.")]
+            * any(row["value"] is not None and not row["sigma"] for row in rows)
+            + [_("Where a parameter depends on the temperature, the value above is that at T0.")]
+            * any(symbol(row["parameter"]) == "T0" for row in rows)
+        ),
     )
 
 
@@ -169,6 +177,9 @@ SYMBOLS = {  # of the factors of effects
     r"T": _("T: temperature of the IMU, K"),
     r"[tT] >": _("(… > …): 1 where that is true, else 0"),
 }
+
+
+SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def added_to_readings(rows: Sequence[Record]) -> Iterator[Equation]:
@@ -200,11 +211,20 @@ def _term(each: Term) -> str:
     factors: dict[str, int] = {}
     for factor in each.factor.split(" * "):
         factors[factor] = factors.get(factor, 0) + 1
-    written = [f + {1: "", 2: "²", 3: "³"}[count] for f, count in factors.items()]
+    written = [
+        f + ("" if count == 1 else str(count).translate(SUPERSCRIPTS))
+        for f, count in factors.items()
+    ]
     factor = re.sub(r"abs\((\w+)\)", r"|\1|", " · ".join(written)).replace("-", "−")
     factor = re.sub(r"\w+", lambda name: sign_of(re.sub("^w_", "ω_", name[0])), factor)
     sign = sign_of(each.parameter)
     return f"({sign}) · {factor}" if " " in sign else f"{sign} · {factor}"
+
+
+def _scanned(row: Record, known: Mapping[tuple[str, str], Record]) -> float | None:
+    """The sigma of a constant that was scanned; None where it is not known, or of another value."""
+    own = known.get((row["mount"], row["parameter"]))
+    return own["sigma"] if own and own["value"] == row["value"] else None
 
 
 # ---- The last calibration before this one.

@@ -11,11 +11,22 @@ from matplotlib.figure import Figure as Drawn
 
 from inertial.campaign.records import grouped
 from inertial.sensors import SINGULAR
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.typography import capital
 from stages.report.drawing import Margins, panels, style, svg
-from stages.report.outline import Column, Figure, Part, Row, Section, Table, columns, table_row
+from stages.report.outline import (
+    Column,
+    Figure,
+    Paragraph,
+    Part,
+    Row,
+    Section,
+    Table,
+    columns,
+    table_row,
+)
 from stages.report.results import (
     KIND_IN_A_SENTENCE,
     RESULT_TABLES,
@@ -52,6 +63,16 @@ MIN_LABELLED = 25  # parameters of a sensor, from which a picture has no names
 def parts(tables: Tables) -> Iterator[Part]:
     """A row per sensor and kind of parameter; the correlations of each sensor as a picture."""
     rows = tables.rows("uncertainty_budget")
+    if missing := _not_split(tables, rows):
+        yield Paragraph(
+            _(
+                "Not split: {parameters}. The equations that the shares are of give another σ than "
+                "the result, by more than a tenth: of a mean over models, of positions by hand, or "
+                "with an effect that they do not hold.",
+                parameters="; ".join(missing),
+            ),
+            "fair",
+        )
     if not rows:
         return
     there = [source for source in SOURCES if any(row["source"] == source for row in rows)]
@@ -81,6 +102,24 @@ SECTION = Section(
     ("uncertainty_budget", "covariance", *RESULT_TABLES),
     parts,
 )
+
+
+def _not_split(tables: Tables, rows: Sequence[Record]) -> list[str]:
+    """By sensor the parameters of the result with a sigma that has no shares."""
+    split = {(row["mount"], row["sensor"], row["quantity"]) for row in rows}
+    own = [
+        row
+        for result in final_results(tables)
+        for row in result.determined
+        if row["sigma"] and (row["mount"], row["sensor"], row["parameter"]) not in split
+    ]
+    groups = grouped(own, lambda row: (row["sensor"], row["mount"]))
+    return [
+        with_mount(SINGULAR[sensor], mount)
+        + ": "
+        + listed([symbol(row["parameter"]) for row in each])
+        for (sensor, mount), each in groups.items()
+    ]
 
 
 def _in_order(item: tuple[tuple[str, str, str], list[Record]]) -> tuple[str, str, int]:

@@ -253,13 +253,25 @@ def _parameters(tables: Tables, row: Record) -> Iterator[outline.Table]:
 
 
 def _of_result(tables: Tables, finding: Record, known: Sequence[Record]) -> list[Record]:
-    """The same parameters of an effect with the values of the result; none: these are not in it."""
+    """The same parameters of an effect with the values of the result; none: these are not in it.
+
+    A constant of the effect, of which the result has no sigma, stays as it was detected.
+    """
     of_result = sizes_of_result(tables.rows("result"))
     missing = {"value": None, "sigma": None}
     place = finding["mount"], finding["cause"]
-    values = [of_result.get((*place, row["parameter"]), missing) for row in known]
-    if all(own is missing for own in values):
+    constants = {
+        (row["mount"], row["effect"], row["parameter"].rpartition(".")[2])
+        for row in tables.rows("result")
+        if row["effect"] and row["value"] is not None and not row["sigma"]
+    }
+    keys = [(*place, row["parameter"]) for row in known]
+    if not any(key in of_result for key in keys):
         return []
+    values = [
+        of_result.get(key, row if key in constants else missing)
+        for key, row in zip(keys, known, strict=True)
+    ]
     return [
         row | {key: own[key] for key in missing} for row, own in zip(known, values, strict=True)
     ]
