@@ -405,7 +405,9 @@ def test_the_figures_of_the_standards_stand_beside_what_noise_explains() -> None
 def test_a_difference_says_which_two_methods_it_is_of() -> None:
     page = Page(synthetic.documents()["html"])
     compared = page.rows["comparison/method_against_method/gyroscope/bias_y"][0]
-    assert compared == ("Turn and stop, S3: M, and the bias by turns; joint fit of all manoeuvres")
+    assert compared == (
+        "Turn and stop, Han & Fu 2019: M, and the bias by turns; joint fit of all manoeuvres"
+    )
 
 
 def test_an_upper_and_a_lower_limit_have_digits_that_tell_them_apart() -> None:
