@@ -103,6 +103,10 @@ def test_a_gyro_that_is_reversed_between_two_rests_is_left_out_there(first, afte
     (finding,) = findings[findings["cause"] == "sign_flip"].to_dict("records")
     assert (finding["sensor"], finding["axis"]) == ("gyro", "y")
     assert "reads its negative in a part of the recording" in finding["sentence"]
+    assert "only if y is negated" in finding["sentence"]
+    wrong = "Used unchanged, the y scale factor would have the wrong sign there."
+    assert finding["consequence"] == wrong
+    assert finding["action"].startswith("The y gyro is left out there")
     masks = results["segment/masks"]
     (mask,) = masks[masks["finding"] == finding["id"]].to_dict("records")
     assert (mask["sensor"], mask["axis"]) == ("gyro", "y")
