@@ -110,6 +110,10 @@ def test_a_gyro_that_is_reversed_between_two_rests_is_left_out_there(first, afte
     assert len(inside) <= finding["size"] <= len(inside) + 2 and finding["unit"] == "manoeuvres"
     own = segments[segments["manoeuvre"].isin(inside)]
     assert finding["from_s"] < own["from_s"].min() + 1 and own["to_s"].max() - 1 < finding["to_s"]
+    assert "only if y is negated" in finding["sentence"]
+    wrong = "Used unchanged, the y scale factor would have the wrong sign there."
+    assert finding["consequence"] == wrong
+    assert finding["action"].startswith("The y gyro is left out there")
     masks = results["segment/masks"]
     (mask,) = masks[masks["finding"] == finding["id"]].to_dict("records")
     assert (mask["sensor"], mask["axis"]) == ("gyro", "y")

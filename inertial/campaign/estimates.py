@@ -247,7 +247,9 @@ def reasons(
         parts = PARTS[name]
         row = parts.sensor_axis
         if not recorded["xyz".index(row)]:
-            result[name] = _("the {row} {sensor} is not recorded", row=row, sensor=sensor)
+            result[name] = _(
+                "the {row} {sensor} is not recorded, or masked", row=row, sensor=sensor
+            )
         elif not determined[i]:
             kind = "bias" if parts.kind == "bias" else "matrix"
             result[name] = cures[kind].format(axis=parts.input_axis)

@@ -25,9 +25,12 @@ from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.parameters import BIAS
 
-NO_TURNS = _("no axis {axis} was turned about both ways over the same known angle: add such turns")
+NO_TURNS = _(
+    "no readings, recorded and not masked, of turns about {axis} both ways over the same known "
+    "angle: add such turns"
+)
 MIN_SIGMA = 1e-15  # rad/s, in place of zero
-NOT_RECORDED = _("the {axis} gyro is not recorded")
+NOT_RECORDED = _("the {axis} gyro is not recorded in these manoeuvres, or masked there")
 
 
 def add_formulas(

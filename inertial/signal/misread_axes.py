@@ -77,9 +77,10 @@ def describe_misread(misread: Misread, recorded: Recorded) -> Description:
         )
     if misread.part is not None and not misread.undone:
         action = _(
-            "These readings, and those of which it is not sure, are left out. See what changed "
-            "where it begins and ends; turn the sign in the log, or give each part a log of its "
-            "own, and run it again."
+            "The {axis} gyro is left out there, from the earliest to the latest moment that it may "
+            "be reversed. See what changed where it begins and ends; turn the sign in the log, or "
+            "give each part a log of its own, and run it again.",
+            axis=AXES[misread.part.axis],
         )
     elif misread.change is not None and not misread.undone:
         action = _(
@@ -152,13 +153,14 @@ def _of_a_change(misread: Misread, change: SignChange) -> str:
 def _of_a_part(misread: Misread, part: ReversedPart) -> str:
     """Where a gyro is reversed, and what shows it."""
     sentence = _(
-        "The {axis} gyro reads its negative in a part of the recording, {begins} {ends}: only so "
-        "do the gyros turn gravity there as the accelerometers see it turn, in {spans} of half a "
-        "second; elsewhere it reads as it should.",
+        "The {axis} gyro reads its negative in a part of the recording, {begins} {ends}. While the "
+        "case is turned over there, the rotation that the gyros read carries the direction of "
+        "gravity where the accelerometers find it only if {axis} is negated ({spans} of 0.5 s); "
+        "elsewhere it reads as it should.",
         axis=AXES[part.axis],
         begins=_begins(part.begins),
         ends=_ends(part.ends),
-        spans=counted(misread.spans, "span"),
+        spans=counted(misread.spans, "interval"),
     )
     if not part.turns:
         return sentence
@@ -207,9 +209,8 @@ def _consequence_in_all_logs(misread: Misread) -> str:
     sensor, axes = PLURAL[misread.sensor], _in_the_matrix(misread.axes)
     if misread.part is not None:
         return _(
-            "Used as they are named, these readings would give {axes}, and a bias and cross terms "
-            "of the wrong sign, in this part alone: what fits neither part.",
-            axes=axes,
+            "Used unchanged, the {axis} scale factor would have the wrong sign there.",
+            axis=AXES[misread.part.axis],
         )
     if misread.change is not None and not misread.undone:
         return _(

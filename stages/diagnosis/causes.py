@@ -28,7 +28,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
-from inertial.text.parameters import sign_of
+from inertial.text.parameters import MIXTURE, sign_of
 from inertial.text.units import quantity
 from stages.diagnosis.decision import MAX_MOVE, UNEXPLAINED
 from stages.diagnosis.gravity_by_latitude import Gravity
@@ -66,6 +66,10 @@ DONE = {
     LEFT_OUT: _("The manoeuvres concerned are left out of the estimates."),
     NONE: _("Nothing was done about it."),
 }
+BY_MEMBERS = _(
+    "The parameters are the mean over the members of the class, by their probability; the further "
+    "terms are those of the most probable one."
+)
 OWN_ERROR = _(
     "{manoeuvre} has an unknown error of its own in the model, so that it moves no parameter."
 )
@@ -297,6 +301,8 @@ class Evidence:
         freed = next(filter(None, (manoeuvres.get(main.id) for manoeuvres in apart)), None)
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
         done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
+        if cure == MODELLED and main.verdict == ONE_OF_CLASS and any(map(_is_mean, own)):
+            done = BY_MEMBERS
         if main.id in self.walks or _rounds(main):
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
@@ -449,6 +455,10 @@ def _turns(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
         return {}
     others = [result for result in own if not result.shows(MOUNTINGS)]
     return {r.sensor: move for r in others for move in moved_by_turning(own, [r])}
+
+
+def _is_mean(result: SensorResult) -> bool:
+    return result.chosen.method == MIXTURE
 
 
 def _gain(cause: Hypothesis, drop: float | None, own: Sequence[SensorResult]) -> str | None:

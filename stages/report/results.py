@@ -18,7 +18,6 @@ from inertial.text.parameters import (
     WITHOUT_ONE,
     sign_of,
 )
-from inertial.text.typography import capital
 from stages.report.outline import Tone
 from stages.report.tables import DECISION_TABLES, Record, Tables, once
 from stages.report.words import SENSOR_OF_STAGE, sensor_of_stage, term, with_mount
@@ -35,13 +34,13 @@ METHOD = {
     MIXTURE: _("mean over the members of a class, by their probability"),
     "six_position": _("six positions, closed formula"),
     "free_positions": _("static positions of unknown attitude, by |f| = g"),
-    "up_and_down": _("two positions with tilt, S1"),
-    "pooled_positions": _("static positions at one attitude pooled, S3"),
+    "up_and_down": _("two positions with tilt"),
+    "pooled_positions": _("static positions at one attitude pooled, Han & Fu 2019"),
     "static": _("static positions up and down, closed formula"),
     "turns": _("turns forward and backward, closed formula"),
-    "turn_and_stop": _("turn and stop, S3: M, and the bias by turns"),
-    "stops": _("turn and stop, S3: the bias by static positions"),
-    "rate_table": _("rate table, S4"),
+    "turn_and_stop": _("turn and stop, Han & Fu 2019: M, and the bias by turns"),
+    "stops": _("turn and stop, Han & Fu 2019: the bias by static positions"),
+    "rate_table": _("rate table, Beihang University 2013"),
 }
 KIND = {
     "bias": _("Bias"),
@@ -248,15 +247,13 @@ class Shift:
 
     @property
     def name(self) -> str:
-        """The parameter in words, a sentence beginning with it."""
+        """The parameter in words, within a sentence."""
         kind, axes = PARTS[self.extended["parameter"]]
-        return capital(
-            _(
-                "{lower} {axes} of the {lower_2}",
-                lower=KIND.get(kind, kind).lower(),
-                axes=axes,
-                lower_2=self.sensor.lower(),
-            )
+        return _(
+            "{lower} {axes} of the {lower_2}",
+            lower=KIND.get(kind, kind).lower(),
+            axes=axes,
+            lower_2=self.sensor.lower(),
         )
 
     @property

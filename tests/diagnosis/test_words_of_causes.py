@@ -3,8 +3,10 @@
 from math import radians
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from inertial.campaign.estimates import reasons
 from stages.diagnosis.causes import MASKED, MODELLED, _gain, _most_moved
 from stages.diagnosis.sensor_results import Moved
 from stages.diagnosis.verdict import _limit
@@ -54,3 +56,11 @@ def test_a_further_term_is_to_be_used(effect, share, said):
     assert _limit(cause, result(effect, joint_share=share)).endswith(said)
     masked = SimpleNamespace(cure=MASKED, main=main)
     assert _limit(masked, result(effect)) == "masked: its data were not used"
+
+
+def test_a_gyro_that_gave_no_reading_may_be_masked():
+    there = np.array([True, True, False])
+    why = reasons(np.ones(12, bool), there, "gyro", {"bias": "", "matrix": ""})
+    assert set(why) == {"bias_z", "scale_z", "cross_zx", "cross_zy"}
+    assert {*why.values()} == {"the z gyro is not recorded, or masked"}
+    assert not reasons(np.ones(12, bool), np.ones(3, bool), "gyro", {"bias": "", "matrix": ""})

@@ -323,12 +323,12 @@ def test_constants_of_effects_are_no_gaps_and_temperatures_are_in_celsius() -> N
         row("gyro_warm_up.T_min", 298.38, None, "K"),
     ]
     detected = [row("tau", 41.674, 2.126, "s")]
-    table = certified_values.further_terms(rows, detected)
+    table = certified_values.further_terms(rows, {}, detected)
     _head, _b, tau, low = (line.cells for line in table.rows)
     assert tau[1:4] == ("41.7", "4.3", "s")  # U is twice sigma
     assert float(low[1]) == pytest.approx(25.23) and low[2:4] == ("—", "°C")
     assert "constant of the effect" in table.note
-    assert "constant of" not in certified_values.further_terms(rows[:2], detected).note
+    assert "constant of" not in certified_values.further_terms(rows[:2], {}, detected).note
 
 
 def test_a_constant_of_an_effect_is_not_called_undetermined() -> None:
@@ -491,7 +491,9 @@ def test_the_figures_of_the_standards_stand_beside_what_noise_explains() -> None
 def test_a_difference_says_which_two_methods_it_is_of() -> None:
     page = Page(synthetic.documents()["html"])
     compared = page.rows["comparison/method_against_method/gyroscope/bias_y"][0]
-    assert compared == ("Turn and stop, S3: M, and the bias by turns; joint fit of all manoeuvres")
+    assert compared == (
+        "Turn and stop, Han & Fu 2019: M, and the bias by turns; joint fit of all manoeuvres"
+    )
 
 
 def test_an_upper_and_a_lower_limit_have_digits_that_tell_them_apart() -> None:

@@ -39,3 +39,9 @@ def test_a_figure_a_table_with_range_and_knot_and_the_warm_up() -> None:
     assert z[1] == "two straight lines" and z[4] == "24.8"
     assert "change from 33.0 °C" in z[-1] and "or a tilt" in z[-1]
     assert isinstance(sentences, Sentences) and "3521 s" in sentences.items[0]
+
+
+def test_a_change_has_its_sign_where_the_curve_does_not_turn() -> None:
+    assert temperature._change([0.0, -200.0, -754.3]) == "−754"
+    assert temperature._change([10.0, 2000.0, 5350.0]) == "+5340"
+    assert temperature._change([1.0, 4.0, 2.0]) == "3.00"  # up, and down again

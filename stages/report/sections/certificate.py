@@ -274,7 +274,7 @@ def _standards(tables: Tables) -> Table:
             "95 %."
         ),
         columns("text", _("Quantity"), _("Standard or value"), _("Certificate or origin"))
-        + columns("name", _("valid until")),
+        + columns("name", _("Valid until")),
         rows,
     )
 

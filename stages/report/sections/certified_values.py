@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from inertial.campaign.records import grouped
 from inertial.effects import KNOWN
-from inertial.physics.effect import Term
 from inertial.sensors import PLURAL, SINGULAR
 from inertial.tables import BODY
 from inertial.text import numbers
@@ -192,7 +191,7 @@ def added_to_readings(rows: Sequence[Record]) -> Iterator[Equation]:
         sums: dict[str, list[str]] = {}
         for each in KNOWN[effect].terms if effect in KNOWN else ():
             if each.parameter in names:
-                sums.setdefault(each.channel[-1], []).append(_term(each))
+                sums.setdefault(each.channel[-1], []).append(_term(each.parameter, each.factor))
         if not sums:
             continue
         by_axis = {axis: " + ".join(terms) for axis, terms in sums.items()}
@@ -206,18 +205,18 @@ def added_to_readings(rows: Sequence[Record]) -> Iterator[Equation]:
         yield Equation(text, "; ".join([capital(in_words(effect)), *axes, *used]) + ".")
 
 
-def _term(each: Term) -> str:
+def _term(parameter: str, factor: str) -> str:
     """A parameter times its factor as it is written, k_x · f_x² for k_x * f_x * f_x."""
     factors: dict[str, int] = {}
-    for factor in each.factor.split(" * "):
-        factors[factor] = factors.get(factor, 0) + 1
+    for each in factor.split(" * "):
+        factors[each] = factors.get(each, 0) + 1
     written = [
         f + ("" if count == 1 else str(count).translate(SUPERSCRIPTS))
         for f, count in factors.items()
     ]
     factor = re.sub(r"abs\((\w+)\)", r"|\1|", " · ".join(written)).replace("-", "−")
     factor = re.sub(r"\w+", lambda name: sign_of(re.sub("^w_", "ω_", name[0])), factor)
-    sign = sign_of(each.parameter)
+    sign = sign_of(parameter)
     return f"({sign}) · {factor}" if " " in sign else f"{sign} · {factor}"
 
 

@@ -199,7 +199,7 @@ MOST_CALIBRATIONS = 40
 THIS = _("this one")
 VERDICTS = {
     "usable": _("usable"),
-    "usable_within_limits": _("usable within limits"),
+    "usable_within_limits": _("usable, with departures from the ideal"),
     "on_condition": _("on condition:"),
     "not_usable": _("not usable"),
 }

@@ -339,7 +339,7 @@ def largest_shift(shifts: Sequence[Shift]) -> str:
         for sigma in [unit.of(row["sigma"])]
     )
     return _(
-        "{name} changes most of the parameters: from {before} to {after} {name_2}.",
+        "Of all parameters, {name} changes most: from {before} to {after} {name_2}.",
         name=most.name,
         before=before,
         after=after,

@@ -199,7 +199,7 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
             outline.Column(_("parameter"), "symbol", _("Detection limit (5 σ)")),
             outline.Column(_("best axis"), "number", _("Detection limit (5 σ)")),
             outline.Column(_("unit"), "unit", _("Detection limit (5 σ)")),
-            outline.Column("σ", "number", _("Shift by an undetected effect")),
+            outline.Column(_("shift, in σ"), "number", _("Shift by an undetected effect")),
             outline.Column(_("parameter"), "symbol", _("Shift by an undetected effect")),
             outline.Column(_("sensor"), "text", _("Shift by an undetected effect")),
             outline.Column("p", "number"),

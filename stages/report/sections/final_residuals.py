@@ -177,7 +177,11 @@ def _table(tables: Tables) -> Table:
             rows.append(table_row(name, *cells, tone="fair" if high else ""))
     headings = (_("means"), _("rms, in σ"), _("beyond 3 σ"))
     return Table(
-        _("Root mean square of the residuals over σ, and how many are beyond 3 σ."),
+        _(
+            "Root mean square of the residuals over σ, and how many are beyond 3 σ. σ is that of "
+            "white noise alone: the errors of the table, of positions and of rates, by which tests "
+            "and the σ of the result are larger, are not in it, so that more than 1 is no finding."
+        ),
         (
             Column(_("Sensor")),
             *columns("number", *headings, group=_("Static positions")),

@@ -9,12 +9,14 @@ from matplotlib.axes import Axes
 
 from inertial.sensors import PLURAL
 from inertial.text.messages import _
-from inertial.text.numbers import counted, fixed
+from inertial.text.numbers import counted, fixed, significant
 from inertial.text.typography import capital
 from inertial.text.units import ICE_POINT, quantity
 from stages.report import drawing, outline
 from stages.report.tables import Record, Tables
 from stages.report.words import plain, with_mount
+
+SAME = 0.99  # share of its span that the two ends of a curve without a turn differ by
 
 MOST_PANELS = 12
 DEGREES = {1: _("straight line"), 2: _("parabola"), 3: _("cubic")}
@@ -90,6 +92,14 @@ def _table(title: str, curves: Curves) -> outline.Table:
     return outline.Table(_("Curves of the {title}.", title=title), columns, rows)
 
 
+def _change(values: Sequence[float]) -> str:
+    """From the lowest to the highest temperature; of a curve that turns, by how much, unsigned."""
+    change, span = values[-1] - values[0], max(values) - min(values)
+    if abs(change) < SAME * span:
+        return significant(span, 3)
+    return f"{'+' if change > 0 else ''}{significant(change, 3)}"
+
+
 def _row(name: str, rows: Sequence[Record]) -> outline.Row:
     first, last = rows[0], rows[-1]
     unit = quantity(name, first["unit"]).shown
@@ -115,7 +125,7 @@ def _row(name: str, rows: Sequence[Record]) -> outline.Row:
         fixed(first["temperature"] - ICE_POINT, 1),
         fixed(last["temperature"] - ICE_POINT, 1),
         "" if knot is None else fixed(knot - ICE_POINT, 1),
-        f"{max(values) - min(values):.3g}",
+        _change(values),
         unit.name,
         remark,
     )

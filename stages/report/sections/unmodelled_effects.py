@@ -376,9 +376,12 @@ def _gain(tables: Tables, row: Record, mount: str) -> Iterator[str]:
 
 
 def _worth(tables: Tables, row: Record, mount: str) -> str:
-    if not about_effect(decisions(tables), row["cause"], mount):
+    """What the effects of a mount cost navigation, all together; once, with the first of them."""
+    own = (each for each in effect_findings(tables) if each["mount"] == row["mount"])
+    named = (each for each in own if about_effect(decisions(tables), each["cause"], mount))
+    if (first := next(named, None)) is None or first["id"] != row["id"]:
         return ""
     of_mount = [each for each in decisions(tables) if (each["mount"] or "") == mount]
     together = dict.fromkeys(name for each in of_mount for name in each["effects"])
-    own = [each for each in tables.rows("worth") if (each["mount"] or "") == mount]
-    return worth(list(together), own)
+    costs = [each for each in tables.rows("worth") if (each["mount"] or "") == mount]
+    return worth(list(together), costs)
