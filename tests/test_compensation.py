@@ -393,6 +393,8 @@ def test_without_a_latitude_the_gyros_tell_the_earths_rate(tmp_path):
 def test_terms_that_the_result_does_without_take_nothing_of_the_budget(clean):
     """Of a polynomial of temperature on all parameters one term of y: x keeps the sigma it has."""
     (data,) = chain.mounts(clean[0])
+    warming = data.blocks.assign(temperature=290.0 + data.blocks["time"] / 60)
+    data = replace(data, blocks=warming)
     result, fits = clean[0]["diagnosis/result"], rows_of(clean[0]["accelerometer/fit"])
     measurement = measurement_of(rows_of(result))
     own = measurement.accelerometer
