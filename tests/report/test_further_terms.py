@@ -30,24 +30,26 @@ def said(html: str) -> str:
 )
 def test_a_further_term_has_its_equation(parameter: str, equation: str) -> None:
     effect = parameter.partition(".")[0]
-    row = {"effect": effect, "sensor": effect.partition("_")[0], "parameter": parameter, "value": 1}
-    (line,) = certified_values.added_to_readings([row])
-    assert line.text == equation
+    rows = [{"parameter": parameter, "value": 1}]
+    assert certified_values.added_to_readings(effect, rows) == equation
 
 
-def test_the_same_term_of_three_axes_is_one_equation() -> None:
-    rows = [
-        {"effect": "gyro_warm_up", "sensor": "gyro", "parameter": f"gyro_warm_up.b_{i}", "value": 1}
-        for i in "xyz"
-    ]
-    (line,) = certified_values.added_to_readings(rows)
-    assert line.text == "+ b_i · exp(−t / τ)"
-    assert line.meaning == "Gyro warm-up; i = x, y, z; t: time, s, from the first sample."
+@pytest.mark.parametrize(
+    ("effect", "names", "equation"),
+    [
+        ("gyro_warm_up", [f"b_{i}" for i in "xyz"], "+ b_i · exp(−t / τ)"),
+        ("gyro_g_sensitivity", [f"g_{i}{j}" for i in "xyz" for j in "xyz"], "+ Σ_j g_ij · f_j"),
+    ],
+)
+def test_the_same_term_of_three_axes_is_one_equation(effect, names, equation) -> None:
+    rows = [{"parameter": f"{effect}.{name}", "value": 1} for name in names]
+    assert certified_values.added_to_readings(effect, rows) == equation
 
 
 def test_what_is_no_term_of_a_reading_has_no_equation() -> None:
-    tilt = {"effect": "table_tilt", "sensor": "accel", "parameter": "table_tilt.x", "value": 1e-6}
-    assert not [*certified_values.added_to_readings([tilt])]
+    assert not certified_values.added_to_readings(
+        "table_tilt", [{"parameter": "table_tilt.x", "value": 1e-6}]
+    )
 
 
 def with_quadratic_term(made: dict[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:

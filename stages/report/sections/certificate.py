@@ -48,7 +48,6 @@ from stages.report.results import (
 from stages.report.sections import basis, unmodelled_effects
 from stages.report.sections.certified_values import (
     NOT_USABLE,
-    added_to_readings,
     conformity,
     earlier_values,
     frame_of,
@@ -150,7 +149,6 @@ def parts(tables: Tables) -> Iterator[Part]:
         yield values(own, mount, earlier)
         if effects := [row for result in own for row in result.effects]:
             yield further_terms(effects, of_classes(tables), tables.rows("effects"))
-            yield from added_to_readings(effects)
     yield from _not_for_use(tables)
     yield from conformity(tables)
     yield Sentences(tuple(_statements(tables, earlier)))

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from inertial.campaign.records import grouped
 from inertial.effects import KNOWN
 from inertial.sensors import PLURAL, SINGULAR
-from inertial.tables import BODY
+from inertial.tables import AXES, BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
@@ -18,7 +18,6 @@ from inertial.text.typography import capital
 from inertial.text.units import COVERAGE_FACTOR, Unit
 from stages.report.outline import (
     Column,
-    Equation,
     Heading,
     Paragraph,
     Part,
@@ -128,6 +127,7 @@ def further_terms(
     known = {(row["mount"], f"{row['effect']}.{row['parameter']}"): row for row in detected}
     rows = [row | {"sigma": row["sigma"] or _scanned(row, known)} for row in rows]
     lines: list[Row] = []
+    equations: list[str] = []
     by_place = grouped(rows, lambda row: (row["effect"], row["sensor"]))
     for (effect, sensor), own in by_place.items():
         heading = capital(in_words(effect))
@@ -139,7 +139,9 @@ def further_terms(
                 effect=heading,
                 count=count,
             )
-        lines.append(head(heading))
+        equation = added_to_readings(effect, own)
+        equations.append(equation)
+        lines.append(head(f"{heading}: {equation}" if equation else heading))
         for row in own:
             if row["value"] is not None:
                 unit = quantity_of(row).shown
@@ -165,6 +167,7 @@ def further_terms(
             * any(row["value"] is not None and not row["sigma"] for row in rows)
             + [_("Where a parameter depends on the temperature, the value above is that at T0.")]
             * any(symbol(row["parameter"]) == "T0" for row in rows)
+            + _symbols(" ".join(equations))
         ),
     )
 
@@ -178,31 +181,38 @@ SYMBOLS = {  # of the factors of effects
 }
 
 
+def _symbols(equations: str) -> list[str]:
+    """What the symbols of equations are, as a sentence."""
+    used = [says for sign, says in SYMBOLS.items() if re.search(rf"\b{sign}", equations)]
+    return ["; ".join(used) + "."] if used else []
+
+
 SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
-def added_to_readings(rows: Sequence[Record]) -> Iterator[Equation]:
-    """What each effect of a result adds to the readings, an equation for each.
+def added_to_readings(effect: str, rows: Sequence[Record]) -> str:
+    """What an effect of a result adds to the readings; empty for one of the table, or of the site.
 
-    An effect of the table, or of the site, adds nothing that is to be taken off.
+    That is nothing which is to be taken off.
     """
-    for (effect, _sensor), own in grouped(rows, lambda row: (row["effect"], row["sensor"])).items():
-        names = {row["parameter"].rpartition(".")[2] for row in own if row["value"] is not None}
-        sums: dict[str, list[str]] = {}
-        for each in KNOWN[effect].terms if effect in KNOWN else ():
-            if each.parameter in names:
-                sums.setdefault(each.channel[-1], []).append(_term(each.parameter, each.factor))
-        if not sums:
-            continue
-        by_axis = {axis: " + ".join(terms) for axis, terms in sums.items()}
-        alike = {re.sub(rf"_{axis}\b", "_i", text) for axis, text in by_axis.items()}
-        if len(by_axis) > 1 and len(alike) == 1:
-            lines, axes = [f"+ {alike.pop()}"], [f"i = {', '.join(by_axis)}"]
-        else:
-            lines, axes = [f"{axis}: + {text}" for axis, text in by_axis.items()], []
-        text = "; ".join(lines)
-        used = [says for sign, says in SYMBOLS.items() if re.search(rf"\b{sign}", text)]
-        yield Equation(text, "; ".join([capital(in_words(effect)), *axes, *used]) + ".")
+    names = {row["parameter"].rpartition(".")[2] for row in rows if row["value"] is not None}
+    sums: dict[str, list[str]] = {}
+    for each in KNOWN[effect].terms if effect in KNOWN else ():
+        if each.parameter in names:
+            sums.setdefault(each.channel[-1], []).append(_term(each.parameter, each.factor))
+    by_axis = {axis: _over_axes(terms) for axis, terms in sums.items()}
+    alike = {re.sub(rf"_{axis}(?=\b|j)", "_i", text) for axis, text in by_axis.items()}
+    if len(by_axis) > 1 and len(alike) == 1:
+        return f"+ {alike.pop()}"
+    return "; ".join(f"{axis}: + {text}" for axis, text in by_axis.items())
+
+
+def _over_axes(terms: Sequence[str]) -> str:
+    """The sum of terms; Σ_j of those that differ by the axes x, y and z alone."""
+    alike = {re.sub(rf"{axis}\b", "j", text) for axis, text in zip(AXES, terms, strict=False)}
+    if len(terms) == len(AXES) and len(alike) == 1:
+        return f"Σ_j {alike.pop()}"
+    return " + ".join(terms)
 
 
 def _term(parameter: str, factor: str) -> str:
