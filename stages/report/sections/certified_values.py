@@ -127,7 +127,6 @@ def further_terms(
     known = {(row["mount"], f"{row['effect']}.{row['parameter']}"): row for row in detected}
     rows = [row | {"sigma": row["sigma"] or _scanned(row, known)} for row in rows]
     lines: list[Row] = []
-    equations: list[str] = []
     by_place = grouped(rows, lambda row: (row["effect"], row["sensor"]))
     for (effect, sensor), own in by_place.items():
         heading = capital(in_words(effect))
@@ -139,9 +138,7 @@ def further_terms(
                 effect=heading,
                 count=count,
             )
-        equation = added_to_readings(effect, own)
-        equations.append(equation)
-        lines.append(head(f"{heading}: {equation}" if equation else heading))
+        lines.append(head(heading + _equation(effect, own)))
         for row in own:
             if row["value"] is not None:
                 unit = quantity_of(row).shown
@@ -167,7 +164,6 @@ def further_terms(
             * any(row["value"] is not None and not row["sigma"] for row in rows)
             + [_("Where a parameter depends on the temperature, the value above is that at T0.")]
             * any(symbol(row["parameter"]) == "T0" for row in rows)
-            + _symbols(" ".join(equations))
         ),
     )
 
@@ -181,10 +177,11 @@ SYMBOLS = {  # of the factors of effects
 }
 
 
-def _symbols(equations: str) -> list[str]:
-    """What the symbols of equations are, as a sentence."""
-    used = [says for sign, says in SYMBOLS.items() if re.search(rf"\b{sign}", equations)]
-    return ["; ".join(used) + "."] if used else []
+def _equation(effect: str, rows: Sequence[Record]) -> str:
+    """What it adds to the readings, with what the symbols are, behind its name."""
+    text = added_to_readings(effect, rows)
+    used = [says for sign, says in SYMBOLS.items() if re.search(rf"\b{sign}", text)]
+    return f": {text} ({'; '.join(used)})" if text else ""
 
 
 SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
