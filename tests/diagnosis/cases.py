@@ -15,6 +15,8 @@ from hidden import hidden_plans
 
 Document = dict[str, Any]
 
+LATITUDE, STATED_GRAVITY = 30.5278, 9.7936174  # degrees, m/s²: of the demo's site
+
 USABLE, LIMITS, CONDITION, NOT = "usable", "usable_within_limits", "on_condition", "not_usable"
 GOOD = frozenset({USABLE})
 LIMITED = frozenset({LIMITS})
@@ -183,6 +185,22 @@ def effect(**hidden: Any) -> Document:
     return {"effects": hidden}
 
 
+def elsewhere(degrees: float, **hidden: Any) -> Document:
+    """A latitude that is stated so much too small, and with it the gravity of the site.
+
+    Gravity by the international formula of 1980, at the stated latitude as stated.
+    """
+    gravity = [
+        9.780327 * (1 + 0.0053024 * np.sin(phi) ** 2 - 5.8e-6 * np.sin(2 * phi) ** 2)
+        for phi in np.radians([LATITUDE, LATITUDE + degrees])
+    ]
+    true = STATED_GRAVITY + float(gravity[1] - gravity[0])
+    return {
+        **effect(latitude_error={"error_deg": degrees}, **hidden),
+        "truth": {"gravity_m_s2": true},
+    }
+
+
 def fault(*faults: Mapping[str, Any]) -> Document:
     return {"faults": list(faults)}
 
@@ -271,22 +289,25 @@ CASES: tuple[Case, ...] = (
         "latitude-off",
         there_and_back,
         (cause({"latitude_error"}, "gyro"),),
+        accel=CONDITIONAL,
         gyro=CONDITIONAL | LIMITED,
-        hidden=effect(latitude_error={"error_deg": 2.0}),
+        hidden=elsewhere(2.0),
     ),
     Case(
         "latitude-far-off",  # 1 − cos of which is no earth rate left out
         there_and_back,
         (cause({"latitude_error"}, "gyro", alone=True),),
+        accel=CONDITIONAL,
         gyro=CONDITIONAL | LIMITED,
-        hidden=effect(latitude_error={"error_deg": 9.0}),
+        hidden=elsewhere(9.0),
     ),
     Case(
         "latitude-off-without-heading",  # what the gyros tell of the azimuth tells its size
         without_heading,
         (cause({"latitude_error"}, "gyro", alone=True),),
+        accel=CONDITIONAL,
         gyro=CONDITIONAL | LIMITED,
-        hidden=effect(latitude_error={"error_deg": 3.0}),
+        hidden=elsewhere(3.0),
     ),
     Case(
         "heading-off",
@@ -299,8 +320,9 @@ CASES: tuple[Case, ...] = (
         "heading-and-latitude-off",  # two turns that do not commute
         there_and_back,
         (cause({"heading_error"}, "gyro"), cause({"latitude_error"}, "gyro")),
+        accel=CONDITIONAL,
         gyro=CONDITIONAL | LIMITED,
-        hidden=effect(heading_error={"error_deg": 12.0}, latitude_error={"error_deg": -12.0}),
+        hidden=elsewhere(-12.0, heading_error={"error_deg": 12.0}),
     ),
     Case(
         "latitude-off-that-gravity-knows",  # the gravity that was measured is doubted until then
