@@ -158,7 +158,7 @@ def quantity(parameter: str, unit: str) -> Quantity:
     kind, _, axes = parameter.partition("_")
     if axes in ("xx", "yy", "zz") and unit in ("1", ""):
         return _RATIO
-    if parameter in _TEMPERATURES and unit == "K":
+    if unit == "K" and (parameter in _TEMPERATURES or kind == "knot"):
         return _CELSIUS
     if kind in _NUMBERS and unit == "1":
         return _NUMBER

@@ -38,4 +38,7 @@ def test_what_relaxes_after_any_turn_is_named_and_absent_where_nothing_is_hidden
     for parameter, truth in {"b_x": 0, "d_x": 0, "d_z": 0, "d_y": 0}.items():
         one = effects.loc[parameter]
         assert abs(one["value"] - truth * DEGREE_PER_HOUR) < 3.5 * one["sigma"], parameter
+    # With one delay after each turn the size is known only along with the time constant.
+    one = effects.loc["b_z"]
+    assert one["value"] > 10 * one["sigma"]
     assert not named({})[0] & RELAXING

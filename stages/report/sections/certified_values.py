@@ -172,7 +172,7 @@ SYMBOLS = {  # of the factors of effects
     r"f_\w": _("f: specific force, m/s²"),
     r"ω_\w": _("ω: angular rate, rad/s"),
     r"t": _("t: time, s, from the first sample"),
-    r"T": _("T: temperature of the IMU, K"),
+    r"T": _("T: temperature of the IMU, in the unit of T0"),
     r"[tT] >": _("(… > …): 1 where that is true, else 0"),
 }
 
