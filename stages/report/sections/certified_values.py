@@ -168,11 +168,11 @@ def further_terms(
     )
 
 
-SYMBOLS = {  # of the factors of effects
-    r"f_\w": _("f: specific force, m/s²"),
-    r"ω_\w": _("ω: angular rate, rad/s"),
-    r"t": _("t: time, s, from the first sample"),
-    r"T": _("T: temperature of the IMU, in the unit of T0"),
+SYMBOLS = {  # of the factors of effects, each in the unit that its coefficient has it in
+    r"f_\w": _("f: specific force"),
+    r"ω_\w": _("ω: angular rate"),
+    r"t": _("t: time from the first sample"),
+    r"T": _("T: temperature of the IMU"),
     r"[tT] >": _("(… > …): 1 where that is true, else 0"),
 }
 
