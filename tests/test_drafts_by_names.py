@@ -39,6 +39,22 @@ def test_the_axis_stands_before_the_sensor_or_is_a_word(names, tmp_path):
     assert "by their names" in comments(folder)
 
 
+@pytest.mark.parametrize("between", [",", "\t"])
+def test_the_names_stand_above_the_units(between, tmp_path):
+    """By number the axes were taken in the order of the columns: z, y, x."""
+    log = by_hand_log(20)
+    names = "t,az,ay,ax,gz,gy,gx\ns,m/s2,m/s2,m/s2,deg/s,deg/s,deg/s\n"
+    time = np.arange(len(log.force)) / RATE
+    rows = written([time, log.force[:, ::-1], np.degrees(log.rate)[:, ::-1]])
+    text = ("Logger 3\n" + names + rows).replace(",", between)
+    folder = drafted({"log.csv": text}, tmp_path)
+    layout = told(folder)["instrument"]["format"]
+    assert layout["header_lines"] == 3
+    assert layout["accelerometer"]["columns"] == ["ax", "ay", "az"]
+    assert layout["gyro"]["columns"] == ["gx", "gy", "gz"]
+    assert "gyro.axes" not in comments(folder)
+
+
 def test_roll_pitch_and_yaw_alone_are_angles(tmp_path):
     """Beside rates whose names say nothing, in an order of their own."""
     log = by_hand_log(21)

@@ -15,7 +15,12 @@ from inertial.arrays import Array, Booleans
 from inertial.formats.columns import column_reader, vectornav_lines
 from inertial.formats.columns.column_layout import names_in_header
 from inertial.formats.columns.column_values import NUMBER
-from inertial.formats.columns.text_lines import BYTE_ORDER_MARK, names_in, without_names
+from inertial.formats.columns.text_lines import (
+    BYTE_ORDER_MARK,
+    names_in,
+    naming_line,
+    without_names,
+)
 from inertial.formats.file_type import FileType, file_type_of
 from inertial.formats.gps_time import NANOSECONDS
 from inertial.formats.novatel import novatel_reader
@@ -157,7 +162,7 @@ def _layout(
         "comment": comment,
         "header_lines": len(others) or None,
     }
-    named = (others or header)[-1] if header else ""
+    named = naming_line(others or header, delimiter) if header else ""
     names = _names(named, delimiter, length)
     if labels:
         stated["labelled"] = True
@@ -168,7 +173,7 @@ def _layout(
 
 
 def _names(line: str, delimiter: str | None, length: int) -> list[str]:
-    """The names in the last line of a header; none where they do not fit the columns."""
+    """The names in a line of a header; none where they do not fit the columns."""
     names = names_in_header(line, delimiter)
     fit = len(names) in (length, length - 1) and len(set(names)) == len(names) and all(names)
     return names if fit and not any(map(is_number, names)) else []

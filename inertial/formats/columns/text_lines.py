@@ -5,11 +5,11 @@ nothing: it is part of the text.
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from io import BufferedReader
 from pathlib import Path
-from typing import Any
+from typing import Any, AnyStr
 
 import numpy as np
 
@@ -151,12 +151,14 @@ class RowLines:
 class HeaderLines:
     """Separates header and comments from the rows of a log, chunk after chunk.
 
-    `names`: the line that may hold the names of the columns, which is the last of the header
-    lines; where none are stated, the last comment before the first row.
+    `names`: the line that may hold the names of the columns, by `naming_line` of the header
+    lines; where none are stated, of the comments before the first row.
     """
 
     def __init__(self, layout: Mapping[str, Any]) -> None:
         self.names = b""
+        self._last: list[bytes] = []  # two lines of the header
+        self._delimiter = str(layout["delimiter"]).encode() if layout.get("delimiter") else None
         self._comment = str(layout.get("comment") or "").encode()
         self._stated = int(layout.get("header_lines") or 0)
         self._left = self._stated
@@ -181,10 +183,20 @@ class HeaderLines:
             before = np.flatnonzero(comments[: rows[0]] if len(rows) else comments)
             named = header if self._stated else before
             if len(named):
-                self.names = chunk.text(int(named[-1]))
+                self._last = [*self._last, *(chunk.text(int(line)) for line in named[-2:])][-2:]
+                self.names = naming_line(self._last, self._delimiter)
         account = Account()
         account.add_all(HEADER, "", chunk.lengths[others])
         return RowLines(chunk.part(~others), account)
+
+
+def naming_line(header: Sequence[AnyStr], delimiter: AnyStr | None) -> AnyStr:
+    """The last line of a header; or the one before, where the last repeats a field, as units do."""
+    if len(header) > 1:
+        before, last = ([text.strip() for text in line.split(delimiter)] for line in header[-2:])
+        if len(set(before)) == len(before) == len(last) > len(set(last)):
+            return header[-2]
+    return header[-1]
 
 
 # ---- Rows whose fields carry their names, as many a serial port prints them
