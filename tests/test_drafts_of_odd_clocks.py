@@ -3,9 +3,11 @@
 import chain
 import numpy as np
 import pytest
-from drafting import comments, drafted, told, written
+from drafting import Rates, comments, drafted, moved, told, written
 from logs_by_hand import by_hand_log
 from moved_by_hand import RATE
+
+from commands.draft.__main__ import draft
 
 NAMES = "ax,ay,az,gx,gy,gz"
 
@@ -110,6 +112,28 @@ def test_a_rate_is_stated_in_other_languages(header, tmp_path):
     log = by_hand_log(36)
     layout, _said = layout_of(header + f"{NAMES}\n" + written([log.force, log.rate]), tmp_path)
     assert layout["time"] == {"rate_hz": 125}
+
+
+def test_ticks_that_are_a_rate_in_two_units_are_asked_about(tmp_path):
+    """The 39.0625 µs of Bosch were taken for ms, and the counts of gyros for those that then fit.
+
+    With these each quarter turn was of 51 turns more or less, and ended near the next position.
+    """
+    rates: Rates = []
+    for axis in (0, 2, 0, 1, 0):
+        rates += [(20, (0, 0, 0)), (3.25, tuple(np.eye(3)[axis] * np.pi / 6.5))]
+    log = moved([*rates, (20, (0, 0, 0))])
+    stamps = (16_770_000 + 256 * np.arange(len(log))) % 2**24
+    counts = np.rint(log[:, 1:4] / 9.80665 * 8192), np.rint(log[:, 4:] * 131.2)
+    text = f"sensortime;{NAMES.replace(',', ';')}\n" + written([stamps, *counts], ";", 9)
+    _layout, said = layout_of(text, tmp_path)
+    assert "a step of 256.000 ticks is 3.906 (ms) and 3906 (us) samples a second" in said
+    assert "how many are there?" in said and "no turn shows how many are in 1 °/s" in said
+    folder = draft([tmp_path / "log.csv"], "again", tmp_path / "data", rate=100)
+    layout, said = told(folder)["instrument"]["format"], comments(folder)
+    right = {"unit": "tick", "ticks_per_s": 25_600, "wraps_at": 2**24}
+    assert layout["time"] == {"column": "sensortime", **right}
+    assert layout["gyro"]["counts_per_unit"] == 131 and "how many are there?" not in said
 
 
 # ---- dates as they are written in Germany and in America

@@ -30,6 +30,7 @@ FIRST_SIGMA = 0.1  # relative, of a factor by the change of gravity's direction 
 MAX_MISS = np.radians(30)  # of a direction: a motion that misses by more says no more
 MIN_WAYS_OF_AXES, MAX_WAYS_OF_AXES = 4, 10  # motions by which axes are tried, the shortest of all
 MAX_CARRIED = np.radians(10)  # rms miss of the axes that are right: a scale factor, a hand's turn
+MAX_CARRIED_TURN = 4 * np.pi  # of most motions between positions: more turns end anywhere
 MIN_MISS_RATIO = 3.0  # of any other axes to that
 MAX_WAYS = 20  # motions by which the factor is refined, the shortest of all
 RANGE, STEP = 0.4, 0.02  # about the first factor, relative
@@ -148,9 +149,13 @@ def _by_other_axes(ways: Sequence[Way]) -> Turning | None:
 
 def _carried(ways: Sequence[Way]) -> tuple[float, float]:
     """The rms miss of the directions, rad, in the usual unit or count size of the least, rad/s."""
-    totals = [sum(_miss(way, size) for way in ways) for size in USUAL_SIZES]
+    turns = np.median([np.linalg.norm(rates, axis=1).sum() * step for *_ends, rates, step in ways])
+    sizes = [size for size in USUAL_SIZES if size * turns < MAX_CARRIED_TURN]
+    if not sizes:
+        return np.inf, 1.0
+    totals = [sum(_miss(way, size) for way in ways) for size in sizes]
     best = int(np.argmin(totals))
-    return float(np.sqrt(totals[best] / len(ways))), USUAL_SIZES[best]
+    return float(np.sqrt(totals[best] / len(ways))), sizes[best]
 
 
 def _usual(ways: Sequence[Way]) -> Turning | None:

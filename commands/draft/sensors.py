@@ -106,8 +106,8 @@ def _kind(group: Sequence[Sequence[RawLog]], sensor: Named | None, rate: float |
     triad = columns.accel or columns.gyro
     rows = triad.rows if triad is not None and triad.file == 0 else None
     timing = timing_of([together[0] for together in group], columns.time[0], rows)
-    if rate is not None and timing.unit in (None, "sample"):
-        timing = replace(timing, rate=rate, guessed=False, evidence=_("the rate is stated"))
+    if rate is not None:
+        timing = timing.with_stated(rate)
     if columns.accel and columns.time[0] is None and columns.label is None:
         readings = [columns.accel.of(together) for together in group]
         if all(map(are_means, readings)) or _are_means_of_one_attitude(columns, readings):

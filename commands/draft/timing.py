@@ -8,6 +8,7 @@ import numpy as np
 
 from commands.draft.raw_log import Name, RawLog, finite
 from inertial.arrays import Array
+from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant, whole
 
@@ -121,6 +122,20 @@ class Timing:
         """The same with a rate that something else says."""
         return replace(self, rate=rate, guessed=True, evidence=evidence)
 
+    def with_stated(self, rate: float) -> "Timing":
+        """The same where a person states the rate: of rows that are counted, or a guessed tick."""
+        if not self.guessed and self.unit not in (None, "sample"):
+            return self
+        why = _("the rate is stated")
+        if self.unit in (None, "sample"):
+            return replace(self, rate=rate, guessed=False, evidence=why)
+        if abs(np.log(rate / self.rate)) < np.log(MAX_OFF_STATED):
+            return replace(self, guessed=False, evidence=why, doubt="")
+        ticks = float(f"{self.clock_ticks * rate / self.rate:.4g}")
+        near = (own for own in UNITS.values() if abs(own / ticks - 1) < MAX_RATE_ERROR)
+        timing = self.with_ticks(next(near, ticks), why)
+        return replace(timing, guessed=False, doubt="")
+
 
 def timing_of(
     logs: Sequence[RawLog], column: Name | None, rows: tuple[Name, str] | None = None
@@ -205,10 +220,15 @@ def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
                 ticks=step,
             )
             return _Clock(unit_of(likely), likely, why)
-        why = _(
-            "a step of {ticks} is a plausible rate in {unit} only", ticks=step, unit=unit_of(likely)
+        why, doubt = _of_two_units(ticks, likely) or (
+            _(
+                "a step of {ticks} is a plausible rate in {unit} only",
+                ticks=step,
+                unit=unit_of(likely),
+            ),
+            "",
         )
-        return _Clock(unit_of(likely), likely, why, guessed=True)
+        return _Clock(unit_of(likely), likely, why, guessed=True, doubt=doubt)
     unit = SPELT.get(found[1].lower(), found[1].lower())
     named = UNITS[unit]
     plausible = MIN_RATE <= named / ticks <= MAX_RATE
@@ -231,6 +251,25 @@ def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
         rate=rate,
     )
     return _Clock(unit_of(likely), likely, why, guessed=True, doubt=doubt)
+
+
+def _of_two_units(ticks: float, likely: float) -> tuple[str, str] | None:
+    """What is seen and asked where a step of so many ticks is a rate of IMUs in two units, or None.
+
+    `likely`: ticks in a second of the likelier one, in which the rate is no common one.
+    """
+    within = (MIN_RATE, COMMON_RATES[-1])
+    units = [each for each in UNITS.values() if within[0] <= each / ticks <= within[1]]
+    if common_rate(likely / ticks) is not None or not set(units) - {likely}:
+        return None
+    rates = listed([f"{significant(each / ticks)} ({unit_of(each)})" for each in units])
+    step = significant(ticks, 6)
+    why = _("a step of {ticks} ticks is {rates} samples a second", ticks=step, rates=rates)
+    question = _(
+        "{why}, none of which is usual; how many are there? Draft it again with RATE=, or --rate",
+        why=why,
+    )
+    return why, question
 
 
 def tick_in_words(ticks_per_s: float) -> str:
