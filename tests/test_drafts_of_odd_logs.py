@@ -390,6 +390,25 @@ def test_a_journey_beside_a_calibration_is_left_out_and_told(tmp_path, first):
     assert "% of it, are in no manoeuvre of the plan" in comments(folder)
 
 
+def test_rows_that_alternate_are_samples_of_both_sensors(tmp_path):
+    """The plan counted lines, of which a sample has two: its manoeuvres were elsewhere."""
+    log = moved(faces_and_turns())
+    plain = {"plain.csv": "t,ax,ay,az,gx,gy,gz\n" + written([log])}
+    lines = [
+        f"{t + late:.3f},{sensor},{x:.5f},{y:.5f},{z:.5f}\n"
+        for t, *both in log.tolist()
+        for sensor, late, (x, y, z) in (("ACC", 0, both[:3]), ("GYR", 0.003, both[3:]))
+    ]
+    alternating = {"log.csv": "t,sensor,x,y,z\n" + "".join(lines)}
+    (tmp_path / "plain").mkdir()
+    right = [m.get("rows") for m in told(drafted(plain, tmp_path / "plain"))["plan"]]
+    folder = drafted(alternating, tmp_path)
+    assert [m.get("rows") for m in told(folder)["plan"]] == right
+    results = chain.run(folder, tmp_path / "derived", "segment")
+    assert results["segment/segments"]["to_record"].max() <= len(log)
+    assert results["segment/findings"].empty
+
+
 # ---- faces by hand
 
 

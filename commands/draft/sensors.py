@@ -231,7 +231,9 @@ def _parts(kind: Kind, together: Sequence[RawLog]) -> list[Part]:
         both = series(common[accel.file], common[gyro.file])
         return [Part(together, None, (common[0].start, common[0].stop), both)]
     if columns.label is None:
-        return [Part(together, None, (0, together[0].rows), series(*[slice(None)] * 2))]
+        both = series(*[slice(None)] * 2)
+        count = min(len(both.accel), len(both.gyro)) if kind.interleaved else together[0].rows
+        return [Part(together, None, (0, count), both)]
     words = np.array(together[0].words[columns.label])
     parts = []
     for word in dict.fromkeys(words.tolist()):
