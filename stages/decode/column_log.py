@@ -17,11 +17,14 @@ from inertial.signal.scale_factor import bits_without_sign, signed
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
+from inertial.text.numbers import significant
 from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
 from stages.decode.decoded import ANGLE_UNITS, Continuous, Decoded, first_of, intervals_of, on_axis
 
 # What a degree of a unit is in K, and its zero.
 KELVIN = {"degC": (1.0, ICE_POINT), "K": (1.0, 0.0), "degF": (5 / 9, ICE_POINT - 32 * 5 / 9)}
+
+MIN_INTERVAL = 1 / 50_000  # s, between samples: no IMU samples faster
 
 
 @dataclass(frozen=True)
@@ -116,6 +119,7 @@ class ColumnLog:
         first = first_of(each.ticks[~each.repeated] for each in self._stamps())
         if not len(first):
             return 0.0, None, None
+        self._refuse_fast(first)
         if "mean_of" not in self._layout:
             self.arrival = arrival_times(first, self._stamps, self._ticks)
         if self.arrival is not None:
@@ -125,6 +129,24 @@ class ColumnLog:
         if median is None or mean is None:
             return first[0].item(), None, None
         return first[0].item(), median / self._ticks, mean / self._ticks
+
+    def _refuse_fast(self, first: NDArray[Any]) -> None:
+        """Refuse first stamps, (n,), ticks, of more samples a second than any IMU takes."""
+        mean = float(first[-1] - first[0]) / max(len(first) - 1, 1)
+        if 0 < mean / self._ticks < MIN_INTERVAL:
+            time = self._layout["time"]
+            raise Refusal(
+                self.path.name,
+                "time",
+                _(
+                    "{rate} samples a second, by stamps in {unit} that are {ticks} apart",
+                    rate=significant(self._ticks / mean),
+                    unit=time["unit"],
+                    ticks=significant(mean),
+                ),
+                _("at most {rate} a second", rate=f"{1 / MIN_INTERVAL:g}"),
+                _("correct the unit of the time in its format, or name the column of the time"),
+            )
 
     def _stamps(self) -> Iterator[Stamped]:
         sensor = "accelerometer" if "accelerometer" in self._layout else "gyro"

@@ -183,6 +183,23 @@ def test_counters_of_an_xsens_export_go_on_where_they_begin_again(decoded, time)
     assert results["decode/clocks"]["interval"][0] == pytest.approx(0.01)
 
 
+def test_more_samples_a_second_than_an_imu_takes_are_of_a_wrong_unit(decoded):
+    """The count size of the accelerometers was blamed for it."""
+    log = b"t,ax,ay,az,gx,gy,gz\n" + rows([f"{n / 100:.2f}" for n in range(50)])
+    layout = f"{{kind: columns, delimiter: ',', header_lines: 1, {AXES}, "
+    with pytest.raises(Refusal, match=r"time\n.*100.* samples a second.*in ms") as refusal:
+        decoded(log, layout + "time: {column: t, unit: ms}}")
+    assert "correct the unit of the time" in refusal.value.cure
+
+
+def test_the_names_stand_above_a_line_of_units(decoded):
+    head = b"Logger 3\nt,az,ay,ax,gx,gy,gz\ns,m/s2,m/s2,m/s2,rad/s,rad/s,rad/s\n"
+    layout = f"{{kind: columns, delimiter: ',', header_lines: 3, {AXES}, "
+    results = decoded(head + rows(["0.00", "0.01"]), layout + "time: {column: t, unit: s}}")
+    assert results["decode/samples"]["accel_x"].tolist() == [3, 3]
+    assert results["decode/samples"]["accel_z"].tolist() == [1, 1]
+
+
 # ---- numbers and what separates them
 
 
