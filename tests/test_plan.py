@@ -255,6 +255,17 @@ MISTAKES = {
         ["plan[0]", "no key 'seconds'", "add seconds"],
     ),
     "broken YAML": ("serial: ", "serial: [", ["line", "YAML 1.2"]),
+    "an open quotation mark": (
+        'serial: "A-017"',
+        'serial: "A-017',
+        ["line 3\n", "a quotation mark without the second one", "add the second one"],
+    ),
+    "a tab": ("date: ", "\tdate: ", ["line 4\n", "a tab before the key", "write blanks"]),
+    "a second colon": (
+        'serial: "A-017"',
+        "serial: A: 017",
+        ["line 3\n", "a second colon in the line", "put the text in quotes"],
+    ),
 }
 
 

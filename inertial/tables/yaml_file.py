@@ -4,6 +4,7 @@ Dates stay text, as YAML 1.2 has it.
 """
 
 import difflib
+import re
 from collections.abc import Sequence
 from datetime import date
 from functools import cache
@@ -169,8 +170,10 @@ class YamlFile:
             )
         yaml = YAML(typ="rt", pure=True)
         yaml.Resolver = _DatesAreText
+        text = ""
         try:
-            return yaml.load(self.path.read_text(encoding="utf-8"))
+            text = self.path.read_text(encoding="utf-8")
+            return yaml.load(text)
         except UnicodeDecodeError as error:
             raise Refusal(
                 str(self.path),
@@ -181,6 +184,10 @@ class YamlFile:
             ) from None
         except MarkedYAMLError as error:
             mark = error.problem_mark
+            if mark and (slip := _slip(text, mark.line)) is not None:
+                number, found, expected, cure = slip
+                line = _("line {line}", line=number + 1)
+                raise Refusal(str(self.path), line, found, expected, cure) from None
             line = (
                 _("line {line}, column {column}", line=mark.line + 1, column=mark.column + 1)
                 if mark
@@ -244,6 +251,25 @@ class YamlFile:
         if node is None:
             return None
         raise self.refuse(key, str(node), "text or a number", _("put it in quotes"))
+
+
+def _slip(text: str, last: int) -> tuple[int, str, str, str] | None:
+    """A slip of a person by which a text is no YAML: line from 0, found, expected, cure; or None.
+
+    `last`: the line that could not be read; an open quotation mark stands some lines before.
+    """
+    lines = text.splitlines()
+    odd = [number for number, line in enumerate(lines) if line.count('"') % 2]
+    if len(odd) % 2 and odd[0] <= last:
+        found = _("a quotation mark without the second one")
+        return odd[0], found, _("text between two quotation marks"), _("add the second one")
+    line = lines[last] if last < len(lines) else ""
+    if "\t" in line[: len(line) - len(line.lstrip())]:
+        return last, _("a tab before the key"), _("blanks"), _("write blanks in its place")
+    if re.fullmatch(r"[\s-]*[\w-]+: +[^\"'{\[#]*: .*", line):
+        found = _("a second colon in the line, in text without quotation marks")
+        return last, found, 'key: "…: …"', _("put the text in quotes")
+    return None
 
 
 def _keys_near(unknown: str, allowed: Sequence[str], required: Sequence[str]) -> str:
