@@ -23,12 +23,20 @@ from inertial.tables.campaign_files import campaigns, logs_of
 from inertial.tables.code import code_of, hash_of
 from inertial.tables.errors import Refusal
 from inertial.tables.failed_run import FailedRun
+from inertial.tables.yaml_file import YamlFile
 from overviews.fleet.declared import READ as READ_BY_FLEET
 from overviews.fleet.selection import selected
 from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 
 
-configfile: HOME / "config.yaml"
+SETTINGS = HOME / "config.yaml"
+try:
+    YamlFile(SETTINGS).check("config")  # with line and cure, before Snakemake reads it
+except Refusal as refusal:
+    sys.exit(str(refusal))
+
+
+configfile: SETTINGS
 
 
 validate(config, str(HOME / "inertial/tables/config.schema.yaml"))

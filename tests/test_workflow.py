@@ -310,6 +310,19 @@ def test_an_unknown_setting_is_refused_by_name(workflow: Workflow, tmp_path: Pat
     assert "'from_herz' was unexpected" in done.stdout + done.stderr
 
 
+def test_a_mistake_in_the_settings_is_refused_with_its_line(workflow: Workflow) -> None:
+    settings = workflow.home / "config.yaml"
+    right = settings.read_text(encoding="utf-8")
+    try:
+        settings.write_text(right.replace("rest_block", "rest_blok"), encoding="utf-8")
+        done = workflow.run("--dry-run", "--", PAGE)
+    finally:
+        settings.write_text(right, encoding="utf-8")
+    assert done.returncode != 0 and "Traceback" not in done.stderr
+    assert "config.yaml, line 11, segment.rest_blok" in done.stderr
+    assert done.stderr.rstrip().endswith("cure:     write rest_block")
+
+
 # ---- make
 
 
