@@ -139,3 +139,37 @@ def test_what_a_filter_made_of_an_imu_is_no_second_one(tmp_path):
     layout = told(folder)["instrument"]["format"]
     assert layout["accelerometer"]["columns"] == ["ax", "ay", "az"]
     assert "holds other" not in comments(folder)
+
+
+# ---- units in names, where nothing turns
+
+
+@pytest.mark.parametrize(
+    ("unit", "right"),
+    [
+        ("deg/h", {"unit": "deg/s", "counts_per_unit": 3600}),
+        ("°/h", {"unit": "deg/s", "counts_per_unit": 3600}),
+        ("Grad/s", {"unit": "deg/s"}),
+        ("mrad/s", {"unit": "rad/s", "counts_per_unit": 1000}),
+    ],
+)
+def test_gyros_that_do_not_turn_have_the_unit_in_their_names(unit, right, tmp_path):
+    """Those in °/h were taken for °/s, and those in Grad/s for rad/s."""
+    random = np.random.default_rng(24)
+    force = np.array([0.0, 0.0, 9.81]) + 0.01 * random.standard_normal((1000, 3))
+    rate = np.array([3.0, -2.0, 1.0]) + 0.1 * random.standard_normal((1000, 3))
+    names = "ax,ay,az," + ",".join(f"gyro_{axis} [{unit}]" for axis in "xyz")
+    folder = drafted({"log.csv": logged(names, force, rate)}, tmp_path)
+    gyro = told(folder)["instrument"]["format"]["gyro"]
+    assert {key: value for key, value in gyro.items() if key != "columns"} == right
+
+
+@pytest.mark.parametrize(("unit", "count"), [("deg/h", 3600), ("mdps", 1000)])
+def test_gyros_that_turn_in_a_part_of_a_unit_are_in_no_unknown_one(unit, count, tmp_path):
+    log = by_hand_log(25)
+    names = "ax,ay,az," + ",".join(f"g{axis}_{unit}" for axis in "xyz")
+    text = logged(names, log.force, np.rint(np.degrees(log.rate) * count))
+    folder = drafted({"log.csv": text}, tmp_path)
+    gyro = told(folder)["instrument"]["format"]["gyro"]
+    assert (gyro["unit"], gyro["counts_per_unit"]) == ("deg/s", count)
+    assert "in no usual unit" not in comments(folder)

@@ -201,10 +201,13 @@ MIN_OTHER_RANGE, MAX_OFF_RANGE = 1 / 8, 0.15  # factors between ranges; error of
 GYRO_COUNTS_BESIDE = {16384.0: 131.0, 8192.0: 65.5, 4096.0: 32.8, 2048.0: 16.4}  # in 1 g: in 1 °/s
 MAX_RAD_S = 40.0  # rad/s: gyros that read more read °/s
 GYRO_UNIT = {
-    "deg/s": re.compile(r"deg|dps|°", re.IGNORECASE),
-    "rad/s": re.compile(r"rad", re.IGNORECASE),
+    "deg/s": re.compile(r"deg|dps|°|grad[ios]*(?![a-z])", re.IGNORECASE),
+    "rad/s": re.compile(r"(?<![a-z])m?rad", re.IGNORECASE),
 }
-THOUSANDTH = re.compile(r"\bm(dps|deg|rad)|milli", re.IGNORECASE)
+PARTS = {  # of a unit in its name, and how many make one
+    1000.0: re.compile(r"(?<![a-z])m(dps|deg|rad)|milli", re.IGNORECASE),
+    3600.0: re.compile(r"(deg|grad|°)[ /_]?(p|per[ _])?(h|hr|hour)(?![a-z])", re.IGNORECASE),
+}
 
 
 @dataclass(frozen=True)
@@ -368,12 +371,12 @@ def gyro_scale(
     values = np.concatenate([own.series.gyro for own in recordings])
     zero = zero_of(values)
     words = [name for name in names if isinstance(name, str)]
-    thousandths = any(map(THOUSANDTH.search, words))
+    parts = next((count for count, p in PARTS.items() if any(map(p.search, words))), None)
     if turns is not None:
-        return _by_motion(recordings, turns, values, thousandths)
+        return _by_motion(recordings, turns, values, parts)
     named = next((unit for unit, p in GYRO_UNIT.items() if any(map(p.search, words))), None)
     if named is not None:
-        return Scale(named, 1000.0 if thousandths else None, zero, _("by their names"), False)
+        return Scale(named, parts, zero, _("by their names"), False)
     by_turns = _by_turns(recordings, are_counts(values), zero)
     return _by_size(values, zero, accel) if by_turns is None else by_turns
 
@@ -398,9 +401,12 @@ def _by_size(values: Array, zero: float, accel: Scale | None) -> Scale:
 
 
 def _by_motion(
-    recordings: Sequence[Divided], turns: Turning, values: Array, thousandths: bool
+    recordings: Sequence[Divided], turns: Turning, values: Array, parts: float | None
 ) -> Scale:
-    """The unit in which gyros carry gravity's direction as it turns."""
+    """The unit in which gyros carry gravity's direction as it turns.
+
+    `parts`: how many make one of the unit in their names, such as 1000 of mdps; None: these are it.
+    """
     zero, axes, shares = zero_of(values), turns.axes, turns.shares
     seen = _(
         "gravity's direction turns by {factor} rad for each unit of reading and second, "
@@ -409,10 +415,10 @@ def _by_motion(
         percent=100 * turns.sigma,
     )
     step = 1 / recordings[0].series.gyro_hz
-    for of_unit, increments in ((1000.0 if thousandths else None, False), (step, True)):
+    for of_unit, increments in ((parts, False), (step, True)):
         for unit, size in (("rad/s", 1.0), ("deg/s", DEGREE)):
             error = abs(turns.factor * (of_unit or 1.0) / size - 1)
-            if error < 2 * MAX_UNIT_ERROR and (thousandths or not are_counts(values)):
+            if error < 2 * MAX_UNIT_ERROR and (parts or not are_counts(values)):
                 return Scale(unit, of_unit, zero, seen, increments, axes, shares, increments)
     per_degree = DEGREE / turns.factor
     most = max(MAX_COUNT_ERROR, 2 * turns.sigma)
