@@ -136,6 +136,17 @@ def test_ticks_that_are_a_rate_in_two_units_are_asked_about(tmp_path):
     assert layout["gyro"]["counts_per_unit"] == 131 and "how many are there?" not in said
 
 
+def test_days_are_no_clock_and_the_rate_is_asked(tmp_path):
+    """MATLAB's days, taken for s, made a recording of 2.5 ms, all of which moved."""
+    log = by_hand_log(34)
+    days = 739_924.4166667 + np.arange(len(log.force)) / RATE / 86_400
+    rows = zip(days, written([log.force, log.rate]).splitlines(), strict=True)
+    text = f"datenum,{NAMES}\n" + "".join(f"{day:.9f},{row}\n" for day, row in rows)
+    layout, said = layout_of(text, tmp_path)
+    assert layout["time"] == {"rate_hz": RATE} and layout["gyro"]["unit"] == "rad/s"
+    assert "how many samples a second are there?" in said
+
+
 # ---- dates as they are written in Germany and in America
 
 QUARTER_TO_ONE = 45_900  # s, 12:45:00: the hour of 12 PM becomes 1 PM in the log

@@ -301,7 +301,8 @@ def _format(kind: Kind, sensors: Sequence[str]) -> Iterator[str]:
 
 
 def _time(kind: Kind, file: int) -> dict[str, Any]:
-    column, timing = kind.columns.time[file], kind.timing
+    timing = kind.timing
+    column = None if timing.column is None else kind.columns.time[file]
     time: dict[str, Any] = {} if column is None else {"column": column, "unit": timing.unit}
     if timing.unit in (None, "sample"):
         time["rate_hz"] = timing.rate

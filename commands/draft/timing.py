@@ -159,6 +159,13 @@ def timing_of(
     dated = column in logs[0].dates
     clock = _Clock("iso8601", 1.0, _("it holds dates")) if dated else _clock(column, ticks, stated)
     why, rate = clock.why, clock.ticks_per_s / ticks
+    if clock.guessed and not MIN_RATE <= rate <= MAX_RATE:  # such as days
+        why = _(
+            "a step of {ticks} of {column} is in no unit of time the rate of an IMU",
+            ticks=significant(ticks, 6),
+            column=column,
+        )
+        return _by_intervals(logs, stated) or _without_time(None, None, stated, why)
     if logs[0].kind == "rawimus":
         why = _("GPS time")
     positive = np.concatenate([own[own > 0] for own in steps])
