@@ -6,6 +6,7 @@ from pathlib import Path
 import chain
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from drafting import Document, comments, drafted, told, written
 from logs_by_hand import EIGHTEEN, by_hand_log
 from moved_by_hand import GRAVITY, RATE
@@ -15,8 +16,10 @@ from commands.draft.__main__ import draft, main
 from inertial.estimation.triad import linear_names
 from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal
+from inertial.tables.stage import Stage
 from inertial.text.statements import NO_POSITION_SET, NO_TABLE, NO_TURN_SET
 from laboratory.rawimu import Samples, log_bytes
+from turntable_calibration.__main__ import main as program
 
 MAX_SIGMA = 4.5  # of some twenty parameters with Gaussian errors, in 1 of 6000 campaigns
 
@@ -395,3 +398,19 @@ def test_a_few_messages_of_a_receiver_are_refused_by_their_number(tmp_path):
     )
     with pytest.raises(Refusal, match="7 messages of an IMU"):
         draft([log], "few", tmp_path / "data")
+
+
+# ---- no permission
+
+
+def test_a_folder_that_may_not_be_written_is_named(tmp_path, monkeypatch):
+    def denied(*_options: object, **_more: object) -> None:
+        raise PermissionError(13, "Permission denied", "data/raw/june")
+
+    (tmp_path / "log.csv").write_text("1,2,3\n")
+    monkeypatch.setattr("commands.draft.__main__.draft", denied)
+    done = CliRunner().invoke(program, ["draft", "--name=june", str(tmp_path / "log.csv")])
+    assert done.exit_code == 1 and "draft: data/raw/june\n  found:    no perm" in done.output
+    monkeypatch.setattr(Stage, "run", denied)
+    with pytest.raises(SystemExit, match=r"plan: data/raw/june\n[\s\S]*chmod"):
+        chain.stage_of("plan").command_line([str(tmp_path)])

@@ -67,7 +67,11 @@ def command(module: str, arguments: Sequence[str], folder: Path) -> int:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy is loaded: matrices are small
     part = ".__main__" if (WORKFLOW / "commands" / module).is_dir() else ""
     main: Callable[[Sequence[str]], int] = part_of(f"commands.{module}{part}").main
-    return main(["--data", str(folder / "data"), *arguments])
+    try:
+        return main(["--data", str(folder / "data"), *arguments])
+    except PermissionError as error:
+        refusal = part_of("inertial.tables.errors").no_permission(error)
+        raise click.ClickException(f"{module}: {refusal}") from None
 
 
 def campaigns(folder: Path) -> list[str]:

@@ -23,7 +23,7 @@ import pyarrow.parquet as pq
 
 from inertial.tables.code import code_of, hash_of, hash_of_file
 from inertial.tables.declared import Declared
-from inertial.tables.errors import Refusal
+from inertial.tables.errors import Refusal, no_permission
 from inertial.tables.parquet import Rows, Writer, provenance
 from inertial.tables.table import Table
 from inertial.tables.whole_files import room_for, write_whole
@@ -162,6 +162,8 @@ class Stage:
             self.run(given["derived"], files, given["settings"], given.get("documents"))
         except Refusal as refusal:
             sys.exit(visible(f"{self.name}: {refusal}"))
+        except PermissionError as error:
+            sys.exit(visible(f"{self.name}: {no_permission(error)}"))
 
 
 def _called(function: Callable[..., Any], known: Mapping[str, Any]) -> Any:
