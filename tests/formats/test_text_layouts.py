@@ -200,6 +200,14 @@ def test_the_names_stand_above_a_line_of_units(decoded):
     assert results["decode/samples"]["accel_z"].tolist() == [1, 1]
 
 
+def test_a_binary_file_is_no_text_whose_names_are_listed(decoded):
+    layout = f"{{kind: columns, delimiter: ',', header_lines: 1, {AXES}}}"
+    log = np.random.default_rng(0).bytes(100_000)
+    with pytest.raises(Refusal, match="is no text") as refusal:
+        decoded(log, layout.replace("}}", "}, time: {rate_hz: 100}}"))
+    assert "export the log as text" in refusal.value.cure and str(refusal.value).isascii()
+
+
 # ---- numbers and what separates them
 
 

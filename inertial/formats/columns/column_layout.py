@@ -224,6 +224,14 @@ class _Finder:
         # A key of a JSON object is always text, so a number may come as text too.
         if str(name).isdecimal() and 1 <= int(name) <= self._most:
             return Column(str(name), int(name) - 1)
+        if not all(map(str.isprintable, self._names)):
+            raise Refusal(
+                self._file,
+                key,
+                _("no column '{name}': where the names should stand is no text", name=name),
+                _("text, or a container whose type is known"),
+                _("export the log as text, and name that; or correct the kind of its format"),
+            )
         shown = list(self._names[:_NAMES_SHOWN])
         if len(self._names) > len(shown):
             shown.append(_("and {names} more", names=len(self._names) - len(shown)))
