@@ -58,3 +58,12 @@ def test_gyros_as_named_are_left_so(tmp_path):
     folder = drafted({"log.csv": "t,ax,ay,az,gx,gy,gz\n" + written([log])}, tmp_path)
     assert "gyro" not in told(folder)["instrument"]
     assert "wired otherwise" not in comments(folder)
+
+
+def test_three_reversed_gyros_may_be_left_handed_axes(tmp_path):
+    log = by_hand(0.0)
+    log[:, [2, 5]] *= -1  # the y axis of both sensors
+    text = "t,ax,ay,az,gx,gy,gz\n" + written([log])
+    said = comments(drafted({"log.csv": text}, tmp_path))
+    assert "gyro.axes: in log.csv all three gyros turn gravity's direction backwards" in said
+    assert "accelerometer: {reads: gravity}" in said and "axes: [x, -y, z]" in said

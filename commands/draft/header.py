@@ -23,6 +23,7 @@ from inertial.estimation.multi_position import (
     unobservable,
 )
 from inertial.estimation.scatter_and_random_walk import with_scatter
+from inertial.signal.axis_permutations import Permutation
 from inertial.text.messages import _, plural
 from inertial.text.numbers import significant, whole
 from inertial.text.parameters import AXES
@@ -30,6 +31,7 @@ from inertial.text.parameters import AXES
 MAX_LEFT_OUT = 0.25  # of a log, that is in no manoeuvre without a word
 MAX_INCOMPLETE = 0.01  # of the rows, that are left out without a word
 MIN_ATTITUDES = 9  # of unknown attitude, for the nine parameters of accelerometers
+ALL_REVERSED = Permutation((0, 1, 2), (-1, -1, -1))
 FACES = [sign + axis for axis in AXES for sign in "+-"]
 
 
@@ -125,6 +127,12 @@ def _evidence(kind: Kind) -> Iterator[str]:
             log=log.path.name,
             count=whole(log.left_out),
         )
+    if unread := [name for log in kind.recordings[0] for name in log.unread]:
+        yield _(
+            "without a number in one row of ten or more, and not read: {columns}; what is recorded "
+            "more rarely than the rest needs a log of its own",
+            columns=", ".join(map(str, unread)),
+        )
     if columns.unused:
         yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
 
@@ -170,7 +178,11 @@ def _missing(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
         if lacking := [face for face in FACES if face not in there]:
             yield _("static positions with {faces} up", faces=", ".join(lacking))
     if not with_gyros:
-        yield _("gyros: none are recorded")
+        yield (
+            _("gyros: none are among the columns that are read")
+            if any(log.unread for kind in kinds for logs in kind.recordings for log in logs)
+            else _("gyros: none are recorded")
+        )
     elif not positions:
         turned = {m.about[1] for m in with_gyros if m.do == "turn" and m.about}
         if lacking := [axis for axis in AXES if axis not in turned]:
@@ -349,7 +361,17 @@ def _of_kind(kind: Kind) -> Iterator[str]:
             log=names_of_logs(kind),
             doubt=kind.timing.doubt,
         )
-    if kind.gyro is not None and kind.gyro.axes.moved:
+    if kind.gyro is not None and kind.gyro.axes == ALL_REVERSED:
+        yield _(
+            "gyro.axes: in {log} all three gyros turn gravity's direction backwards. Do the "
+            "accelerometers read −g on the axis that points up, `{reads}`, are the axes "
+            "left-handed, such as `{axes}` of the instrument, or is clockwise positive? In the "
+            "first two cases `up` in the plan changes, too.",
+            log=names_of_logs(kind),
+            reads="accelerometer: {reads: gravity}",
+            axes="axes: [x, -y, z]",
+        )
+    elif kind.gyro is not None and kind.gyro.axes.moved:
         yield _(
             "gyro.axes: in {log} the gyros turn gravity's direction as if {axes}; which sensor "
             "is wired otherwise than the axes are named?",

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inertial.arrays import Array, Booleans
+from inertial.formats.account import quoted
 from inertial.formats.columns import column_reader, vectornav_lines
 from inertial.formats.columns.column_layout import names_in_header
 from inertial.formats.columns.column_values import NUMBER
@@ -46,7 +47,8 @@ class TextLayout:
     """What the format of a campaign file states of a text, its header, and columns from 0 by kind.
 
     `stated`: delimiter, decimal, comment, labelled, header_lines; `header`: the lines before the
-    data; `names`: of the columns as the reader has them; none where not each has one of its own.
+    data; `names`: of the columns as the reader has them; none where not each has one of its own;
+    `sparse`: columns that hold a number in some rows, and nothing in the others.
     """
 
     stated: dict[str, Any]
@@ -55,6 +57,7 @@ class TextLayout:
     numbers: Sequence[int]
     dates: Sequence[int]
     words: Sequence[int]
+    sparse: Sequence[int]
 
 
 def text_layout(path: Path) -> TextLayout | None:
@@ -169,7 +172,8 @@ def _layout(
         own = [name.decode() for name in labels[first]]
         names = own if len(own) == length and len(set(own)) == length else []
     stated = {key: value for key, value in stated.items() if value is not None}
-    return TextLayout(stated, header, names, numbers, dates, words)
+    sparse = [n for n in sparse if some[n] and n not in numbers]
+    return TextLayout(stated, header, names, numbers, dates, words, sparse)
 
 
 def _names(line: str, delimiter: str | None, length: int) -> list[str]:
@@ -194,8 +198,8 @@ class RawLog:
 
     `layout`: what the format of the campaign file states beside the columns; `header`: the lines
     before the data; `columns`: (n,) numbers each, NaN where there is none; `words`: n texts each,
-    of a few different ones; `dates`: columns of dates, in s; `left_out`: rows at the end of the
-    file that hold no samples, and are not among these.
+    of a few different ones; `dates`: columns of dates, in s; `unread`: columns of none of these;
+    `left_out`: rows at the end of the file that hold no samples, and are not among these.
     """
 
     path: Path
@@ -204,6 +208,7 @@ class RawLog:
     header: Sequence[str] = ()
     words: Mapping[Name, Sequence[str]] = field(default_factory=dict)
     dates: Sequence[Name] = ()
+    unread: Sequence[Name] = ()
     left_out: int = 0
 
     @property
@@ -256,7 +261,7 @@ def raw_log(path: Path) -> RawLog:
         raise Refusal(
             path.name,
             "",
-            _("no rows of three numbers or more"),
+            _("no rows of three numbers or more; a line of it is '{line}'", line=_a_line(path)),
             _("the samples of an IMU: messages of a receiver, or rows of columns"),
             _(
                 "leave it out where it is no log of an IMU; another format has to be exported as "
@@ -264,6 +269,13 @@ def raw_log(path: Path) -> RawLog:
             ),
         )
     return _text_log(path, found)
+
+
+def _a_line(path: Path) -> str:
+    """The last line of the beginning of a file."""
+    with path.open("rb") as file:
+        lines = file.read(HEAD_BYTES).strip().splitlines()
+    return quoted(lines[-1]) if lines else ""
 
 
 def _text_log(path: Path, found: TextLayout) -> RawLog:
@@ -280,7 +292,9 @@ def _text_log(path: Path, found: TextLayout) -> RawLog:
         words = _words(path, layout, column(place))
         if len(set(words)) <= MAX_WORDS:
             labels[column(place)] = words
-    return RawLog(path, layout, columns, found.header, labels, dates)
+    others = map(column, sorted({*found.sparse, *found.words}))
+    unread = [name for name in others if name not in labels]
+    return RawLog(path, layout, columns, found.header, labels, dates, unread)
 
 
 def _receiver_log(path: Path) -> RawLog | None:
