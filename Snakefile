@@ -28,7 +28,6 @@ from overviews.fleet.declared import READ as READ_BY_FLEET
 from overviews.fleet.selection import selected
 from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 
-
 SETTINGS = HOME / "config.yaml"
 try:
     YamlFile(SETTINGS).check("config")  # with line and cure, before Snakemake reads it
