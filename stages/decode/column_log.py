@@ -25,6 +25,7 @@ from stages.decode.decoded import ANGLE_UNITS, Continuous, Decoded, first_of, in
 KELVIN = {"degC": (1.0, ICE_POINT), "K": (1.0, 0.0), "degF": (5 / 9, ICE_POINT - 32 * 5 / 9)}
 
 MIN_INTERVAL = 1 / 50_000  # s, between samples: no IMU samples faster
+MIN_STAMPS = 20  # that show it
 
 
 @dataclass(frozen=True)
@@ -133,7 +134,7 @@ class ColumnLog:
     def _refuse_fast(self, first: NDArray[Any]) -> None:
         """Refuse first stamps, (n,), ticks, of more samples a second than any IMU takes."""
         mean = float(first[-1] - first[0]) / max(len(first) - 1, 1)
-        if 0 < mean / self._ticks < MIN_INTERVAL:
+        if len(first) >= MIN_STAMPS and 0 < mean / self._ticks < MIN_INTERVAL:
             time = self._layout["time"]
             raise Refusal(
                 self.path.name,
