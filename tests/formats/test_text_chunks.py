@@ -23,7 +23,7 @@ def test_lines_lie_where_the_file_says(tmp_path_factory, parts, size):
     for line in whole.split(b"\n"):
         if line or offset < len(whole):
             length = len(line) + (offset + len(line) < len(whole))
-            text = line[:-1] if line.endswith(b"\r") else line
+            text = line.removesuffix(b"\r").removesuffix(b"\r")
             expected.append((offset, length, text))
             offset += length
     found = [

@@ -200,6 +200,15 @@ def test_the_names_stand_above_a_line_of_units(decoded):
     assert results["decode/samples"]["accel_z"].tolist() == [1, 1]
 
 
+def test_two_carriage_returns_end_a_line_and_a_blank_line_follows_the_names(decoded):
+    """As csv of Python writes them on Windows; all rows were refused."""
+    text = b"t,ax,ay,az,gx,gy,gz\n\n" + rows(["0.00", "0.01", "0.02"])
+    layout = f"{{kind: columns, delimiter: ',', header_lines: 2, {AXES}, "
+    results = decoded(text.replace(b"\n", b"\r\r\n"), layout + "time: {column: t, unit: s}}")
+    assert results["decode/samples"]["accel_z"].tolist() == [3, 3, 3]
+    assert results["decode/accounts"]["bytes"].sum() == len(text) + 2 * text.count(b"\n")
+
+
 def test_a_binary_file_is_no_text_whose_names_are_listed(decoded):
     layout = f"{{kind: columns, delimiter: ',', header_lines: 1, {AXES}}}"
     log = np.random.default_rng(0).bytes(100_000)

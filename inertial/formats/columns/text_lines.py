@@ -1,7 +1,7 @@
 """The lines of a text log: in chunks, and which of them are no data rows.
 
-A line ends with LF or CRLF, also mixed in one file; the last one may have no end. A lone CR ends
-nothing: it is part of the text.
+A line ends with LF, CRLF or CRCRLF, also mixed in one file; the last one may have no end. A lone CR
+ends nothing: it is part of the text.
 """
 
 import re
@@ -107,8 +107,13 @@ def _cut(data: bytes, offset: int, line: int) -> Chunk:
     if not data.endswith(b"\n"):
         stops, ends = np.append(stops, len(data)), np.append(ends, len(data))
     starts = np.concatenate([[0], stops[:-1]])
-    before_the_end = characters[np.maximum(ends - 1, 0)]
-    returns = (before_the_end == ord("\r")) & (ends > starts)
+    returns = np.zeros(len(ends), np.int64)
+    for _each in range(
+        2
+    ):  # CR CR LF: a program that writes CRLF, on a system that writes it for LF
+        at = ends - returns
+        is_return = characters[np.maximum(at - 1, 0)] == ord("\r")
+        returns += is_return & (at > starts)
     lines = line + np.arange(len(starts))
     return Chunk(data, starts, ends - returns, stops - starts, offset + starts, lines)
 
@@ -157,7 +162,7 @@ class HeaderLines:
 
     def __init__(self, layout: Mapping[str, Any]) -> None:
         self.names = b""
-        self._last: list[bytes] = []  # two lines of the header
+        self._last: list[bytes] = []  # lines of the header
         self._delimiter = str(layout["delimiter"]).encode() if layout.get("delimiter") else None
         self._comment = str(layout.get("comment") or "").encode()
         self._stated = int(layout.get("header_lines") or 0)
@@ -183,7 +188,7 @@ class HeaderLines:
             before = np.flatnonzero(comments[: rows[0]] if len(rows) else comments)
             named = header if self._stated else before
             if len(named):
-                self._last = [*self._last, *(chunk.text(int(line)) for line in named[-2:])][-2:]
+                self._last += [chunk.text(int(line)) for line in named[-4:]]
                 self.names = naming_line(self._last, self._delimiter)
         account = Account()
         account.add_all(HEADER, "", chunk.lengths[others])
@@ -191,7 +196,11 @@ class HeaderLines:
 
 
 def naming_line(header: Sequence[AnyStr], delimiter: AnyStr | None) -> AnyStr:
-    """The last line of a header; or the one before, where the last repeats a field, as units do."""
+    """The last line of a header; or the one before, where the last repeats a field, as units do.
+
+    Lines of blanks do not count.
+    """
+    header = [line for line in header if line.strip()] or header
     if len(header) > 1:
         before, last = ([text.strip() for text in line.split(delimiter)] for line in header[-2:])
         if len(set(before)) == len(before) == len(last) > len(set(last)):
