@@ -136,6 +136,15 @@ def test_ticks_that_are_a_rate_in_two_units_are_asked_about(tmp_path):
     assert layout["gyro"]["counts_per_unit"] == 131 and "how many are there?" not in said
 
 
+@pytest.mark.parametrize(("name", "asked"), [("tick", True), ("t_us", False)])
+def test_a_guessed_tick_is_asked_where_gyros_read_counts(name, asked, tmp_path):
+    log = by_hand_log(35)
+    counts = np.rint(log.force / 9.80665 * 4096), np.rint(np.degrees(log.rate) * 32.8)
+    text = f"{name},{NAMES}\n" + written([10_000 * np.arange(len(log.force)), *counts], digits=9)
+    _layout, said = layout_of(text, tmp_path)
+    assert ("is taken for 1 µs, which makes 100.0 samples a second" in said) == asked
+
+
 def test_days_are_no_clock_and_the_rate_is_asked(tmp_path):
     """MATLAB's days, taken for s, made a recording of 2.5 ms, all of which moved."""
     log = by_hand_log(34)

@@ -82,3 +82,13 @@ def test_a_log_without_rows_of_numbers_is_shown_by_a_line(tmp_path):
     text = "".join(f"{k}.0D+00 1.0D+00 2.0D+00 9.8D+00\n" for k in range(9))
     with pytest.raises(Refusal, match=r"a line of it is '8\.0D\+00 1"):
         drafted({"log.txt": text}, tmp_path)
+
+
+def test_decimal_commas_in_quotation_marks_between_commas_are_refused(tmp_path):
+    """Each number was taken for two columns of counts."""
+    rows = written([by_hand_log(53).force]).replace(".", ";").splitlines()
+    quoted = [",".join(f'"{field}"' for field in row.split(",")) for row in rows]
+    text = "ax,ay,az\n" + "\n".join(quoted).replace(";", ",") + "\n"
+    with pytest.raises(Refusal, match="decimal commas in quotation marks") as refusal:
+        drafted({"log.csv": text}, tmp_path)
+    assert "write it with semicolons" in refusal.value.cure

@@ -10,7 +10,7 @@ import numpy as np
 from commands.draft.manoeuvres import Manoeuvre
 from commands.draft.sensors import Kind
 from commands.draft.series import Divided
-from commands.draft.timing import Timing
+from commands.draft.timing import Timing, tick_in_words
 from commands.draft.triads import Triad
 from commands.new import comment
 from inertial.arrays import Array
@@ -129,9 +129,11 @@ def _evidence(kind: Kind) -> Iterator[str]:
         )
     if unread := [name for log in kind.recordings[0] for name in log.unread]:
         yield _(
-            "without a number in one row of ten or more, and not read: {columns}; what is recorded "
-            "more rarely than the rest needs a log of its own",
+            "without a number in one row of ten or more, and not read: {columns}; a sensor that is "
+            "recorded more rarely than the other has a log of its own, which may be the same file: "
+            "`{key}`",
             columns=", ".join(map(str, unread)),
+            key="gyro: {log: …, format: …}",
         )
     if columns.unused:
         yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
@@ -348,19 +350,7 @@ def _of_kind(kind: Kind) -> Iterator[str]:
             columns=", ".join(map(str, kind.columns.constant)),
             log=names_of_logs(kind),
         )
-    if without_clock(kind.timing):
-        yield _(
-            "rate_hz: {log} has no clock; how many samples a second are there? Count sizes of "
-            "gyros go with the rate: draft it again with RATE=, or --rate",
-            log=names_of_logs(kind),
-        )
-    if kind.timing.doubt:
-        yield _(
-            "time: {column} of {log}: {doubt}",
-            column=kind.timing.column,
-            log=names_of_logs(kind),
-            doubt=kind.timing.doubt,
-        )
+    yield from _of_clock(kind)
     if kind.gyro is not None and kind.gyro.axes == ALL_REVERSED:
         yield _(
             "gyro.axes: in {log} all three gyros turn gravity's direction backwards. Do the "
@@ -386,6 +376,37 @@ def _of_kind(kind: Kind) -> Iterator[str]:
                 log=names_of_logs(kind),
                 doubt=scale.doubt,
             )
+
+
+def _of_clock(kind: Kind) -> Iterator[str]:
+    """What its clock leaves open."""
+    if without_clock(kind.timing):
+        yield _(
+            "rate_hz: {log} has no clock; how many samples a second are there? Count sizes of "
+            "gyros go with the rate: draft it again with RATE=, or --rate",
+            log=names_of_logs(kind),
+        )
+    if kind.timing.doubt:
+        yield _(
+            "time: {column} of {log}: {doubt}",
+            column=kind.timing.column,
+            log=names_of_logs(kind),
+            doubt=kind.timing.doubt,
+        )
+    elif kind.timing.guessed and not without_clock(kind.timing) and _in_guessed_counts(kind):
+        yield _(
+            "time: {column} of {log} is taken for {unit}, which makes {rate} samples a second; is "
+            "that so? Count sizes of gyros go with it",
+            column=kind.timing.column,
+            log=names_of_logs(kind),
+            unit=tick_in_words(kind.timing.clock_ticks),
+            rate=significant(kind.timing.rate),
+        )
+
+
+def _in_guessed_counts(kind: Kind) -> bool:
+    """Whether nothing but the clock shows the count size of the gyros."""
+    return kind.gyro is not None and kind.gyro.guessed and kind.gyro.counts is not None
 
 
 def _columns(*triads: Triad | None) -> str:

@@ -33,6 +33,7 @@ HEAD_BYTES = 1 << 17  # of the log, by which its layout is judged
 MINNUMBERS = 3  # in a row of data
 USUAL = 0.9  # share of rows in which a column of numbers holds one
 DELIMITERS, DECIMALS = (None, ",", ";", "\t"), (".", ",")
+QUOTED_COMMA = re.compile(r'"[+-]?\d+,\d+",|,"[+-]?\d+,\d+"')
 COMMENTS = ("#", "//", "%")
 _DATE = re.compile(
     r"(\d{4}-?\d\d?-?\d\d?[T ]\d\d?:?\d\d?(:?\d\d?([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?)"
@@ -64,9 +65,18 @@ def text_layout(path: Path) -> TextLayout | None:
     """The layout of the text at `path`; None where no row holds enough numbers."""
     with path.open("rb") as file:
         head = file.read(HEAD_BYTES)
-    lines = [_decoded(line) for line in head.removeprefix(BYTE_ORDER_MARK).splitlines()]
-    if len(head) == HEAD_BYTES:
-        lines = lines[:-1]  # the last one is cut off
+    parts = head.removeprefix(BYTE_ORDER_MARK).split(b"\n")
+    if len(head) == HEAD_BYTES or not parts[-1]:
+        parts = parts[:-1]  # the last one is cut off
+    lines = [_decoded(line.rstrip(b"\r")) for line in parts]
+    if any(map(QUOTED_COMMA.search, lines)):
+        raise Refusal(
+            path.name,
+            "",
+            _("decimal commas in quotation marks, and commas between the columns"),
+            _("another character between the columns than within numbers"),
+            _('write it with semicolons: sed \'s/","/";"/g\''),
+        )
     plain = _separated(lines)
     labels = [names_in(line.encode()) for line in lines]
     labelled = sum(len(names) >= MINNUMBERS for names in labels)
