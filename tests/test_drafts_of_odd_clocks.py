@@ -188,3 +188,28 @@ def test_dates_of_other_notations_are_a_clock(kind, tmp_path):
     results = chain.run(tmp_path / "data/raw/drafted", tmp_path / "derived", "decode")
     taken = results["decode/samples"]["time"].to_numpy()
     assert len(taken) == len(time) and np.allclose(np.diff(taken), 0.01, atol=1e-6)
+
+
+# ---- a log for each sensor
+
+
+@pytest.mark.parametrize("apart", [0, 1_762_000_000])
+def test_a_log_of_each_sensor_may_count_in_another_unit_by_another_name(apart, tmp_path):
+    """The gyros were taken for another recording, all of which was one turn."""
+    log = by_hand_log(38)
+    time = np.arange(len(log.force)) / RATE
+    logs = {
+        "a.csv": "time_s,ax,ay,az\n" + written([time, log.force], digits=9),
+        "g.csv": "t_ms,gx,gy,gz\n" + written([1000 * (time + apart) + 2, log.rate], digits=15),
+    }
+    folder = drafted(logs, tmp_path)
+    campaign, said = told(folder), comments(folder)
+    if apart:
+        assert "a.csv and g.csv last as long as each other" in said
+        return
+    assert campaign["instrument"]["format"]["time"] == {"column": "time_s", "unit": "s"}
+    assert campaign["gyro"] == {"log": "g.csv", "format": "gyros-1"}
+    assert campaign["formats"]["gyros-1"]["time"] == {"column": "t_ms", "unit": "ms"}
+    samples = chain.run(folder, tmp_path / "derived", "decode")["decode/samples"]
+    turned = samples["gyro_x"].to_numpy()
+    assert np.corrcoef(turned, log.rate[-len(turned) :, 0])[0, 1] > 0.99

@@ -11,6 +11,7 @@ from commands.draft.header import GRAVITY, GRAVITY_SIGMA, header
 from commands.draft.manoeuvres import Manoeuvre, leaning
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
+from commands.draft.timing import Timing, timing_of
 from commands.draft.triads import Triad
 from commands.new import GUESS, flow, guess, in_flow, scalar
 from inertial.text.messages import _
@@ -284,7 +285,8 @@ def _format(kind: Kind, sensors: Sequence[str]) -> Iterator[str]:
         yield f"    {key}: {scalar(value)}"
     if log.kind == "rawimus":
         return
-    mark = guess(timing.evidence) if timing.guessed else ""
+    own = _timing(kind, file)
+    mark = guess(own.evidence) if own.guessed else ""
     if kind.means:
         number = "null" if columns.mean_of is None else scalar(columns.mean_of)
         yield f"    mean_of: {number}{guess(timing.evidence)}"
@@ -300,8 +302,15 @@ def _format(kind: Kind, sensors: Sequence[str]) -> Iterator[str]:
             yield f"    {key}: {flow(**_triad(kind, triad, scale))}{mark}"
 
 
+def _timing(kind: Kind, file: int) -> Timing:
+    """The clock of one of its files, which may have another unit than that of the first."""
+    logs, columns = kind.parts[0].logs[: file + 1], kind.columns.time
+    first, own = (timing_of([logs[i]], columns[i]) for i in (0, file))
+    return kind.timing if own.unit == first.unit else own
+
+
 def _time(kind: Kind, file: int) -> dict[str, Any]:
-    timing = kind.timing
+    timing = _timing(kind, file)
     column = None if timing.column is None else kind.columns.time[file]
     time: dict[str, Any] = {} if column is None else {"column": column, "unit": timing.unit}
     if timing.unit in (None, "sample"):

@@ -8,7 +8,7 @@ import numpy as np
 
 from commands.draft.columns import Named
 from commands.draft.raw_log import Name, RawLog, finite
-from commands.draft.timing import time_of
+from commands.draft.timing import seconds_of, time_of
 from commands.draft.triads import sensor_named
 from inertial.arrays import Array
 from inertial.tables.errors import Refusal
@@ -63,8 +63,9 @@ def _shared(one: RawLog, other: RawLog) -> float:
     ours, theirs = finite(one.columns[names[0]]), finite(other.columns[names[1]])
     if np.array_equal(ours, theirs):
         return 1.0
-    if names[0] != names[1] or set(sensors) != {"accel", "gyro"}:
+    if set(sensors) != {"accel", "gyro"}:
         return 0.0
+    ours, theirs = finite(seconds_of(one, names[0])), finite(seconds_of(other, names[1]))
     both = min(ours.max(), theirs.max()) - max(ours.min(), theirs.min())
     either = max(ours.max(), theirs.max()) - min(ours.min(), theirs.min())
     return float(both / either)

@@ -4,9 +4,11 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import partial
+from itertools import product
 
 import numpy as np
 
+from commands.draft.groups import MIN_SHARED_TIME
 from commands.draft.manoeuvres import Manoeuvre
 from commands.draft.sensors import Kind
 from commands.draft.series import Divided
@@ -273,6 +275,7 @@ def questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -
     )
     for kind in kinds:
         yield from _of_kind(kind)
+    yield from _of_clocks_apart(kinds)
     yield from _named_otherwise(plan)
     if any(m.do == "turn" for m in plan):
         yield _("degrees: were the turns as large as the round angles in the plan?")
@@ -281,6 +284,23 @@ def questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -
             "up: is the axis named in the plan the one that pointed up? A log that reads −g there "
             "has the other sign."
         )
+
+
+def _of_clocks_apart(kinds: Sequence[Kind]) -> Iterator[str]:
+    """Whether two logs of a sensor each, as long as each other, are one recording by two clocks."""
+    alone = [kind for kind in kinds if len(kind.recordings) == 1 and kind.timing.column is not None]
+    accels = [kind for kind in alone if kind.columns.gyro is None]
+    gyros = [kind for kind in alone if kind.columns.accel is None]
+    for one, other in product(accels, gyros):
+        seconds = sorted(kind.parts[0].series.seconds for kind in (one, other))
+        if seconds[0] > MIN_SHARED_TIME * seconds[1]:
+            yield _(
+                "log: {first} and {second} last as long as each other, and their clocks have no "
+                "time in common. Are they one recording? Then correct the stamps of one by what "
+                "the clocks differ, and draft both again",
+                first=names_of_logs(one),
+                second=names_of_logs(other),
+            )
 
 
 def _named_otherwise(plan: Sequence[Manoeuvre]) -> Iterator[str]:

@@ -25,6 +25,7 @@ from commands.draft.timing import (
     Timing,
     common_rate,
     nearly_as_usual,
+    seconds_of,
     tick_in_words,
     timing_of,
 )
@@ -246,7 +247,8 @@ def _parts(kind: Kind, together: Sequence[RawLog]) -> list[Part]:
 
 def _common_rows(columns: Columns, together: Sequence[RawLog]) -> list[slice]:
     """The rows of each file in the time that all of them cover."""
-    stamps = [log.columns[name] for log, name in zip(together, columns.time, strict=True) if name]
+    clocks = zip(together, columns.time, strict=True)
+    stamps = [seconds_of(log, name) for log, name in clocks if name]
     first = max(float(np.nanmin(own)) for own in stamps)
     last = min(float(np.nanmax(own)) for own in stamps)
     inside = [np.flatnonzero((own >= first) & (own <= last)) for own in stamps]

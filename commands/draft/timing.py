@@ -187,6 +187,11 @@ def timing_of(
     return replace(timing, ticks_per_s=clock.ticks_per_s) if clock.unit == "tick" else timing
 
 
+def seconds_of(log: RawLog, column: Name) -> Array:
+    """The stamps of a log in its own unit of time, (n,), s."""
+    return np.asarray(log.columns[column] / timing_of([log], column).clock_ticks)
+
+
 @dataclass(frozen=True)
 class _Clock:
     """The unit of a time column, its ticks in a second, and what says so."""
