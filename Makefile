@@ -7,7 +7,7 @@
 #   make check                    faults of the recording within a minute, before the set-up is
 #                                 dismantled; also with CAMPAIGN=<name>
 #   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
-#                                 NAME=<name>, and RATE=<Hz> where no log has a clock
+#                                 NAME=<name>, and RATE=<Hz> where no log has a clock whose unit is sure
 #   make new PLAN=<plan> NAME=<name>   a plan to record by: six-position, turn-stop, rate-table,
 #                                 by-hand
 #   make design INSTRUMENT=<instrument> TABLE=<table>   the best plan from nothing; also with MINUTES=<of

@@ -18,7 +18,7 @@ class LatitudeSign(Effect):
     cause = _(
         "the sign of the latitude is wrong: south was taken for north, or north for south; or each "
         "`up` of the plan was read off a log of accelerometers that read −g on the axis that "
-        "points up"
+        "points up; or the axes of both sensors are left-handed"
     )
     source = "Titterton & Weston 2004, earth's rate in the local frame"
     parameters = (Parameter("s", "1", 1.0, _("1 on the other hemisphere, 0 on the stated one")),)
