@@ -66,4 +66,4 @@ def test_three_reversed_gyros_may_be_left_handed_axes(tmp_path):
     text = "t,ax,ay,az,gx,gy,gz\n" + written([log])
     said = comments(drafted({"log.csv": text}, tmp_path))
     assert "gyro.axes: in log.csv all three gyros turn gravity's direction backwards" in said
-    assert "accelerometer: {reads: gravity}" in said and "axes: [x, -y, z]" in said
+    assert "axes: [x, -y, z]" in said and "is clockwise positive?" in said

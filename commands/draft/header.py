@@ -373,12 +373,11 @@ def _of_kind(kind: Kind) -> Iterator[str]:
     yield from _of_clock(kind)
     if kind.gyro is not None and kind.gyro.axes == ALL_REVERSED:
         yield _(
-            "gyro.axes: in {log} all three gyros turn gravity's direction backwards. Do the "
-            "accelerometers read −g on the axis that points up, `{reads}`, are the axes "
-            "left-handed, such as `{axes}` of the instrument, or is clockwise positive? In the "
-            "first two cases `up` in the plan changes, too.",
+            "gyro.axes: in {log} all three gyros turn gravity's direction backwards. Are the axes "
+            "left-handed, such as `{axes}` of the instrument, or is clockwise positive? The first "
+            "replaces gyro.axes; then `up` of the reversed axis in the plan has the other sign, "
+            "and so have the degrees of all turns.",
             log=names_of_logs(kind),
-            reads="accelerometer: {reads: gravity}",
             axes="axes: [x, -y, z]",
         )
     elif kind.gyro is not None and kind.gyro.axes.moved:
