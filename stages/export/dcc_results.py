@@ -2,9 +2,9 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import sqrt
+from math import pi, radians, sqrt
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
@@ -16,7 +16,7 @@ from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.parameters import STAGES
 from inertial.text.statements import NOT_STATED, RULES, STATEMENTS
-from inertial.text.units import COVERAGE_FACTOR
+from inertial.text.units import COVERAGE_FACTOR, STANDARD_GRAVITY
 from stages.export.calibration import NOT_USABLE
 
 # ---- Quantities as D-SI 2.2.0 writes them: numbers as in the JSON, units by the names of the SI.
@@ -25,8 +25,14 @@ from stages.export.calibration import NOT_USABLE
 
 NAMES = {
     "m": r"\metre", "s": r"\second", "rad": r"\radian", "K": r"\kelvin", "Hz": r"\hertz",
-    "°C": r"\degreecelsius", "%": r"\percent", "min": r"\minute",
+    "°C": r"\degreecelsius", "%": r"\percent", "min": r"\minute", "h": r"\hour",
 }  # fmt: skip
+# Units of the constants of laws and of a ripple that D-SI lacks, each in those that it has.
+CONSTANTS = {
+    "g": (STANDARD_GRAVITY, "m/s²"),
+    "× 10 °/s": (radians(10), "rad/s"),
+    "per turn": (1 / (2 * pi), "1/rad"),
+}
 COVERAGE_PROBABILITY = 0.95  # of U with k = 2, about
 NORMAL = "normal"
 EXPONENTS = {"²": 2, "³": 3, "⁴": 4}
@@ -228,7 +234,9 @@ def add_result(parent: Element, identifier: str, sensors: str, triad: Row) -> No
         add_text(quantity, "dcc:name", _("Inverse of M"))
         add_list(quantity, [*_matrix("inverse", triad["inverse"]).values()])
     for value in own.values():  # constants of effects
-        add_real(add(data, "dcc:quantity"), value)
+        factor, its_unit = CONSTANTS.get(value.unit, (1.0, value.unit))
+        scaled = replace(value, value=value.value * factor, unit=its_unit)
+        add_real(add(data, "dcc:quantity"), scaled)
 
 
 def _sentences(triad: Row) -> Iterator[str]:

@@ -16,9 +16,10 @@ import pytest
 from scipy import stats
 
 from inertial.effects import KNOWN
+from inertial.physics.laws import UNITS
 from stages.export.calibration import NOT_USABLE, Calibration
 from stages.export.dcc import Stated, dcc
-from stages.export.dcc_results import unit
+from stages.export.dcc_results import CONSTANTS, unit
 from stages.export.document import document
 from tests.export.made_up import EVIL, calibration, mount, moving_mount, named, with_terms
 
@@ -242,6 +243,9 @@ def test_every_unit_of_the_catalogue_has_its_notation() -> None:
     for effect in KNOWN.values():
         for parameter in effect.parameters:
             assert unit(parameter.unit).startswith("\\")
+    scans = [effect.scan.unit for effect in KNOWN.values() if effect.scan is not None]
+    for constant in {*UNITS.values(), "g", *scans}:  # of laws, and what is searched
+        assert unit(CONSTANTS.get(constant, (1.0, constant))[1]).startswith("\\")
 
 
 # ---- what else it says
