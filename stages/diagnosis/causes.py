@@ -70,6 +70,14 @@ BY_MEMBERS = _(
     "The parameters are the mean over the members of the class, by their probability; the further "
     "terms are those of the most probable one."
 )
+WITH_AND_WITHOUT = _(
+    "The parameters are the mean of the result with it and the result without it, by how well each "
+    "predicts manoeuvres that its fit has not seen; the further terms are those with it."
+)
+BY_MEMBERS_AND_WITHOUT = _(
+    "The parameters are the mean over the members of the class and over the result without any of "
+    "them, by their probability; the further terms are those of the most probable member."
+)
 OWN_ERROR = _(
     "{manoeuvre} has an unknown error of its own in the model, so that it moves no parameter."
 )
@@ -301,8 +309,8 @@ class Evidence:
         freed = next(filter(None, (manoeuvres.get(main.id) for manoeuvres in apart)), None)
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
         done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
-        if cure == MODELLED and main.verdict == ONE_OF_CLASS and any(map(_is_mean, own)):
-            done = BY_MEMBERS
+        if cure == MODELLED:
+            done = _mean_of(main, own) or done
         if main.id in self.walks or _rounds(main):
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
@@ -457,8 +465,13 @@ def _turns(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
     return {r.sensor: move for r in others for move in moved_by_turning(own, [r])}
 
 
-def _is_mean(result: SensorResult) -> bool:
-    return result.chosen.method == MIXTURE
+def _mean_of(cause: Hypothesis, own: Sequence[SensorResult]) -> str:
+    """What the parameters are a mean over, as a sentence; "" where they are of one fit."""
+    means = [result for result in own if result.chosen.method == MIXTURE]
+    without = any(result.decision.joint_share and result.models(cause.causes) for result in means)
+    if cause.verdict == ONE_OF_CLASS and means:
+        return BY_MEMBERS_AND_WITHOUT if without else BY_MEMBERS
+    return WITH_AND_WITHOUT if without else ""
 
 
 def _gain(cause: Hypothesis, drop: float | None, own: Sequence[SensorResult]) -> str | None:

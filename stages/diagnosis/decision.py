@@ -82,6 +82,10 @@ MIXED = _(
     "the result is the mean of that with it and that without it, which has the weight {share} % by "
     "how well each predicts them, and the sigmas include the difference of the two."
 )
+ALIKE = _(
+    " The held-out manoeuvres hold little of it (SNR² {snr_squared:.1f}, less than {least:.0f}), "
+    "but no parameter differs without it by more than its sigma: the result is that with it alone."
+)
 FREED = _(
     "The result of the {sensors} includes {effects}: that is the own error of "
     "{manoeuvres}, which no other manoeuvre shows, and no finding remains unexplained."
@@ -105,7 +109,8 @@ class Decision:
     `freed`: by finding the manoeuvre whose own error it is in this candidate; `alike`: methods of
     candidates whose effects the same manoeuvres carry, which for all others say the same;
     `widened`: by how much its sigmas are, for residuals that nothing explains (Birge 1932);
-    `joint_share`: the weight of the joint result beside it, in a mixture of both.
+    `joint_share`: the weight of the joint result beside it, in a mixture of both; `alone`: the
+    reason where the two say the same, so that there is no mixture.
     """
 
     method: str
@@ -114,6 +119,7 @@ class Decision:
     alike: frozenset[str] = frozenset()
     widened: float = 1.0
     joint_share: float = 0.0
+    alone: str = ""
     left_out: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -188,10 +194,14 @@ def decided(
     )
     if not beside_walk and best["drop"] < MIN_SHARE * best["snr_squared"]:
         reason += LITTLE.format(share=significant(100 * best["drop"] / best["snr_squared"], 2))
-    if share := _joint_share(best):
-        size, percent = best["snr_squared"], significant(100 * share, 2)
-        reason += MIXED.format(snr_squared=size, least=MIN_SNR_SQUARED, share=percent)
-    return Decision(best["method"], reason + others, widened=widened, joint_share=share)
+    share, alone = _joint_share(best), ""
+    if share:
+        little = {"snr_squared": best["snr_squared"], "least": MIN_SNR_SQUARED}
+        alone = reason + ALIKE.format(**little) + others
+        reason += MIXED.format(**little, share=significant(100 * share, 2))
+    return Decision(
+        best["method"], reason + others, widened=widened, joint_share=share, alone=alone
+    )
 
 
 def _without_one(candidates: Sequence[Row], alarms: Sequence[Row]) -> Decision | None:

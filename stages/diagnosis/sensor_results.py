@@ -18,7 +18,7 @@ from inertial.campaign.records import Row, rows_of
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.triad import linear_names
 from inertial.text.messages import _
-from inertial.text.parameters import BIAS, CROSS, FREE, JOINT, SCALE, WITHOUT_ONE
+from inertial.text.parameters import BIAS, CROSS, FREE, JOINT, MIXTURE, SCALE, WITHOUT_ONE
 from stages.diagnosis.decision import Decision, alarms_of, decided
 from stages.diagnosis.result import Result, covariance_by_ids, covariance_of, ordered, result_of
 
@@ -250,6 +250,8 @@ class Estimated:
             chosen = result_of(
                 decision.method, by_method, self._covariance, competing(candidates, decision)
             ).widened(decision.widened)
+            if decision.joint_share and chosen.method != MIXTURE:
+                decision = replace(decision, reason=decision.alone, joint_share=0.0)
             if (mount, sensor) in self.free and decision.method == JOINT:
                 chosen = replace(
                     chosen, method=FREE, rows=[row | {"method": FREE} for row in chosen.rows]

@@ -109,6 +109,9 @@ def test_what_held_out_manoeuvres_tell_a_little_of_counts_as_much_as_they_tell()
     effects = [effect("accel_quadratic"), effect("accel_hysteresis", method="member_1")]
     decision = decided(rows, effects)
     assert decision.method == "extended" and "the weight 1.7 %" in decision.reason
+    # Where no parameter differs there is no mean, and so none is spoken of.
+    assert "mean of that with it" in decision.reason
+    assert "weight" not in decision.alone and "that with it alone" in decision.alone
     # A normal density of χ² larger by 8.1 is e^4.05 = 57.4 times smaller.
     weights = {"joint": 1 / 58.4, "extended": 0.9 * 57.4 / 58.4, "member_1": 0.1 * 57.4 / 58.4}
     assert competing(rows, decision) == pytest.approx(weights, rel=1e-3)

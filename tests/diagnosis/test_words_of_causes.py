@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 
 from inertial.campaign.estimates import reasons
-from stages.diagnosis.causes import MASKED, MODELLED, _gain, _most_moved
+from stages.diagnosis.causes import MASKED, MODELLED, _gain, _mean_of, _most_moved
 from stages.diagnosis.sensor_results import Moved
 from stages.diagnosis.verdict import _limit
 
 WARM_UP = SimpleNamespace(causes=frozenset({"gyro_warm_up"}), repair=None)
 
 
-def result(*effects, drop=96.05, joint_share=0.0):
+def result(*effects, drop=96.05, joint_share=0.0, method="extended"):
     rows = [{"effect": None}, *({"effect": name} for name in effects)]
     return SimpleNamespace(
         sensor="gyro",
         drop=drop,
-        chosen=SimpleNamespace(rows=rows),
+        chosen=SimpleNamespace(rows=rows, method=method),
         models=lambda causes: not causes.isdisjoint(effects),
         decision=SimpleNamespace(joint_share=joint_share),
         # 5 °/h of a bias known to 0.25 °/h
@@ -56,6 +56,22 @@ def test_a_further_term_is_to_be_used(effect, share, said):
     assert _limit(cause, result(effect, joint_share=share)).endswith(said)
     masked = SimpleNamespace(cure=MASKED, main=main)
     assert _limit(masked, result(effect)) == "masked: its data were not used"
+
+
+@pytest.mark.parametrize(
+    ("verdict", "share", "method", "said"),
+    [
+        ("found", 0.0, "extended", ""),
+        ("one_of_class", 0.0, "extended", ""),  # its members say the same
+        ("one_of_class", 0.0, "mixture", "over the members of the class, by"),
+        ("one_of_class", 0.1, "mixture", "over the members of the class and over the result wit"),
+        ("found", 0.1, "mixture", "of the result with it and the result without it"),
+    ],
+)
+def test_a_mean_says_what_it_is_over(verdict, share, method, said):
+    cause = SimpleNamespace(causes=WARM_UP.causes, verdict=verdict)
+    words = _mean_of(cause, [result("gyro_warm_up", joint_share=share, method=method)])
+    assert words.startswith(f"The parameters are the mean {said}") if said else words == ""
 
 
 def test_a_gyro_that_gave_no_reading_may_be_masked():
