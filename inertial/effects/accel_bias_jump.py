@@ -12,7 +12,7 @@ class AccelBiasJump(Jump):
     name = "accel_bias_jump"
     sensor = "accel"
     parameters = parameters_by_axis(
-        "b", "m/s²", 1e-5 * STANDARD_GRAVITY, _("of the {axis} specific force")
+        "b", "m/s²", 1e-5 * STANDARD_GRAVITY, _("jump of the bias of the {axis} accelerometer")
     )
     terms = on_each_axis("accel", "b_{i}", "(t > t0)")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 200, 1000)

@@ -22,7 +22,7 @@ class AccelBiasRamp(Ramp):
         "c",
         "m/s³",
         1e-5 * STANDARD_GRAVITY / HOUR,
-        _("drift of the {axis} specific force, per second"),
+        _("drift of the bias of the {axis} accelerometer"),
     )
     terms = on_each_axis("accel", "c_{i}", "t")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY / HOUR, 20, 100, 100, 1000)

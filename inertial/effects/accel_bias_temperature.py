@@ -17,7 +17,10 @@ class AccelBiasTemperature(OfTemperature):
     cause = _("the bias of the accelerometers changes with the temperature of the instrument")
     source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
     parameters = parameters_by_axis(
-        "k", "m/s²/K", 1e-5 * STANDARD_GRAVITY, _("of the {axis} specific force, per kelvin")
+        "k",
+        "m/s²/K",
+        1e-5 * STANDARD_GRAVITY,
+        _("change of the bias of the {axis} accelerometer with temperature"),
     )
     terms = on_each_axis("accel", "k_{i}", "(T - T0)")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 100, 1000)

@@ -27,7 +27,8 @@ class AccelCrossProducts(OfSensed):
             "(m/s²)/(m/s²)²",
             1e-5 / STANDARD_GRAVITY,
             _(
-                "of the {i} accelerometer per product of the forces along {pair} and {pair_2}",
+                "reading of the {i} accelerometer per product of the forces along {pair} "
+                "and {pair_2}",
                 i=i,
                 pair=pair[0],
                 pair_2=pair[1],

@@ -18,7 +18,10 @@ class AccelCubic(OfSensed):
     cause = _("the suspension or the loop of the proof mass is not linear: third-order term K3")
     source = "IEEE Std 1293-2018, model equation, K3"
     parameters = parameters_by_axis(
-        "k3", "(m/s²)/(m/s²)³", 1e-5 / STANDARD_GRAVITY**2, _("of the {axis} accelerometer")
+        "k3",
+        "(m/s²)/(m/s²)³",
+        1e-5 / STANDARD_GRAVITY**2,
+        _("reading of the {axis} accelerometer per cube of the force along it"),
     )
     terms = on_each_axis("accel", "k3_{i}", "f_{i} * f_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY**2, 5, 50, 200, 1000)

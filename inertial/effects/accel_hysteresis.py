@@ -53,7 +53,10 @@ class AccelHysteresis(Effect):
     cause = _("the suspension does not return quite to where it was before the load")
     source = "IEEE Std 528-2019, 'hysteresis error'; Lord Rayleigh, Phil. Mag. 23, 1887, 225"
     parameters = parameters_by_axis(
-        "h", "m/s²", 1e-5 * STANDARD_GRAVITY, _("half the loop of the {axis} axis")
+        "h",
+        "m/s²",
+        1e-5 * STANDARD_GRAVITY,
+        _("half the width of the loop of the {axis} accelerometer"),
     )
     stays = _("it depends on the forces before the reading, which the reading does not tell")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 5, 20, 50, 500)

@@ -19,7 +19,9 @@ class AccelLatency(Effect):
     name = "accel_latency"
     cause = _("the time that filters and transfer take differs between accelerometers and gyros")
     source = "Titterton & Weston 2004, bandwidth of accelerometers"
-    parameters = (Parameter("tau", "s", 1e-3, _("by which accelerometers lag behind gyros")),)
+    parameters = (
+        Parameter("tau", "s", 1e-3, _("time by which the accelerometers lag behind the gyros")),
+    )
     sizes = by_grade(1e-3, 5, 3, 5, 10)
     stays = _("set the stamps of one sensor right by it instead")
 

@@ -18,7 +18,10 @@ class AccelQuadratic(OfSensed):
     cause = _("the suspension of the proof mass is not symmetric: second-order nonlinearity K2")
     source = "IEEE Std 1293-2018, model equation, K2"
     parameters = parameters_by_axis(
-        "k2", "(m/s²)/(m/s²)²", 1e-5 / STANDARD_GRAVITY, _("of the {axis} accelerometer")
+        "k2",
+        "(m/s²)/(m/s²)²",
+        1e-5 / STANDARD_GRAVITY,
+        _("reading of the {axis} accelerometer per square of the force along it"),
     )
     terms = on_each_axis("accel", "k2_{i}", "f_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 20, 100, 200, 1000)

@@ -18,7 +18,10 @@ class AccelScaleAsymmetry(OfSensed):
     cause = _("the suspension or the read-out answers unlike to push and pull")
     source = "IEEE Std 1293-2018, model equation, scale factor asymmetry"
     parameters = parameters_by_axis(
-        "a", "1", 1e-5, _("of the {axis} accelerometer, half the difference of both scale factors")
+        "a",
+        "1",
+        1e-5,
+        _("half the difference of the scale factors of the {axis} accelerometer for both senses"),
     )
     terms = on_each_axis("accel", "a_{i}", "abs(f_{i})")
     sizes = by_grade(1e-6, 10, 50, 100, 500)

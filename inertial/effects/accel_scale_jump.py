@@ -10,6 +10,8 @@ class AccelScaleJump(ScaleJump):
 
     name = "accel_scale_jump"
     sensor = "accel"
-    parameters = parameters_by_axis("k", "1", 1e-5, _("of the {axis} accelerometer, from then on"))
+    parameters = parameters_by_axis(
+        "k", "1", 1e-5, _("jump of the scale factor of the {axis} accelerometer")
+    )
     terms = on_each_axis("accel", "k_{i}", "(t > t0) * f_{i}")
     sizes = by_grade(1e-6, 50, 200, 500, 1000)

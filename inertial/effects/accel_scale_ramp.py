@@ -19,7 +19,7 @@ class AccelScaleRamp(Ramp):
     cause = _("the scale factor of the accelerometers drifts, as the sensor warms up or ages")
     source = "IEEE Std 1293-2018, stability of bias and scale factor"
     parameters = parameters_by_axis(
-        "k", "1/s", 1e-5 / HOUR, _("of the {axis} accelerometer, per second")
+        "k", "1/s", 1e-5 / HOUR, _("drift of the scale factor of the {axis} accelerometer")
     )
     terms = on_each_axis("accel", "k_{i}", "t * f_{i}")
     sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)

@@ -18,6 +18,11 @@ class AccelScaleTemperature(OfTemperature):
         "the scale factor of the accelerometers changes with the temperature of the instrument"
     )
     source = "IEEE Std 1293-2018, temperature sensitivity of bias and scale factor"
-    parameters = parameters_by_axis("k", "1/K", 1e-5, _("of the {axis} accelerometer, per kelvin"))
+    parameters = parameters_by_axis(
+        "k",
+        "1/K",
+        1e-5,
+        _("change of the scale factor of the {axis} accelerometer with temperature"),
+    )
     terms = on_each_axis("accel", "k_{i}", "(T - T0) * f_{i}")
     sizes = by_grade(1e-6, 5, 20, 50, 200)

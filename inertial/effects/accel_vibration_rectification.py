@@ -21,7 +21,10 @@ class AccelVibrationRectification(Effect):
     cause = _("vibration does not average out where the accelerometer is not linear")
     source = "IEEE Std 1293-2018, vibration rectification error"
     parameters = parameters_by_axis(
-        "k", "(m/s²)/(m/s²)²", 1e-4 / STANDARD_GRAVITY, _("of the {axis} accelerometer")
+        "k",
+        "(m/s²)/(m/s²)²",
+        1e-4 / STANDARD_GRAVITY,
+        _("bias of the {axis} accelerometer per variance of the force along it"),
     )
     stays = _("it depends on how much the samples scatter, which one reading does not tell")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 50, 100, 500, 1000)

@@ -12,7 +12,10 @@ class AccelWarmUp(WarmUp):
     name = "accel_warm_up"
     sensor = "accel"
     parameters = parameters_by_axis(
-        "b", "m/s²", 1e-5 * STANDARD_GRAVITY, _("of the {axis} specific force at the first sample")
+        "b",
+        "m/s²",
+        1e-5 * STANDARD_GRAVITY,
+        _("further bias of the {axis} accelerometer at the first sample"),
     )
     terms = on_each_axis("accel", "b_{i}", "exp(-t / tau)")
     sizes = by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 100, 1000)

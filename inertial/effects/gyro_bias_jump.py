@@ -11,6 +11,8 @@ class GyroBiasJump(Jump):
 
     name = "gyro_bias_jump"
     sensor = "gyro"
-    parameters = parameters_by_axis("b", "rad/s", DEGREE_PER_HOUR, _("of the {axis} rate"))
+    parameters = parameters_by_axis(
+        "b", "rad/s", DEGREE_PER_HOUR, _("jump of the bias of the {axis} gyro")
+    )
     terms = on_each_axis("gyro", "b_{i}", "(t > t0)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 10, 30, 100)

@@ -17,7 +17,7 @@ class GyroBiasRamp(Ramp):
     cause = _("the bias of the gyros drifts, as the sensor or its electronics warm up or age")
     source = "IEEE Std 952-1997, annex C, rate ramp"
     parameters = parameters_by_axis(
-        "c", "rad/s²", 0.1 * DEGREE_PER_HOUR / HOUR, _("drift of the {axis} rate, per second")
+        "c", "rad/s²", 0.1 * DEGREE_PER_HOUR / HOUR, _("drift of the bias of the {axis} gyro")
     )
     terms = on_each_axis("gyro", "c_{i}", "t")
     sizes = by_grade(DEGREE_PER_HOUR / HOUR, 0.05, 1, 10, 100)

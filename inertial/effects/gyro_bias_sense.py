@@ -40,7 +40,10 @@ class GyroBiasSense(Effect):
     cause = _("the sensor or its read-out stays magnetised or strained by the last turn")
     source = "IEEE Std 528-2019, 'hysteresis error', of the other sense in a traverse"
     parameters = parameters_by_axis(
-        "b", "rad/s", 0.1 * DEGREE_PER_HOUR, _("the bias of the {axis} gyro after a forward turn")
+        "b",
+        "rad/s",
+        0.1 * DEGREE_PER_HOUR,
+        _("further bias of the {axis} gyro after a forward turn"),
     )
     of_stillness = True
     stays = _("it depends on the turns before the reading, which the reading does not tell")

@@ -17,7 +17,10 @@ class GyroBiasTemperature(OfTemperature):
     cause = _("the bias of the gyros changes with the temperature of the instrument")
     source = "IEEE Std 952-1997, model equation, terms of temperature"
     parameters = parameters_by_axis(
-        "k", "rad/s/K", 0.1 * DEGREE_PER_HOUR, _("of the {axis} rate, per kelvin")
+        "k",
+        "rad/s/K",
+        0.1 * DEGREE_PER_HOUR,
+        _("change of the bias of the {axis} gyro with temperature"),
     )
     terms = on_each_axis("gyro", "k_{i}", "(T - T0)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.05, 1, 5, 18)

@@ -20,7 +20,12 @@ class GyroG2Sensitivity(OfSensed):
         "the suspension of the gyro yields unlike in its directions under load (anisoelastic)"
     )
     source = "IEEE Std 528-2019, 'acceleration-squared-sensitive drift rate'"
-    parameters = parameters_by_axis("g2", "(rad/s)/(m/s²)²", 1.0 * UNIT, _("of the {axis} gyro"))
+    parameters = parameters_by_axis(
+        "g2",
+        "(rad/s)/(m/s²)²",
+        1.0 * UNIT,
+        _("reading of the {axis} gyro per square of the force along it"),
+    )
     terms = on_each_axis("gyro", "g2_{i}", "f_{i} * f_{i}")
     sizes = by_grade(UNIT, 0.01, 0.05, 0.5, 5)
 

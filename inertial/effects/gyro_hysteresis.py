@@ -51,7 +51,7 @@ class GyroHysteresis(Effect):
     cause = _("friction in the suspension or the read-out holds on to the rate before")
     source = "IEEE Std 528-2019, 'hysteresis error'"
     parameters = parameters_by_axis(
-        "h", "rad/s", 0.1 * DEGREE_PER_HOUR, _("half the loop of the {axis} gyro")
+        "h", "rad/s", 0.1 * DEGREE_PER_HOUR, _("half the width of the loop of the {axis} gyro")
     )
     of_stillness = True
     stays = _("it depends on the rates before the reading, which the reading does not tell")

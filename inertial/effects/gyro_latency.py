@@ -19,7 +19,7 @@ class GyroLatency(Effect):
     name = "gyro_latency"
     cause = _("the bandwidth of the gyros and the time that filters and transfer take")
     source = "Titterton & Weston 2004, bandwidth of gyroscopes"
-    parameters = (Parameter("tau", "s", 1e-3, _("by which the gyros lag behind the table")),)
+    parameters = (Parameter("tau", "s", 1e-3, _("time by which the gyros lag behind the table")),)
     sizes = by_grade(1e-3, 5, 3, 5, 10)
     absorbed_by = _("the angle of the table in each block, which only the gyros tell")
 

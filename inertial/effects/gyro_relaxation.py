@@ -72,10 +72,10 @@ class GyroRelaxation(Relaxing):
     source = "Nowick & Berry 1972, Anelastic Relaxation in Crystalline Solids, ch. 1"
     parameters = (
         *parameters_by_axis(
-            "d", "rad/s", 0.1 * DEGREE_PER_HOUR, _("the bias of the {axis} gyro during a turn")
+            "d", "rad/s", 0.1 * DEGREE_PER_HOUR, _("further bias of the {axis} gyro during a turn")
         ),
         *parameters_by_axis(
-            "b", "rad/s", 0.1 * DEGREE_PER_HOUR, _("the bias of the {axis} gyro as a turn ends")
+            "b", "rad/s", 0.1 * DEGREE_PER_HOUR, _("further bias of the {axis} gyro as a turn ends")
         ),
     )
 

@@ -24,7 +24,10 @@ class GyroRelaxationSense(Relaxing):
     cause = _("each turn strains or charges the sensor with its sense, which then recovers")
     source = "Nowick & Berry 1972, Anelastic Relaxation in Crystalline Solids, ch. 1"
     parameters = parameters_by_axis(
-        "b", "rad/s", 0.1 * DEGREE_PER_HOUR, _("the bias of the {axis} gyro after a forward turn")
+        "b",
+        "rad/s",
+        0.1 * DEGREE_PER_HOUR,
+        _("further bias of the {axis} gyro after a forward turn"),
     )
     in_turns: ClassVar[bool] = True
 

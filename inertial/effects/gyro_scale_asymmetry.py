@@ -19,7 +19,10 @@ class GyroScaleAsymmetry(OfSensed):
     cause = _("the loop or the read-out of the gyro answers unlike to the two senses of rotation")
     source = "IEEE Std 528-2019, 'asymmetry error'"
     parameters = parameters_by_axis(
-        "a", "1", 1e-4, _("of the {axis} gyro, half the difference of both scale factors")
+        "a",
+        "1",
+        1e-4,
+        _("half the difference of the scale factors of the {axis} gyro for both senses"),
     )
     terms = on_each_axis("gyro", "a_{i}", "abs(w_{i})")
     sizes = by_grade(1e-6, 10, 30, 100, 500)

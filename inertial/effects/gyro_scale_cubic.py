@@ -18,7 +18,12 @@ class GyroScaleCubic(OfSensed):
         "the loop or the read-out of the gyro is not linear in the rate, alike for both senses"
     )
     source = "IEEE Std 528-2019, 'nonlinearity'"
-    parameters = parameters_by_axis("k", "s²/rad²", 1e-8 / DEGREE**2, _("of the {axis} gyro"))
+    parameters = parameters_by_axis(
+        "k",
+        "s²/rad²",
+        1e-8 / DEGREE**2,
+        _("change of the scale factor of the {axis} gyro per square of its rate"),
+    )
     terms = on_each_axis("gyro", "k_{i}", "w_{i} * w_{i} * w_{i}")
     sizes = by_grade(1e-6 / DEGREE**2, 1e-3, 1e-4, 5e-3, 0.05)
 

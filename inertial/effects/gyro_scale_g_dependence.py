@@ -18,7 +18,10 @@ class GyroScaleGDependence(OfSensed):
     cause = _("load on the sensing element changes what a rate does to it")
     source = "Sensonor, STIM300 data sheet, linear acceleration effect on the scale factor"
     parameters = parameters_by_axis(
-        "k", "1/(m/s²)", 1e-4 / STANDARD_GRAVITY, _("of the {axis} gyro")
+        "k",
+        "1/(m/s²)",
+        1e-4 / STANDARD_GRAVITY,
+        _("change of the scale factor of the {axis} gyro per force along it"),
     )
     terms = on_each_axis("gyro", "k_{i}", "w_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 2, 30, 100, 500)

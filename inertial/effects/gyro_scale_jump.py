@@ -10,6 +10,8 @@ class GyroScaleJump(ScaleJump):
 
     name = "gyro_scale_jump"
     sensor = "gyro"
-    parameters = parameters_by_axis("k", "1", 1e-5, _("of the {axis} gyro, from then on"))
+    parameters = parameters_by_axis(
+        "k", "1", 1e-5, _("jump of the scale factor of the {axis} gyro")
+    )
     terms = on_each_axis("gyro", "k_{i}", "(t > t0) * w_{i}")
     sizes = by_grade(1e-6, 5, 50, 300, 1000)

@@ -19,7 +19,12 @@ class GyroScaleQuadratic(OfSensed):
     sensor = "gyro"
     cause = _("the loop or the read-out of the gyro is not linear in the rate")
     source = "IEEE Std 528-2019, 'nonlinearity'"
-    parameters = parameters_by_axis("k", "1/(rad/s)", 1e-6 / DEGREE, _("of the {axis} gyro"))
+    parameters = parameters_by_axis(
+        "k",
+        "1/(rad/s)",
+        1e-6 / DEGREE,
+        _("change of the scale factor of the {axis} gyro per magnitude of its rate"),
+    )
     terms = on_each_axis("gyro", "k_{i}", "w_{i} * abs(w_{i})")
     sizes = by_grade(1e-6 / DEGREE, 0.1, 0.1, 1, 5)
 

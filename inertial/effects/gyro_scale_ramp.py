@@ -18,7 +18,9 @@ class GyroScaleRamp(Ramp):
     of_scale = True
     cause = _("the scale factor of the gyros drifts, as the sensor warms up or ages")
     source = "IEEE Std 952-1997, scale factor errors: instability"
-    parameters = parameters_by_axis("k", "1/s", 1e-5 / HOUR, _("of the {axis} gyro, per second"))
+    parameters = parameters_by_axis(
+        "k", "1/s", 1e-5 / HOUR, _("drift of the scale factor of the {axis} gyro")
+    )
     terms = on_each_axis("gyro", "k_{i}", "t * w_{i}")
     sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
     thinkable = 4.0  # 200 ppm/K that warms by 10 K in an hour

@@ -16,6 +16,8 @@ class GyroScaleTemperature(OfTemperature):
     of_scale = True
     cause = _("the scale factor of the gyros changes with the temperature of the instrument")
     source = "IEEE Std 952-1997, model equation, terms of temperature"
-    parameters = parameters_by_axis("k", "1/K", 1e-5, _("of the {axis} gyro, per kelvin"))
+    parameters = parameters_by_axis(
+        "k", "1/K", 1e-5, _("change of the scale factor of the {axis} gyro with temperature")
+    )
     terms = on_each_axis("gyro", "k_{i}", "(T - T0) * w_{i}")
     sizes = by_grade(1e-6, 5, 10, 50, 200)

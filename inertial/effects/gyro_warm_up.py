@@ -12,7 +12,7 @@ class GyroWarmUp(WarmUp):
     name = "gyro_warm_up"
     sensor = "gyro"
     parameters = parameters_by_axis(
-        "b", "rad/s", DEGREE_PER_HOUR, _("of the {axis} rate at the first sample")
+        "b", "rad/s", DEGREE_PER_HOUR, _("further bias of the {axis} gyro at the first sample")
     )
     terms = on_each_axis("gyro", "b_{i}", "exp(-t / tau)")
     sizes = by_grade(DEGREE_PER_HOUR, 0.3, 5, 30, 300)

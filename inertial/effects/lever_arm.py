@@ -19,7 +19,7 @@ class LeverArm(Effect):
     cause = _("the accelerometers stand beside the axis of the table and feel its rotation")
     source = "IEEE Std 1293-2018, centrifuge and rate table tests"
     parameters = parameters_by_axis(
-        "r", "m", 0.01, _("from the table's axis to the case, along {axis}")
+        "r", "m", 0.01, _("distance from the table's axis to the case, along {axis}")
     )
     sizes = by_grade(1e-3, 30, 30, 30, 30)
 

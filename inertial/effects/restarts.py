@@ -26,6 +26,12 @@ SIZES = {
     "gyro": by_grade(DEGREE_PER_HOUR, 0.3, 10, 30, 100),
     "accel": by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 200, 1000),
 }
+MEANINGS = {  # of b0, b1 …
+    "gyro": _("further bias of the {axis} gyro in this run; b0: before the first restart"),
+    "accel": _(
+        "further bias of the {axis} accelerometer in this run; b0: before the first restart"
+    ),
+}
 
 
 class Restarts(Effect):
@@ -56,8 +62,7 @@ class Restarts(Effect):
         parameters: list[Parameter] = []
         terms: list[Term] = []
         for k in range(first, len(self.times) + 1):
-            of_axis = _("of the {axis} reading")
-            own = parameters_by_axis(f"b{k}", unit, size, of_axis)
+            own = parameters_by_axis(f"b{k}", unit, size, MEANINGS[sensor])
             since, until = f"(t > t{k})", f"(1 - (t > t{k + 1}))"
             factor = " * ".join([since] * (k > 0) + [until] * (k < len(self.times)))
             parameters += own

@@ -23,7 +23,7 @@ class SizeEffect(Effect):
             f"r_{i}{j}",
             "m",
             0.01,
-            _("from the table's axis to accelerometer {i}, along {j}", i=i, j=j),
+            _("distance from the table's axis to accelerometer {i}, along {j}", i=i, j=j),
         )
         for i in "xyz"
         for j in "xyz"

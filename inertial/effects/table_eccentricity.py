@@ -23,9 +23,9 @@ class TableEccentricity(Effect):
     source = "IEEE Std 1554-2005, position accuracy of tables"
     parameters = (
         Parameter(
-            "a", "rad", 1e-5, _("part with the sine of the angle since the start of the turn")
+            "a", "rad", 1e-5, _("amplitude of the sine of the angle since the start of the turn")
         ),
-        Parameter("b", "rad", 1e-5, _("part with the cosine")),
+        Parameter("b", "rad", 1e-5, _("amplitude of the cosine of the same angle")),
     )
     sizes = of_tables(ARC_SECOND, 3, 30)
     sought_in = "spectrum"

@@ -25,7 +25,7 @@ class TablePositionError(Effect):
             f"lean_{i}",
             "rad",
             2 * ARC_SECOND,
-            _("about the {which} level axis at the start", which=which),
+            _("lean about the {which} level axis at the start", which=which),
         )
         for i, which in ((1, "first"), (2, "second"))
     )

@@ -25,8 +25,13 @@ class TableRipple(Effect):
     cause = _("teeth of a gear, poles of the motor or balls of a bearing pass by")
     source = "IEEE Std 1554-2005, rate smoothness of tables"
     parameters = (
-        Parameter("a", "rad", 5e-7, _("part with the sine of n times the angle since the start")),
-        Parameter("b", "rad", 5e-7, _("part with the cosine")),
+        Parameter(
+            "a",
+            "rad",
+            5e-7,
+            _("amplitude of the sine of n times the angle since the start of the turn"),
+        ),
+        Parameter("b", "rad", 5e-7, _("amplitude of the cosine of the same angle")),
     )
     sizes = of_tables(ARC_SECOND, 0.5, 5)
     sought_in = "spectrum"

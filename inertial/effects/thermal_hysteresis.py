@@ -15,6 +15,14 @@ MIN_RETURN = 5.0  # K, by which the temperature must go back on its way
 ONE_WAY = _("The temperature goes one way only, so warming cannot be compared with cooling.")
 UNITS = {"accel": ("m/s²", 1e-5 * STANDARD_GRAVITY), "gyro": ("rad/s", 0.1 * DEGREE_PER_HOUR)}
 
+MEANINGS = {
+    "gyro": _("half the difference of the bias of the {axis} gyro after warming and after cooling"),
+    "accel": _(
+        "half the difference of the bias of the {axis} accelerometer after warming and after "
+        "cooling"
+    ),
+}
+
 
 class ThermalHysteresis(Effect):
     """Reading += h (T − p(T)) / w: +h after long warming, −h after long cooling.
@@ -37,8 +45,7 @@ class ThermalHysteresis(Effect):
             sensors=PLURAL[sensor],
         )
         self.sizes = dict.fromkeys(("fog", "tactical", "mti", "consumer"), size)  # type: ignore[misc]
-        of_axis = _("of the {axis} reading")
-        self.parameters = parameters_by_axis("h", unit, size, of_axis)  # type: ignore[misc]
+        self.parameters = parameters_by_axis("h", unit, size, MEANINGS[sensor])  # type: ignore[misc]
 
     thinkable = 1e4
 

@@ -23,7 +23,9 @@ class TurnAngleError(Effect):
     cause = _("the turn was stopped elsewhere, or its angle is stated or read wrong")
     source = "IEEE Std 1554-2005, position accuracy of tables"
     parameters = (
-        Parameter("delta", "rad", 2 * ARC_SECOND, _("by which the turn is further than stated")),
+        Parameter(
+            "delta", "rad", 2 * ARC_SECOND, _("angle by which the turn is further than stated")
+        ),
     )
     sizes = of_tables(ARC_SECOND, 2, 30)
     thinkable = 1000.0
