@@ -31,6 +31,14 @@ from inertial.text.messages import _
 from stages.pdf.declared import DECLARED
 
 FIGURE = re.compile(r'<div role="img" aria-label=("[^"]*")>(<svg .*?</svg>).*?</div>', re.DOTALL)
+# What no line ends within: a number with its unit, a unit with a solidus, a coverage factor, and a
+# name or a term that begins with a single letter, as x-forward and g-sensitivity do.
+UNIT = r"(?:°(?:/[\w√/]+)?|[µm]?g|[mµ]?m(?:/s[²³]?)?|m?rad(?:/s)?|ppm(?:/\w+)?|arcsec|Hz|s|h|%|σ)"
+NUMBER = rf"−?\d[\d.\u202f]*(?: ± [\d.]+)? ?{UNIT}"
+TOGETHER = re.compile(
+    rf"(?<![\w/.-])(?:{NUMBER}|°/[\w√/]+|[A-Za-z]-[a-z]{{1,20}}|k = \d)(?![\w²³√/-])"
+)
+SENTENCE = re.compile(r">[^<>]* [^<>]*<")
 PACKAGES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 VARIANT = "pdf/a-3a"
 # A PDF/A wants the day of an attachment; the tables know none, and the same page must give the
@@ -65,7 +73,8 @@ def as_pdf(page: str, attached: Mapping[str, bytes] | None = None) -> bytes:
     chinese = weasyprint.CSS(
         string=font_faces(page), font_config=fonts, url_fetcher=nothing_outside
     )
-    document = weasyprint.HTML(string=FIGURE.sub(_image, page), url_fetcher=nothing_outside)
+    printed = unbroken(FIGURE.sub(_image, page))
+    document = weasyprint.HTML(string=printed, url_fetcher=nothing_outside)
     attachments = [
         weasyprint.Attachment(
             string=content,
@@ -95,6 +104,16 @@ def _image(figure: re.Match[str]) -> str:
     words, drawn = figure.groups()
     data = b64encode(drawn.encode()).decode()
     return f'<img alt={words} src="data:image/svg+xml;base64,{data}">'
+
+
+def unbroken(page: str) -> str:
+    """A page in whose sentences no line ends within what `TOGETHER` describes."""
+    head, main, body = page.partition("<main>")
+
+    def sentence(text: re.Match[str]) -> str:
+        return TOGETHER.sub(r'<span class="sign">\g<0></span>', text[0])
+
+    return head + main + SENTENCE.sub(sentence, body)
 
 
 def _weasyprint() -> ModuleType:

@@ -13,7 +13,7 @@ from types import ModuleType
 
 import pytest
 
-from stages.pdf.stage import STAGE, as_pdf
+from stages.pdf.stage import STAGE, as_pdf, unbroken
 from tests.report import synthetic
 
 try:
@@ -50,6 +50,13 @@ def unpacked(document: bytes) -> bytes:
         except zlib.error:
             opened.append(stream)
     return document + b"\n".join(opened)
+
+
+def test_no_line_ends_within_a_number_with_its_unit_or_a_name() -> None:
+    text = "<main><p>x-forward: 0.64 ± 0.16 °/h of 12 ppm/h, data/x-up.asc, p = 0.3</p>"
+    kept = ["x-forward", "0.64 ± 0.16 °/h", "12 ppm/h"]
+    assert re.findall(r'<span class="sign">(.*?)</span>', unbroken(text)) == kept
+    assert unbroken("<p>x-up: 3 ppm</p>") == "<p>x-up: 3 ppm</p>"  # before the text: style, fonts
 
 
 @needs_pango
