@@ -56,7 +56,7 @@ GRID_COLUMNS = 3
 COLUMN_GAP = 0.06  # inches to the right of a column of panels that belong to it
 SMALL_RATE = 0.2 * DEGREES_PER_SECOND.size
 MISSING = "#8e2a5b"
-MASKED = "#aeb7c2"
+MASKED = "#7d8894"
 
 _STYLE: Any = {
     "axes.axisbelow": True,
@@ -291,7 +291,7 @@ def hatch_missing(
 def hatch_masked(axes: Axes, start: float, end: float) -> None:
     """Mark a stretch that was recorded but is not used."""
     axes.axvspan(
-        start, end, facecolor="#f1f3f5", edgecolor=MASKED, hatch="||", linewidth=0, zorder=1
+        start, end, facecolor="#ffffff", edgecolor=MASKED, hatch="xxxx", linewidth=0.4, zorder=1
     )
 
 

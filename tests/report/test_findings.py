@@ -36,7 +36,7 @@ def test_a_fault_with_a_place_is_shown_where_it_is(fault: synthetic_faults.Fault
     assert html.count('role="img"') == 1
     assert f"{fault.manoeuvre}.asc" in html
     assert f"lines {first} to " in html
-    assert ("Ruled: masked" in html) == (fault.masks and fault.cause != "duplicate")
+    assert ("Cross-hatched: masked" in html) == (fault.masks and fault.cause != "duplicate")
     few = fault.inside[1] - fault.inside[0] <= 40
     assert ("Ringed: affected" in html) == few
 

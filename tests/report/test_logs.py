@@ -6,11 +6,13 @@ import re
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from inertial import tables as contracts
 from stages.report.sections import raw_data
 from stages.report.sections.raw_data import MOST_MISSING, Log, envelope, logs
 from tests.report import synthetic
-from tests.report.synthetic_values import GAP
+from tests.report.synthetic_values import GAP, rows_as
 
 
 def drawn(tables: dict[str, Any]) -> list[Log]:
@@ -69,3 +71,27 @@ def test_thousands_of_gaps_are_counted_but_not_all_drawn() -> None:
     [log] = drawn(tables)
     assert len(log.missing) == MOST_MISSING
     assert log.lost > 140
+
+
+def test_masked_samples_are_marked_where_they_are_and_said_to_be_unused() -> None:
+    """A second of all channels, and one sample of the x accelerometer, of a log at 100 Hz."""
+    tables = synthetic.campaign(logs=("x-up.asc",))
+    found = {"id": "quality/impact", "cause": "impact", "count": 1, "unit": "m/s²", "severity": 2}
+    found |= dict.fromkeys(("consequence", "action", "sentence"), "An impact.")
+    tables["quality_findings"] = pd.concat(
+        [tables["quality_findings"], rows_as(contracts.FINDINGS, [found])], ignore_index=True
+    )
+    mask = {"log": "x-up.asc", "repeated": False, "censored": False, "finding": "quality/impact"}
+    masks = [
+        mask | {"from_record": 1000, "to_record": 1100},
+        mask | {"from_record": 5000, "to_record": 5001, "sensor": "accel", "axis": "x"},
+    ]
+    tables["masks"] = rows_as(contracts.MASKS, masks)
+    [log] = drawn(tables)
+    first, second = log.masked
+    begin = log.start[0] + 0.01 * (1000 - tables["traces"]["from_record"].iloc[0])
+    assert np.allclose(first.span, [begin, begin + 0.99], atol=0.02)
+    assert (first.samples, first.channel, second.samples, second.channel) == (100, "", 1, "accel_x")
+    [figure, *_] = raw_data.SECTION.parts(synthetic.tables_of(tables))
+    assert "Cross-hatched: masked, not used (impact on the IMU: 100 samples; " in figure.caption
+    assert "impact on the IMU, x accelerometer: 1 sample)." in figure.caption

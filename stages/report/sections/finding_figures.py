@@ -261,7 +261,8 @@ def figure(place: Place, key: str) -> Figure | None:
     name = shortened(place.log.name, 80)
     marked = _(", the wedge marks the place") if place.marked else ""
     caption, close_up = (
-        _("{name}, {name_2}: the whole log{marked}.", name=name, name_2=place.name, marked=marked),
+        _("{name}, {name_2}: the whole log{marked}.", name=name, name_2=place.name, marked=marked)
+        + _masked_in_words(place),
         None,
     )
     if place.close_up is not None and len(place.close_up.line):
@@ -335,9 +336,13 @@ def _signs(place: Place, close_up: CloseUp) -> str:
     signs += affected
     if gaps_in(close_up, place.gaps):
         signs += _(" Hatched: not recorded.")
-    if masked_in(close_up, place.masks, place.channels):
-        signs += _(" Ruled: masked, not used.")
-    return signs
+    return signs + _masked_in_words(place)
+
+
+def _masked_in_words(place: Place) -> str:
+    """What is cross-hatched in the picture of the whole log; nothing where nothing is."""
+    hidden = any(one.channel in ("", *place.channels) for one in place.log.masked)
+    return _(" Cross-hatched: masked, not used.") if hidden else ""
 
 
 # ---- drawing
@@ -358,7 +363,7 @@ def _draw(place: Place, close_up: CloseUp | None, key: str) -> str:
 
 def _whole_log(panel: Axes, place: Place, unit: Unit, *, points: int) -> None:
     log = place.log
-    draw_phases(panel, log)
+    draw_phases(panel, log, place.channels)
     for channel, middle in place.middles.items():
         draw_channel(panel, log, channel, points, unit, middle)
     if place.marked is not None:

@@ -1,4 +1,4 @@
-"""The raw data of every log: envelope over time, phases, and what is missing."""
+"""The raw data of every log: envelope over time, phases, what is missing and what is masked."""
 
 from __future__ import annotations
 
@@ -7,10 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from inertial.tables import AXES, CHANNELS, STATIC_PHASES
+from inertial.campaign.records import grouped
+from inertial.sensors import SINGULAR
+from inertial.tables import AXES, CHANNEL_PARTS, CHANNELS, STATIC_PHASES
+from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, shortened
 from inertial.text.units import DEGREES_PER_SECOND, METRES, Unit
@@ -22,11 +26,22 @@ from stages.report.tables import Record, Tables, once
 Stretch = tuple[float, float]
 
 MOST_MISSING = 50  # stretches that are marked in one log
+MOST_MASKED = 100  # parts of a log; a masked sample is marked as wide as one of them at least
+
+
+@dataclass(frozen=True)
+class Masked:
+    """Samples that a finding excludes: where, its cause, of which channel, "" where of all."""
+
+    span: Stretch
+    samples: int
+    cause: str
+    channel: str
 
 
 @dataclass(frozen=True)
 class Log:
-    """One log as it is drawn: envelope over time, phases, missing stretches."""
+    """One log as it is drawn: envelope over time, phases, missing and masked stretches."""
 
     name: str
     start: Array  # of each row of the envelope, s, or records where there is no time
@@ -38,6 +53,7 @@ class Log:
     lost: float  # s, of all gaps, from the record before to the one after
     timed: bool
     records: int
+    masked: tuple[Masked, ...] = ()
 
     @property
     def static(self) -> bool:
@@ -62,7 +78,11 @@ class Log:
 
 @once
 def logs(tables: Tables) -> list[Log]:
-    """Every log with its envelope, the phases of its manoeuvres and what is missing."""
+    """Every log with its envelope, the phases of its manoeuvres, what is missing and masked."""
+    causes = {
+        row["id"]: row["cause"] for name in MASKING for row in tables.rows(f"{name}_findings")
+    }
+    masks = grouped(tables.rows("masks"), lambda row: row["log"])
     clock = {row["log"]: row for row in tables.rows("clocks")}
     gaps = tables.frame("gaps")
     stated = gaps[["from_s", "to_s"]].to_numpy(dtype=np.float64)
@@ -87,7 +107,8 @@ def logs(tables: Tables) -> list[Log]:
             if row["log"] == log and row[columns[0]] is not None and row[columns[1]] is not None
         )
         count = int(clock.get(log, {}).get("records") or rows["to_record"].max())
-        drawn = Log(log, start, end, least, most, own, longest, lost, timed, count)
+        hidden = tuple(_masked(rows, start, end, masks.get(log, ()), causes))
+        drawn = Log(log, start, end, least, most, own, longest, lost, timed, count, hidden)
         each.append(_cut(drawn))
     return each
 
@@ -103,6 +124,20 @@ def _missing(start: Array, end: Array, interval: float | None, gaps: Array) -> l
     if len(gaps):
         stated = (before >= 0) & (gaps[before, 1] > seen[:, 0])
     return [(float(a), float(b)) for a, b in np.concatenate([gaps, seen[~stated]])]
+
+
+def _masked(
+    rows: pd.DataFrame, start: Array, end: Array, masks: Sequence[Record], causes: dict[str, str]
+) -> Iterator[Masked]:
+    """Where the masked samples of a log are, by the records and places of its envelope."""
+    records = rows[["from_record", "to_record"]].to_numpy(dtype=np.float64) - [0.0, 1.0]
+    places = np.column_stack([start, end])
+    for row in masks:
+        first, after = row["from_record"], row["to_record"]
+        span = np.interp([first, after - 1], records.ravel(), places.ravel())
+        channel = f"{row['sensor']}_{row['axis']}" if row["sensor"] else ""
+        cause = causes.get(row["finding"], "")
+        yield Masked((float(span[0]), float(span[1])), after - first, cause, channel)
 
 
 def _longest(stretches: Sequence[Stretch], most: int) -> list[Stretch]:
@@ -149,6 +184,7 @@ def envelope(log: Log, channel: str, points: int) -> tuple[Array, Array, Array]:
 
 # ---- the section
 
+MASKING = ("quality", "segment")  # the stages whose findings mask samples
 MOST_POINTS = 45_000  # of all figures together: what a page may weigh
 POINTS_PER_CURVE = (60, 300)
 MANY_LOGS = 24  # from here on the figures are small, x, y and z in one panel
@@ -181,9 +217,10 @@ SECTION = Section(
         "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
         "lost; logs at rest are drawn relative to the median. Behind the "
         "curves, x orange, y green, z blue: rest grey, spin-up and spin-down yellow, steady turn "
-        "blue; hatched: not recorded, close up among the findings."
+        "blue; hatched: not recorded, close up among the findings; cross-hatched: recorded, but "
+        "masked by a finding, so that nothing is estimated from it."
     ),
-    ("traces", "segments", "clocks", "gaps"),
+    ("traces", "segments", "clocks", "gaps", "masks", *(f"{name}_findings" for name in MASKING)),
     parts,
 )
 
@@ -202,12 +239,26 @@ def _figure(log: Log, key: str, points: int, *, small: bool) -> Figure:
     )
     if log.missing:
         caption += _(" Gaps of {lost} s in all, from record to record.", lost=fixed(log.lost, 2))
+    caption += _masked_in_words(log)
     words = _(
         "Six curves over time: rates and specific forces of x, y and z of the log {name}.",
         name=log.name,
     )
     drawn = _draw(log, key, points, small=small)
     return Figure(caption, drawn, words, "fair" if log.missing else "")
+
+
+def _masked_in_words(log: Log) -> str:
+    """What the cross-hatched stretches of a log are, as a sentence; nothing where it has none."""
+    samples: dict[str, int] = {}
+    for one in log.masked:
+        sensor, axis = CHANNEL_PARTS.get(one.channel, ("", ""))
+        name = in_words(one.cause) + (f", {axis} {SINGULAR[sensor]}" if sensor else "")
+        samples[name] = samples.get(name, 0) + one.samples
+    if not samples:
+        return ""
+    each = "; ".join(f"{name}: {counted(count, 'sample')}" for name, count in samples.items())
+    return _(" Cross-hatched: masked, not used ({each}).", each=shortened(each, 300))
 
 
 def _draw(log: Log, key: str, points: int, *, small: bool) -> str:
@@ -219,8 +270,8 @@ def _draw(log: Log, key: str, points: int, *, small: bool) -> str:
             middles = {a: _middle(log, f"{sensor}_{a}") if log.static else 0.0 for a in AXES}
             unit = _unit(log, sensor, middles) if log.static else ABSOLUTE[sensor]
             own = [row[column] for row in axes]
-            for panel in own:
-                draw_phases(panel, log)
+            for panel, axis in zip(own, AXES, strict=False):
+                draw_phases(panel, log, [f"{sensor}_{each}" for each in (AXES if small else axis)])
                 drawing.ticks(panel, 4)
                 panel.ticklabel_format(axis="y", useOffset=False)
             for panel, axis in zip(own * 3 if small else own, AXES, strict=True):
@@ -239,11 +290,29 @@ def _draw(log: Log, key: str, points: int, *, small: bool) -> str:
         return drawing.svg(figure, key)
 
 
-def draw_phases(panel: Axes, log: Log) -> None:
-    """The phases behind the curves, and what is missing."""
+def draw_phases(panel: Axes, log: Log, channels: Sequence[str]) -> None:
+    """The phases behind the curves of these channels, what is missing and what is masked."""
     drawing.shade(panel, log.phases)
     for start, end in log.missing:
         drawing.hatch_missing(panel, start, end)
+    masked = [one.span for one in log.masked if one.channel in ("", *channels)]
+    for start, end in _joined(masked, log):
+        drawing.hatch_masked(panel, start, end)
+
+
+def _joined(spans: Sequence[Stretch], log: Log) -> list[Stretch]:
+    """Stretches as wide as a line at least, those that would touch each other as one."""
+    start, end = log.extent
+    width = (end - start) / MOST_MASKED
+    joined: list[Stretch] = []
+    for first, last in sorted(spans):
+        middle = (first + last) / 2
+        wide = min(first, middle - width / 2), max(last, middle + width / 2)
+        if joined and wide[0] <= joined[-1][1]:
+            joined[-1] = joined[-1][0], max(joined[-1][1], wide[1])
+        else:
+            joined.append(wide)
+    return joined
 
 
 def draw_channel(
