@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import base64
 import io
+import re
 import string
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -28,6 +29,8 @@ from stages.report.outline import Report
 FOLDER = Path(__file__).parent
 MOST_LETTERS = {"code": 64}  # of a word that a cell of this kind has room for: a hash
 MOST_LETTERS_ELSE = 24
+SENTENCE = re.compile(r">[^<>]+<(?!/(?:code|text|script))")  # but identifiers, and words of figures
+SYMBOL = re.compile(r"(?<![\w/.])([A-Za-zΣωθφτδρ]\d?)_([xyzij]{1,2}|\d)(?![\w/.]\w)")
 FONTS = (
     ("Report", 400, "normal", "DejaVuSans.ttf"),
     ("Report", 700, "normal", "DejaVuSans-Bold.ttf"),
@@ -79,7 +82,14 @@ def page(report: Report) -> str:
     if report.language == LOCALES["zh"]:
         letters -= FULL_WIDTH_QUOTES  # as wide as a character, hence of the Chinese font
     fonts = _fonts("".join(sorted(letters)))
-    return template.render(report=report, style=style, script=script, fonts=fonts)
+    whole = template.render(report=report, style=style, script=script, fonts=fonts)
+    head, main, body = whole.partition("<main>")
+    return head + main + SENTENCE.sub(_with_indices, body)
+
+
+def _with_indices(text: re.Match[str]) -> str:
+    """A text between tags, the indices of symbols in it below the line, as in tables."""
+    return SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", text[0])
 
 
 def _long(text: str, kind: str) -> bool:

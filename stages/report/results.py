@@ -31,7 +31,7 @@ METHOD = {
     JOINT: _("joint fit of all manoeuvres"),
     EXTENDED: WITH_EFFECTS,
     WITHOUT_ONE: _("joint fit without the manoeuvre that alone is disturbed"),
-    MIXTURE: _("mean over the members of a class, by their probability"),
+    MIXTURE: _("mean over the models that these data do not distinguish, by their probability"),
     "six_position": _("six positions, closed formula"),
     "free_positions": _("static positions of unknown attitude, by |f| = g"),
     "up_and_down": _("two positions with tilt"),
@@ -52,6 +52,12 @@ KIND = {
 KIND_IN_A_SENTENCE = {"bias": _("bias"), "scale": _("scale error"), "cross": _("cross-axis terms")}
 CALIBRATION = frozenset(
     name for name, parts in PARTS.items() if parts.kind in ("bias", "scale", "cross")
+)
+STATIC_SCALE = _(
+    "At rest a gyro senses the earth's rate alone, 15 °/h at most along its axis: an error of 0.1 "
+    "°/h of a mean, by noise, by a tilt or by a bias that depends on the attitude, is one of about "
+    "a per cent of the scale factor. The scale factors by static positions therefore have a σ of "
+    "per cents, and those by turns one of ppm."
 )
 Key = tuple[str, str, str]  # sensor, mount and method
 MIN_P = 0.01  # of a fit that describes its data

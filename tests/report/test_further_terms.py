@@ -8,7 +8,7 @@ from html import unescape
 import pandas as pd
 import pytest
 
-from stages.report.sections import certificate, certified_values
+from stages.report.sections import certificate, effect_terms
 from stages.report.sections.parameters import PARAMETERS
 from tests.report import synthetic, synthetic_unmodelled
 
@@ -31,7 +31,7 @@ def said(html: str) -> str:
 def test_a_further_term_has_its_equation(parameter: str, equation: str) -> None:
     effect = parameter.partition(".")[0]
     rows = [{"parameter": parameter, "value": 1}]
-    assert certified_values.added_to_readings(effect, rows) == equation
+    assert effect_terms.added_to_readings(effect, rows) == equation
 
 
 @pytest.mark.parametrize(
@@ -43,11 +43,11 @@ def test_a_further_term_has_its_equation(parameter: str, equation: str) -> None:
 )
 def test_the_same_term_of_three_axes_is_one_equation(effect, names, equation) -> None:
     rows = [{"parameter": f"{effect}.{name}", "value": 1} for name in names]
-    assert certified_values.added_to_readings(effect, rows) == equation
+    assert effect_terms.added_to_readings(effect, rows) == equation
 
 
 def test_what_is_no_term_of_a_reading_has_no_equation() -> None:
-    assert not certified_values.added_to_readings(
+    assert not effect_terms.added_to_readings(
         "table_tilt", [{"parameter": "table_tilt.x", "value": 1e-6}]
     )
 

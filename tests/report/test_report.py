@@ -27,6 +27,13 @@ from stages.report.sections import (
     uncertainty_budget,
     unmodelled_effects,
 )
+from stages.report.sections.effect_terms import (
+    OF_ANOTHER_MODEL,
+    OF_THE_PLAN,
+    SET,
+    with_scanned_sigmas,
+    without_sigma,
+)
 from stages.report.sections.parameters import PARAMETERS
 from stages.report.stage import ANNEXES, EVIDENCE, STAGE, report
 from tests.report import synthetic, synthetic_faults, synthetic_unmodelled
@@ -203,7 +210,7 @@ def test_the_result_that_counts_stands_first_and_once() -> None:
     assert first == ["diagnosis/accelerometer/bias_x", "diagnosis/gyroscope/bias_x"]
     # 1.30e-6 rad/s and five sigma of 2.1e-8 (the extended fit moved it by four) are 0.2898 °/h
     assert number(page.rows["diagnosis/gyroscope/bias_x"][1]) == pytest.approx(0.2898, abs=1e-4)
-    assert page.text.count("Result: Gyroscope, mean over the members of a class") == 1
+    assert page.text.count("Result: Gyroscope, mean over the models that") == 1
     assert page.text.index("Result: Gyroscope") < page.text.index("By method")
 
 
@@ -232,7 +239,9 @@ def test_a_result_that_is_withheld_is_said_to_be_and_why_once() -> None:
     assert [text for text in captions if "value and sigma of each" in text] == [
         "Accelerometer, joint fit of all manoeuvres: value and sigma of each parameter."
     ]
-    assert any(text.startswith("Gyroscope by") for text in captions)  # as evidence
+    assert any(
+        text.startswith("Gyroscope: the same parameters by") for text in captions
+    )  # as evidence
 
 
 @pytest.mark.slow
@@ -331,6 +340,20 @@ def test_constants_of_effects_are_no_gaps_and_temperatures_are_in_celsius() -> N
     assert "constant of" not in certified_values.further_terms(rows[:2], {}, detected).note
 
 
+def test_a_scanned_constant_has_its_sigma_or_the_reason_why_it_has_none() -> None:
+    own = {"mount": "", "sensor": "gyro"}
+    tau = own | {"effect": "gyro_warm_up", "parameter": "gyro_warm_up.tau", "value": 41.7}
+    found = own | {"effect": "gyro_warm_up", "parameter": "tau", "value": 41.7, "sigma": 2.1}
+    rows = [tau | {"sigma": None}]
+    assert with_scanned_sigmas(rows, [found]) == [tau | {"sigma": 2.1}]
+    elsewhere = with_scanned_sigmas(rows, [found | {"value": 40.0}])  # in another model
+    assert [*without_sigma(elsewhere)] == [OF_ANOTHER_MODEL]
+    turn = own | {"effect": "turn_angle_error", "parameter": "turn_angle_error.turn", "value": 3.0}
+    assert [*without_sigma([turn | {"sigma": None}])] == [OF_THE_PLAN]
+    degree = tau | {"effect": "gyro_temperature", "parameter": "gyro_temperature.T0"}
+    assert [*without_sigma([degree | {"sigma": None}])] == [SET]
+
+
 def test_a_constant_of_an_effect_is_not_called_undetermined() -> None:
     made = synthetic.brief()
     one = made["result"].query("sensor == 'gyro'").iloc[:1].assign(effect="gyro_warm_up")
@@ -393,8 +416,11 @@ def test_parameters_without_shares_are_said() -> None:
     made = synthetic.brief()
     made["uncertainty_budget"] = made["uncertainty_budget"].iloc[:0]
     shown = synthetic.section_on(made, uncertainty_budget.SECTION)
-    assert "Not split: accelerometer: " in shown and "gyro: " in shown
-    assert "another σ than the result" in shown
+    for sensor in ("Accelerometer", "Gyroscope"):
+        assert f"{sensor}, not split: all parameters; its σ differs" in shown
+    made["result"]["method"] = "mixture"
+    shown = synthetic.section_on(made, uncertainty_budget.SECTION)
+    assert "not split: all parameters; the result is a mean over models" in shown
 
 
 def test_an_unmodelled_effect_is_named_with_its_numbers() -> None:
@@ -411,7 +437,7 @@ def test_an_unmodelled_effect_is_named_with_its_numbers() -> None:
 
 def test_detection_limits_say_what_would_have_been_detected() -> None:
     page = Page(synthetic.documents()["html"])
-    effect, worst, _, best, unit, *_ = page.rows["limit/lever_arm/r_y"]  # the worst of three axes
+    effect, worst, best, unit, *_ = page.rows["limit/lever_arm/r_y"]  # the worst of three axes
     assert [effect, worst, best, unit] == ["Lever arm", "1.6", "0.90", "mm"]
     assert "limit/table_tilt/north" not in page.rows
     assert "limit/gyro_g_sensitivity/g_xx" not in page.rows  # it was named
@@ -458,6 +484,22 @@ def test_an_effect_of_two_mounts_stands_twice() -> None:
     assert "Oscillation (mount lying)" in page.text
     twice = [page.rows[f"limit/lever_arm{mount}/r_y"][1:] for mount in ("/lying", "")]
     assert twice[0] == twice[1]
+
+
+def test_what_is_hardly_known_does_not_stand_before_what_is() -> None:
+    """A scale factor by rests is off by 30 of its σ, each of which is 25 000 σ of the result."""
+    made = synthetic.brief()
+    clear = made["differences"].query("kind == 'static_against_turns'").iloc[:1]  # of bias x
+    coarse = clear.assign(id="comparison/coarse", quantity="scale_x", unit="1", sigma=0.065)
+    made["differences"] = pd.concat([coarse.assign(in_sigmas=30.0), made["differences"]])
+    page = Page(synthetic.report_on(made)["html"])
+    places = [row for row in page.rows if row.startswith("comparison/")]
+    assert places.index(clear["id"].item()) < places.index("comparison/coarse")
+    assert "At rest a gyro senses the earth's rate alone" in page.text
+    difference = page.rows[clear["id"].item()][4]
+    assert number(difference) == pytest.approx(
+        DEGREES_PER_HOUR.of(clear["in_sigmas"].item() * clear["sigma"].item()), rel=0.02
+    )
 
 
 def test_comparisons_come_worst_first() -> None:

@@ -34,7 +34,7 @@ def test_a_figure_a_table_with_range_and_knot_and_the_warm_up() -> None:
     assert isinstance(figure, Figure) and "Temperature, °C" in figure.drawn
     assert isinstance(table, Table)
     x, z = (row.cells for row in table.rows)
-    assert x[:5] == ("bias_x", "parabola", "1.4", "65.5", "")
+    assert x[:5] == ("b_x", "parabola", "1.4", "65.5", "")
     assert x[-1].startswith("of this shape with a probability of 0.83;")
     assert z[1] == "two straight lines" and z[4] == "24.8"
     assert "change from 33.0 °C" in z[-1] and "or a tilt" in z[-1]

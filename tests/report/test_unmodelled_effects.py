@@ -245,7 +245,7 @@ def test_a_walk_that_may_be_an_effect_is_one_of_a_class() -> None:
     [
         ("earth_rate_omitted", "1", 0.8, ("would be noticed", "", "", "")),
         ("latitude_sign", "1", 1.2, ("would not be noticed", "", "", "")),
-        ("gyro_dead_band_x", "1", 0.019, ("1.9", "s", "", "%")),
+        ("gyro_dead_band_x", "1", 0.019, ("1.9", "", "%", "s")),
         ("gyro_dead_band_x", "1", 1.7, ("not detectable here", "", "", "")),
         ("heading_error", "rad", 3.5, ("not detectable here", "", "", "")),
     ],
@@ -271,9 +271,10 @@ def test_an_effect_beyond_gravity_is_not_observable_and_not_undetected() -> None
         for axis, limit, least, moves in (("x", 3.1, 0.41, 128.0), ("y", 36.1, 10.6, 10161.0))
     ]
     seen, not_seen = detection_limits(rows, [Tested(score, (), "")])
-    name, worst, parameter, best, unit, moves, *_others = seen.rows[0].cells
+    name, worst, best, unit, parameter, meaning, moves, *_others = seen.rows[0].cells
     assert name == "Accelerometer bias jump (b_x)"
-    assert [worst, parameter, best, unit] == ["not detectable here", "b_x", "42000", "µg"]
+    assert [worst, best, unit] == ["not detectable here", "42000", "µg"]
+    assert [parameter, meaning] == ["b_x", "jump of the bias of the x accelerometer"]
     assert moves == "130"
     assert not_seen.rows[0].cells == (f"{TOO_LARGE}", "Accelerometer bias jump (b_y).")
     assert observable(rows, "visible") and not observable(rows[1:], "visible")
@@ -293,7 +294,7 @@ def test_what_an_undetected_effect_moves_stands_beside_its_limit() -> None:
         for moves, parameter in ((2.04, "bias_x"), (3.31, "cross_yz"))
     ]
     table, *_others = detection_limits(rows, [Tested(score, (), "")])
-    assert table.rows[0].cells[5:8] == ("3.3", "m_yz", "accelerometer")
+    assert table.rows[0].cells[6:8] == ("3.3", "m_yz (accelerometer)")
     assert "external reliability" in str(table)
 
 

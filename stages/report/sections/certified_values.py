@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from inertial.campaign.records import grouped
-from inertial.effects import KNOWN
 from inertial.sensors import PLURAL, SINGULAR
-from inertial.tables import AXES, BODY
+from inertial.tables import BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
-from inertial.text.parameters import sign_of
 from inertial.text.statements import RULES, STATEMENTS
 from inertial.text.typography import capital
 from inertial.text.units import COVERAGE_FACTOR, Unit
@@ -28,7 +25,14 @@ from stages.report.outline import (
     head,
     table_row,
 )
-from stages.report.results import KIND_IN_A_SENTENCE, Estimate, kind_of, quantity_of, symbol
+from stages.report.results import (
+    KIND_IN_A_SENTENCE,
+    Estimate,
+    kind_of,
+    quantity_of,
+    symbol,
+)
+from stages.report.sections.effect_terms import equation, with_scanned_sigmas, without_sigma
 from stages.report.sections.findings import members
 from stages.report.tables import Record, Tables, once
 from stages.report.words import term
@@ -66,7 +70,7 @@ def values(results: Sequence[Estimate], mount: str, earlier: Mapping[str, Record
             frame=term(frame_of(results)),
         ),
         (
-            Column("", "symbol"),
+            Column(_("symbol"), "symbol"),
             *(
                 Column(column.heading, column.kind, sensor)
                 for sensor in sensors
@@ -121,11 +125,9 @@ def further_terms(
 ) -> Table:
     """The parameters of effects, by effect and, where both show it, by sensor.
 
-    `classes`: see `of_classes`; `detected`: the parameters as criticism has them, which knows the
-    sigma of a scanned time constant.
+    `classes`: see `of_classes`; `detected`: see `with_scanned_sigmas`.
     """
-    known = {(row["mount"], f"{row['effect']}.{row['parameter']}"): row for row in detected}
-    rows = [row | {"sigma": row["sigma"] or _scanned(row, known)} for row in rows]
+    rows = with_scanned_sigmas(rows, detected)
     lines: list[Row] = []
     by_place = grouped(rows, lambda row: (row["effect"], row["sensor"]))
     for (effect, sensor), own in by_place.items():
@@ -138,7 +140,7 @@ def further_terms(
                 effect=heading,
                 count=count,
             )
-        lines.append(head(heading + _equation(effect, own)))
+        lines.append(head(heading + equation(effect, own)))
         for row in own:
             if row["value"] is not None:
                 unit = quantity_of(row).shown
@@ -152,7 +154,7 @@ def further_terms(
             "mounting causes, nor a law whose physical cause is not known: its finding says so."
         ),
         (
-            Column("", "symbol"),
+            Column(_("symbol"), "symbol"),
             Column(_("value"), "number"),
             Column("± U", "sigma"),
             Column(_("unit"), "unit"),
@@ -160,77 +162,11 @@ def further_terms(
         ),
         lines,
         note=" ".join(
-            [_("—: a constant of the effect, set and not estimated.")]
-            * any(row["value"] is not None and not row["sigma"] for row in rows)
+            [*without_sigma(rows)]
             + [_("Where a parameter depends on the temperature, the value above is that at T0.")]
             * any(symbol(row["parameter"]) == "T0" for row in rows)
         ),
     )
-
-
-SYMBOLS = {  # of the factors of effects, each in the unit that its coefficient has it in
-    r"f_\w": _("f: specific force"),
-    r"ω_\w": _("ω: angular rate"),
-    r"t": _("t: time from the first sample"),
-    r"T": _("T: temperature of the IMU"),
-    r"[tT] >": _("(… > …): 1 where that is true, else 0"),
-}
-
-
-def _equation(effect: str, rows: Sequence[Record]) -> str:
-    """What it adds to the readings, with what the symbols are, behind its name."""
-    text = added_to_readings(effect, rows)
-    used = [says for sign, says in SYMBOLS.items() if re.search(rf"\b{sign}", text)]
-    return f": {text} ({'; '.join(used)})" if text else ""
-
-
-SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
-
-
-def added_to_readings(effect: str, rows: Sequence[Record]) -> str:
-    """What an effect of a result adds to the readings; empty for one of the table, or of the site.
-
-    That is nothing which is to be taken off.
-    """
-    names = {row["parameter"].rpartition(".")[2] for row in rows if row["value"] is not None}
-    sums: dict[str, list[str]] = {}
-    for each in KNOWN[effect].terms if effect in KNOWN else ():
-        if each.parameter in names:
-            sums.setdefault(each.channel[-1], []).append(_term(each.parameter, each.factor))
-    by_axis = {axis: _over_axes(terms) for axis, terms in sums.items()}
-    alike = {re.sub(rf"_{axis}(?=\b|j)", "_i", text) for axis, text in by_axis.items()}
-    if len(by_axis) > 1 and len(alike) == 1:
-        return f"+ {alike.pop()}"
-    return "; ".join(f"{axis}: + {text}" for axis, text in by_axis.items())
-
-
-def _over_axes(terms: Sequence[str]) -> str:
-    """The sum of terms; Σ_j of those that differ by the axes x, y and z alone."""
-    alike = {re.sub(rf"{axis}\b", "j", text) for axis, text in zip(AXES, terms, strict=False)}
-    if len(terms) == len(AXES) and len(alike) == 1:
-        return f"Σ_j {alike.pop()}"
-    return " + ".join(terms)
-
-
-def _term(parameter: str, factor: str) -> str:
-    """A parameter times its factor as it is written, k_x · f_x² for k_x * f_x * f_x."""
-    factors: dict[str, int] = {}
-    for each in factor.split(" * "):
-        factors[each] = factors.get(each, 0) + 1
-    written = [
-        f + ("" if count == 1 else str(count).translate(SUPERSCRIPTS))
-        for f, count in factors.items()
-    ]
-    factor = re.sub(r"abs\((\w+)\)", r"|\1|", " · ".join(written)).replace("-", "−")
-    factor = re.sub(r"\w+", lambda name: sign_of(re.sub("^w_", "ω_", name[0])), factor)
-    sign = sign_of(parameter)
-    return f"({sign}) · {factor}" if " " in sign else f"{sign} · {factor}"
-
-
-def _scanned(row: Record, known: Mapping[tuple[str, str], Record]) -> float | None:
-    """The sigma of a constant that was scanned; None where it is not known, or of another value."""
-    own = known.get((row["mount"], row["parameter"]))
-    return own["sigma"] if own and own["value"] == row["value"] else None
 
 
 # ---- The last calibration before this one.

@@ -37,7 +37,7 @@ def parts(tables: Tables) -> Iterator[Part]:
 
 def _figures(known: Sequence[Record]) -> Table:
     return Table(
-        _("Figures of each axis, in the terms of IEEE Std 528 (wording not compared with it)."),
+        _("Figures of each axis, named as in IEEE Std 528; the definitions are those above."),
         (
             Column(_("Axis"), "name"),
             Column(_("value"), "number"),
@@ -143,14 +143,17 @@ SECTION = Section(
         "How far the output of each axis departs from its input and from a straight line, over the "
         "inputs that were applied and not over the range of the data sheet; bias, cross terms and "
         "the effects of the result are taken out, but for those that depend on the axis's own "
-        "input. The composite error is that of the whole result."
+        "input."
     ),
     _(
-        "A linearity error within the figure for noise alone is an upper limit. Threshold and "
-        "resolution are the least input, and the least change of it, that give at least half of "
-        "the expected output; the plan and the counts set limits to them, with 95 % confidence: "
-        "the sensor may feel less than the plan applied. The acceleration-insensitive drift rate "
-        "is what a gyro reads independent of specific force."
+        "Composite error: largest difference of the compensated output, by the whole result, from "
+        "the input. Linearity error: largest deviation of the output from a least-squares line in "
+        "the input; one within the figure for noise alone is an upper limit. Asymmetry: "
+        "difference of the scale factors for positive and for negative input. Threshold and "
+        "resolution: the least input, and the least change of it, that give at least half of the "
+        "expected output; the plan and the counts set limits to them, with 95 % confidence: the "
+        "sensor may feel less than the plan applied. Acceleration-insensitive drift rate: what a "
+        "gyro reads independent of specific force."
     ),
     ("characteristics", "bandwidths"),
     parts,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from math import hypot
+from math import floor, hypot, log10
 
 from matplotlib.axes import Axes
 
@@ -19,7 +19,14 @@ from inertial.text.typography import capital
 from inertial.text.units import quantity
 from stages.report import outline
 from stages.report.drawing import AXIS_COLOUR, AXIS_MARK, INK, Margins, panels, style, svg, ticks
-from stages.report.results import KIND, METHOD, RESULT_TABLES, final_results, kind_of
+from stages.report.results import (
+    KIND,
+    METHOD,
+    RESULT_TABLES,
+    STATIC_SCALE,
+    final_results,
+    kind_of,
+)
 from stages.report.tables import Record, Tables
 from stages.report.words import SENSOR_OF_STAGE, parameter, with_mount
 
@@ -39,14 +46,16 @@ OF_A_CHANGE = _(
 
 
 def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
-    """Every difference in units of its sigma with the verdict in words, worst first."""
-    rows = sorted(tables.rows("differences"), key=_worst_first)
+    """Every difference in units of its sigma with the verdict in words, the weightiest first."""
+    rows = _weightiest_first(tables, tables.rows("differences"))
     yield from _judged(rows, _effects_of(tables, rows))
     yield _differences(
-        rows, _("None: no parameter was estimated in two ways that could be compared.")
+        rows,
+        _("None: no parameter was estimated in two ways that could be compared."),
+        STATIC_SCALE if any(map(_of_static_scale, rows)) else "",
     )
     yield outline.Heading(_("Published values against the final result"))
-    published = sorted(tables.rows("published_differences"), key=_worst_first)
+    published = _weightiest_first(tables, tables.rows("published_differences"))
     yield from _judged(published)
     yield _differences(published, _("None: no published value is known for this instrument."))
 
@@ -89,7 +98,9 @@ COMPARISONS = outline.Section(
         "parameter by two ways that should agree. Then published values against the final result."
     ),
     _(
-        "Worst first, the difference in units of its σ. p is the probability of a "
+        "First what differs by more than chance; then, in steps of ten, what is compared most "
+        "sharply, by the σ of the difference over that of the result; within, the largest "
+        "difference in units of its σ. p is the probability of a "
         "difference this large if the two are equal; among many comparisons some are "
         "large by chance, which the verdict takes into account. Two methods that use the same "
         "data are correlated: the variance of their difference is the difference of their "
@@ -103,9 +114,30 @@ COMPARISONS = outline.Section(
 )
 
 
-def _worst_first(row: Record) -> tuple[bool, bool, float, str]:
-    size = row["in_sigmas"]
-    return not _fencepost(row), size is None, -abs(size or 0.0), row["id"]
+def _weightiest_first(tables: Tables, rows: Sequence[Record]) -> list[Record]:
+    """What differs beyond chance, then what says most of the result; within, the worst first."""
+    known = {
+        (row["sensor"], row["mount"], row["parameter"]): row["sigma"]
+        for result in final_results(tables)
+        for row in result.determined
+    }
+
+    def order(row: Record) -> tuple[bool, bool, bool, int, float, str]:
+        size, of_result = (
+            row["in_sigmas"],
+            known.get((row["sensor"], row["mount"], row["quantity"])),
+        )
+        coarse = log10(row["sigma"] / of_result) if row["sigma"] and of_result else 0.0
+        steps = max(0, floor(coarse))
+        place = not _fencepost(row), size is None, not _beyond(row), steps
+        return *place, -abs(size or 0.0), row["id"]
+
+    return sorted(rows, key=order)
+
+
+def _of_static_scale(row: Record) -> bool:
+    """Whether a scale factor of a gyro is compared that static positions alone gave."""
+    return row["kind"] == "static_against_turns" and kind_of(row["quantity"]) == "scale"
 
 
 def _fencepost(row: Record) -> bool:
@@ -117,7 +149,7 @@ def _beyond(row: Record) -> bool:
     return bool(row["significant"]) or _fencepost(row)
 
 
-def _differences(rows: Sequence[Record], none: str) -> outline.Part:
+def _differences(rows: Sequence[Record], none: str, remark: str = "") -> outline.Part:
     apart = [row for row in rows if row["in_sigmas"] is None and not _fencepost(row)]
     rows = [row for row in rows if row not in apart]
     if not rows:
@@ -128,8 +160,9 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Part:
         (
             *outline.columns("text", _("Compared"), _("What")),
             *outline.columns("number", _("first named"), _("second named"), group=_("Values")),
-            outline.Column(_("unit"), "unit", _("Values")),
-            *outline.columns("number", _("in σ"), "p"),
+            *outline.value_and_sigma(_("Difference"), unit=True),
+            outline.Column(_("in σ"), "number", _("Difference")),
+            outline.Column("p", "number"),
         ),
         [_difference(row) for row in shown],
         note=" ".join(
@@ -137,6 +170,7 @@ def _differences(rows: Sequence[Record], none: str) -> outline.Part:
                 None,
                 (
                     outline.more(len(rows) - len(shown), _(" in the table of differences")),
+                    remark,
                     _not_compared(apart),
                 ),
             )
@@ -160,10 +194,13 @@ def _difference(row: Record) -> outline.Row:
     unit = units.quantity(row["quantity"], row["unit"]).shown
     decimals = numbers.decimals_of(unit.of(row["sigma"]))
     first, second = (_value(unit.of(row[key]), decimals) for key in ("first_value", "second_value"))
+    apart = None if row["in_sigmas"] is None else unit.of(row["in_sigmas"] * row["sigma"])
     return outline.table_row(
         with_mount(_compared(row), row["mount"]),
         capital(numbers.shortened(str(row["sentence"]).partition(": ")[0], 600)),
-        *(first, second, unit.name, numbers.fixed(row["in_sigmas"], 1)),
+        *(first, second),
+        *numbers.with_own_sigma(apart, unit.of(row["sigma"])),
+        *(unit.name, numbers.fixed(row["in_sigmas"], 1)),
         numbers.probability(row["p_value"]),
         anchor=row["id"],
         tone="fair" if _beyond(row) else "",

@@ -30,12 +30,12 @@ from stages.report.sections.effect_sentences import (
     largest,
     possible,
 )
+from stages.report.sections.effect_terms import meanings_of
 from stages.report.tables import Record, Tables
 from stages.report.words import count_in_words, with_mount
 
 MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"
-DEAD_BAND = "gyro_dead_band"  # how the names of such effects begin
 Effect = tuple[str, str]  # its name in the catalogue, and the mount
 # Effects that are there or not: 1 if they are, and no other size is possible.
 THERE_OR_NOT = frozenset({"latitude_sign", "earth_rate_omitted"})
@@ -68,7 +68,7 @@ def parameters(caption: str, rows: Sequence[Record]) -> outline.Table:
     return outline.Table(
         caption,
         (
-            outline.Column("", "symbol"),
+            outline.Column(_("symbol"), "symbol"),
             *outline.value_and_sigma(unit=True),
             outline.Column(_("in σ"), "number"),
             outline.Column(_("Meaning"), "note"),
@@ -116,7 +116,7 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
                 sensor=own[0].sensor,
             ),
             (
-                outline.Column("", "symbol"),
+                outline.Column(_("symbol"), "symbol"),
                 *outline.value_and_sigma(_("Joint fit")),
                 *outline.value_and_sigma(_("Extended")),
                 outline.Column(_("unit"), "unit"),
@@ -195,13 +195,13 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
         ),
         (
             outline.Column(_("Effect")),
-            outline.Column(_("worst axis"), "number", _("Detection limit (5 σ)")),
-            outline.Column(_("parameter"), "symbol", _("Detection limit (5 σ)")),
-            outline.Column(_("best axis"), "number", _("Detection limit (5 σ)")),
-            outline.Column(_("unit"), "unit", _("Detection limit (5 σ)")),
-            outline.Column(_("shift, in σ"), "number", _("Shift by an undetected effect")),
-            outline.Column(_("parameter"), "symbol", _("Shift by an undetected effect")),
-            outline.Column(_("sensor"), "text", _("Shift by an undetected effect")),
+            outline.Column(_("worst axis"), "number", _("Limit (5 σ)")),
+            outline.Column(_("best axis"), "number", _("Limit (5 σ)")),
+            outline.Column(_("unit"), "unit", _("Limit (5 σ)")),
+            outline.Column(_("symbol"), "symbol", _("Parameter of the worst axis")),
+            outline.Column(_("meaning"), "note", _("Parameter of the worst axis")),
+            outline.Column(_("in σ"), "number", _("Shift if undetected")),
+            outline.Column(_("of"), "symbol", _("Shift if undetected")),
             outline.Column("p", "number"),
         ),
         [
@@ -216,9 +216,10 @@ def detection_limits(rows: Sequence[Record], tested: Sequence[Tested]) -> Iterat
                     "this significant (corrected for the number of tests, so it is often 1)."
                 ),
                 _(
-                    "Shift by an undetected effect: the parameter that an effect as large as its "
+                    "Shift if undetected: the parameter that an effect as large as its "
                     "detection limit moves most, by how many of its sigmas, which hold no effect "
-                    "that is not named (external reliability, Baarda 1968)."
+                    "that is not named (external reliability, Baarda 1968); b: bias, s: scale "
+                    "error, m_ij: cross-axis term of sensor i to an input along axis j."
                 ),
                 *_remarks(seen, by_name),
             ]
@@ -265,8 +266,6 @@ def shifts_beyond(
 
 def _remarks(rows: Sequence[Record], by_name: Mapping[Effect, Tested]) -> Iterator[str]:
     """What is said of single effects, each with its name."""
-    if any(row["effect"].startswith(DEAD_BAND) for row in rows):
-        yield _("The size of a dead band is the share of a small input that it loses.")
     for effect in dict.fromkeys(map(_effect, rows)):
         remarks = dict.fromkeys(row["remark"] or "" for row in rows if _effect(row) == effect)
         if text := numbers.shortened(" ".join(remarks).strip(), 300):
@@ -282,9 +281,11 @@ def _limit(tested: Tested, rows: Sequence[Record], every: Sequence[Record]) -> o
     name = _named(_effect(rows[0]), [row["parameter"] for row in rows], every)
     rows = sorted(rows, key=lambda row: -(row["largest"] or row["limit"]))
     first = rows[0]
+    sizes = _noticed(first) if tested.effect in THERE_OR_NOT else _sizes(rows)
     return outline.table_row(
         capital(name),
-        *(_noticed(first) if tested.effect in THERE_OR_NOT else _sizes(rows)),
+        *sizes,
+        *(_parameter_of(tested, first["parameter"]) if sizes[-1] else ("", "")),
         *_moves(rows),
         numbers.probability(tested.score["p_value"]),
         anchor="/".join(("limit", *filter(None, _effect(first)), first["parameter"])),
@@ -299,32 +300,39 @@ def moves_most(rows: Sequence[Record]) -> Record | None:
     return max(known, key=lambda row: float(row["moves"]), default=None)
 
 
-def _moves(rows: Sequence[Record]) -> tuple[str, str, str]:
-    """By how many sigma undetected effects of these rows move a parameter, which, and whose."""
+def _parameter_of(tested: Tested, name: str) -> tuple[str, str]:
+    """The symbol of a parameter of an effect, and what it is."""
+    own = {each["parameter"]: each["meaning"] for each in tested.parameters}
+    meanings = {**meanings_of(tested.effect), **own}
+    return symbol(name), numbers.shortened(meanings.get(name, ""), 160)
+
+
+def _moves(rows: Sequence[Record]) -> tuple[str, str]:
+    """By how many sigma undetected effects of these rows move a parameter, and which."""
     most = moves_most(rows)
     if most is None:
-        return "", "", ""
+        return "", ""
     slight = most["moves"] < LEAST_MOVE
     moves = f"< {LEAST_MOVE}" if slight else numbers.significant(most["moves"], 2)
-    return moves, symbol(most["moved_parameter"]), SINGULAR[most["moved_sensor"]]
+    return moves, f"{symbol(most['moved_parameter'])} ({SINGULAR[most['moved_sensor']]})"
 
 
-def _noticed(row: Record) -> tuple[str, str, str, str]:
+def _noticed(row: Record) -> tuple[str, str, str]:
     """Of what is there or not, whether it would be detected."""
-    return NOTICED if row["limit"] <= LARGEST_SHARE else NOT_NOTICED, "", "", ""
+    return NOTICED if row["limit"] <= LARGEST_SHARE else NOT_NOTICED, "", ""
 
 
-def _sizes(rows: Sequence[Record]) -> tuple[str, str, str, str]:
-    """The limit of the worst axis, which is first, its parameter, that of the best, the unit."""
+def _sizes(rows: Sequence[Record]) -> tuple[str, str, str]:
+    """The limit of the worst axis, which is first, that of the best, the unit."""
     first, unit = rows[0], quantity_of(rows[0]).shown
     best = min(min(row["limit"], row["smallest"] or row["limit"]) for row in rows)
     if best > largest(first):
-        return NOT_DETECTABLE, "", "", ""
+        return NOT_DETECTABLE, "", ""
     worst = max(first["limit"], first["largest"] or 0.0)
     least, most = (numbers.significant(unit.of(size), 2) for size in (best, worst))
     if worst > largest(first):
         most = NOT_DETECTABLE
-    return most, symbol(first["parameter"]), least if least != most else "", unit.name
+    return most, least if least != most else "", unit.name
 
 
 def _hidden(rows: Sequence[Record], every: Sequence[Record]) -> Iterator[outline.Row]:

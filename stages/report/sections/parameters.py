@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
@@ -39,6 +40,7 @@ from stages.report.results import (
     KIND,
     METHOD,
     RESULT_TABLES,
+    STATIC_SCALE,
     Estimate,
     by_kind,
     estimates,
@@ -50,6 +52,7 @@ from stages.report.results import (
     written,
 )
 from stages.report.sections.effect_tables import extended
+from stages.report.sections.effect_terms import with_scanned_sigmas, without_sigma
 from stages.report.tables import Record, Tables
 from stages.report.words import phases_in_words, term
 
@@ -57,6 +60,7 @@ BY_METHOD = _(
     "What follows is no result of its own: the same parameters by each method, side by side. How "
     "they should agree is compared in “Comparisons”."
 )
+STATIC = "static"  # the method of the gyros by static positions alone
 MAX_LETTERS = 40  # of an identifier that stays in one line
 MAX_SYMBOLS = 18
 MAX_METHODS = 4  # side by side in one table
@@ -84,7 +88,10 @@ def parts(tables: Tables) -> Iterator[Part]:
         if result.place in withheld(tables):
             yield Paragraph(_("Withheld: the sensor is not usable, as page one says."), "poor")
         else:
-            yield from _result(result)
+            detected = tables.rows("effects")
+            yield from _result(
+                replace(result, effects=tuple(with_scanned_sigmas(result.effects, detected)))
+            )
     yield Heading(_("By method"))
     yield Paragraph(BY_METHOD)
     yield _fits(estimates(tables))
@@ -112,7 +119,7 @@ PARAMETERS = Section(
         "“Compensation”, “Navigation performance” and “Uncertainty budget”; sections that use "
         "another fit say so."
     ),
-    RESULT_TABLES,
+    (*RESULT_TABLES, "effects"),
     parts,
 )
 
@@ -128,12 +135,13 @@ def _result(estimate: Estimate) -> Iterator[Part]:
     yield Table(
         _("{name}: value and sigma of each parameter.", name=estimate.name),
         (
-            Column("", "symbol"),
+            Column(_("symbol"), "symbol"),
             *value_and_sigma(unit=True),
             Column(_("Meaning"), "note"),
             Column(_("Identifier"), "code" if long else "identifier"),
         ),
         [*_rows(estimate.determined), *_effects(estimate)],
+        note=" ".join(without_sigma(estimate.effects)),
     )
     if matrices := _matrices(estimate):
         yield matrices
@@ -182,9 +190,13 @@ def _side_by_side(methods: Sequence[Estimate]) -> Table:
             unit = quantity_of(first[name]).shown.name
             lines.append(table_row(symbol(name), *(text for pair in cells for text in pair), unit))
     return Table(
-        _("{sensor} by {count} of its methods.", sensor=methods[0].sensor, count=len(methods)),
+        _(
+            "{sensor}: the same parameters by {count} methods.",
+            sensor=methods[0].sensor,
+            count=len(methods),
+        ),
         (
-            Column("", "symbol"),
+            Column(_("symbol"), "symbol"),
             *(
                 column
                 for estimate in methods
@@ -193,6 +205,7 @@ def _side_by_side(methods: Sequence[Estimate]) -> Table:
             Column(_("unit"), "unit"),
         ),
         lines,
+        note=STATIC_SCALE if any(one.method == STATIC for one in methods) else "",
     )
 
 

@@ -13,6 +13,7 @@ from inertial.text.numbers import counted, fixed, significant
 from inertial.text.typography import capital
 from inertial.text.units import ICE_POINT, quantity
 from stages.report import drawing, outline
+from stages.report.results import symbol
 from stages.report.tables import Record, Tables
 from stages.report.words import plain, with_mount
 
@@ -89,7 +90,12 @@ def _table(title: str, curves: Curves) -> outline.Table:
         outline.Column(_("Remark"), "note"),
     )
     rows = [_row(name, own) for name, own in curves.items()]
-    return outline.Table(_("Curves of the {title}.", title=title), columns, rows)
+    caption = _(
+        "Curves of the {title}; change: the value at the highest temperature less that at the "
+        "lowest.",
+        title=title,
+    )
+    return outline.Table(caption, columns, rows)
 
 
 def _change(values: Sequence[float]) -> str:
@@ -120,7 +126,7 @@ def _row(name: str, rows: Sequence[Record]) -> outline.Row:
         if first["not_separated"]:
             remark = f"{remark}; {first['not_separated']}"
     return outline.table_row(
-        name,
+        symbol(name),
         _("two straight lines") if knot is not None else DEGREES[first["order"]],
         fixed(first["temperature"] - ICE_POINT, 1),
         fixed(last["temperature"] - ICE_POINT, 1),

@@ -88,6 +88,24 @@ TERMS: tuple[tuple[str, str], ...] = (  # each with what it means
             "axis in the final result."
         ),
     ),
+    (
+        "U",
+        _("Expanded uncertainty, 2 σ: the value lies within ± U with a probability of about 95 %."),
+    ),
+    (
+        "σ",
+        _(
+            "Standard uncertainty: one standard deviation, with all known contributions unless the "
+            "text says otherwise."
+        ),
+    ),
+    (
+        "χ²",
+        _(
+            "Sum of the squares of residuals over their σ; about as large as its degrees of "
+            "freedom where the model is right."
+        ),
+    ),
 )
 DRAWN = "drawn"  # the field of a figure that is no text
 

@@ -14,6 +14,7 @@ from inertial.sensors import SINGULAR
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
+from inertial.text.parameters import MIXTURE
 from inertial.text.typography import capital
 from stages.report.drawing import Margins, panels, style, svg
 from stages.report.outline import (
@@ -63,16 +64,7 @@ MIN_LABELLED = 25  # parameters of a sensor, from which a picture has no names
 def parts(tables: Tables) -> Iterator[Part]:
     """A row per sensor and kind of parameter; the correlations of each sensor as a picture."""
     rows = tables.rows("uncertainty_budget")
-    if missing := _not_split(tables, rows):
-        yield Paragraph(
-            _(
-                "Not split: {parameters}. The equations that the shares are of give another σ than "
-                "the result, by more than a tenth: of a mean over models, of positions by hand, or "
-                "with an effect that they do not hold.",
-                parameters="; ".join(missing),
-            ),
-            "fair",
-        )
+    yield from _not_split(tables, rows)
     if not rows:
         return
     there = [source for source in SOURCES if any(row["source"] == source for row in rows)]
@@ -86,6 +78,7 @@ def parts(tables: Tables) -> Iterator[Part]:
             *columns("number", *(SOURCES[source] for source in there)),
         ),
         [_shares(key, own, there) for key, own in sorted(groups.items(), key=_in_order)],
+        note=_("–: less than 0.05 %."),
     )
     yield from _correlations(tables)
 
@@ -104,22 +97,30 @@ SECTION = Section(
 )
 
 
-def _not_split(tables: Tables, rows: Sequence[Record]) -> list[str]:
-    """By sensor the parameters of the result with a sigma that has no shares."""
+OF_A_MEAN = _(
+    "the result is a mean over models, and what these differ by is none of the sources below"
+)
+OF_MORE = _(
+    "its σ differs by more than a tenth from that of the equations that the shares are of; they "
+    "hold neither the form nor the moment of an effect, nor positions by hand"
+)
+
+
+def _not_split(tables: Tables, rows: Sequence[Record]) -> Iterator[Paragraph]:
+    """By sensor the parameters of the result with a sigma that has no shares, and why."""
     split = {(row["mount"], row["sensor"], row["quantity"]) for row in rows}
-    own = [
-        row
-        for result in final_results(tables)
-        for row in result.determined
-        if row["sigma"] and (row["mount"], row["sensor"], row["parameter"]) not in split
-    ]
-    groups = grouped(own, lambda row: (row["sensor"], row["mount"]))
-    return [
-        with_mount(SINGULAR[sensor], mount)
-        + ": "
-        + listed([symbol(row["parameter"]) for row in each])
-        for (sensor, mount), each in groups.items()
-    ]
+    for result in final_results(tables):
+        known = [row for row in result.determined if row["sigma"]]
+        own = [r for r in known if (r["mount"], r["sensor"], r["parameter"]) not in split]
+        if own:
+            names = listed([symbol(row["parameter"]) for row in own])
+            text = _(
+                "{sensor}, not split: {parameters}; {reason}.",
+                sensor=result.sensor,
+                parameters=_("all parameters") if len(own) == len(known) else names,
+                reason=OF_A_MEAN if result.method == MIXTURE else OF_MORE,
+            )
+            yield Paragraph(text, "fair")
 
 
 def _in_order(item: tuple[tuple[str, str, str], list[Record]]) -> tuple[str, str, int]:
