@@ -35,9 +35,8 @@ FIGURE = re.compile(r'<div role="img" aria-label=("[^"]*")>(<svg .*?</svg>).*?</
 # name or a term that begins with a single letter, as x-forward and g-sensitivity do.
 UNIT = r"(?:°(?:/[\w√/]+)?|[µm]?g|[mµ]?m(?:/s[²³]?)?|m?rad(?:/s)?|ppm(?:/\w+)?|arcsec|Hz|s|h|%|σ)"
 NUMBER = rf"−?\d[\d.\u202f]*(?: ± [\d.]+)? ?{UNIT}"
-TOGETHER = re.compile(
-    rf"(?<![\w/.-])(?:{NUMBER}|°/[\w√/]+|[A-Za-z]-[a-z]{{1,20}}|k = \d)(?![\w²³√/-])"
-)
+NAME = r"[A-Za-z](?:-[a-z]{1,12}){1,3}|rest-(?:before|after)"
+TOGETHER = re.compile(rf"(?<![\w/.-])(?:{NUMBER}|°/[\w√/]+|{NAME}|k = \d)(?![\w²³√/-])")
 SENTENCE = re.compile(r">[^<>]* [^<>]*<")
 PACKAGES = "libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0"
 VARIANT = "pdf/a-3a"

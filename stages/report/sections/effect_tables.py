@@ -30,7 +30,7 @@ from stages.report.sections.effect_sentences import (
     largest,
     possible,
 )
-from stages.report.sections.effect_terms import meanings_of
+from stages.report.sections.effect_terms import is_scanned, meanings_of
 from stages.report.tables import Record, Tables
 from stages.report.words import count_in_words, with_mount
 
@@ -95,10 +95,17 @@ def _parameter(row: Record, cells: Sequence[str]) -> outline.Row:
     return outline.table_row(
         symbol(row["parameter"]),
         *(*cells, quantity_of(row).shown.name),
-        numbers.significant(row["value"] / row["sigma"], 3),
+        _in_sigmas(row),
         numbers.shortened(row["meaning"] or "", 160),
         anchor=row["id"],
     )
+
+
+def _in_sigmas(row: Record) -> str:
+    """How far it is from zero; of a time or a frequency that says nothing."""
+    if row["unit"] == "Hz" or is_scanned(row["effect"], row["parameter"]):
+        return ""
+    return numbers.significant(row["value"] / row["sigma"], 3)
 
 
 # ---- the extended result

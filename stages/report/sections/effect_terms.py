@@ -17,6 +17,12 @@ def meanings_of(effect: str) -> Mapping[str, str]:
     return {one.name: one.meaning for one in KNOWN[effect].parameters} if effect in KNOWN else {}
 
 
+def is_scanned(effect: str, parameter: str) -> bool:
+    """Whether it is a place or a time that was searched, which is not small where nothing is."""
+    scan = KNOWN[effect].scan if effect in KNOWN else None
+    return scan is not None and scan.name == parameter
+
+
 # ---- constants, such as a time constant, beside the parameters
 
 SET = _("—: a constant of the effect, set and not estimated.")
@@ -48,12 +54,10 @@ def without_sigma(rows: Sequence[Record]) -> Iterator[str]:
     reasons = set()
     for row in rows:
         if row["value"] is not None and not row["sigma"]:
-            scan = KNOWN[row["effect"]].scan if row["effect"] in KNOWN else None
-            scanned = scan is not None and scan.name == row["parameter"].rpartition(".")[2]
-            if scan is not None and scanned:
-                reasons.add(OF_ANOTHER_MODEL if scan.between else OF_THE_PLAN)
-            else:
+            if not is_scanned(row["effect"], row["parameter"].rpartition(".")[2]):
                 reasons.add(SET)
+            elif (scan := KNOWN[row["effect"]].scan) is not None:
+                reasons.add(OF_ANOTHER_MODEL if scan.between else OF_THE_PLAN)
     yield from (reason for reason in (SET, OF_THE_PLAN, OF_ANOTHER_MODEL) if reason in reasons)
 
 
