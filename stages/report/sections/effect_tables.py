@@ -119,7 +119,8 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
     for own in by_sensor.values():
         yield outline.Table(
             _(
-                "{sensor}: the joint fit, and the fit with the effects in the model.",
+                "{sensor}: the joint fit, and the fit with the effects in the model; the shift is "
+                "in σ of the latter.",
                 sensor=own[0].sensor,
             ),
             (
@@ -127,7 +128,7 @@ def extended(tables: Tables) -> Iterator[outline.Part]:
                 *outline.value_and_sigma(_("Joint fit")),
                 *outline.value_and_sigma(_("Extended")),
                 outline.Column(_("unit"), "unit"),
-                outline.Column(_("shift, in σ of the extended fit"), "number"),
+                outline.Column(_("shift, in σ"), "number"),
                 outline.Column(_("Meaning"), "note"),
             ),
             list(_shifts(own)),

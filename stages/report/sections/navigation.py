@@ -247,5 +247,6 @@ def _family(row: Record) -> str:
     sensor, _space, kind = row["family"].partition(" ")
     if sensor in SENSORS:
         name = KINDS.get(kind) or in_words(kind)
-        return f"{SINGULAR[sensor]}: {name}"
+        said = name.startswith(SINGULAR[sensor])  # as that of an effect of the sensor does
+        return name if said else f"{SINGULAR[sensor]}: {name}"
     return OTHERS[f"{row['family']} {row['source']}"]

@@ -164,12 +164,16 @@ def _correlations(tables: Tables) -> Iterator[Figure]:
         _colour_bar(figure, axes[0][-1], drawn_matrix)
         drawn = svg(figure, "correlations")
     yield Figure(
-        " ".join([_("Correlations of the parameters.")] + [_BY_GRAVITY] * _of_gravity(tables)),
+        " ".join([_CORRELATIONS] + [_BY_GRAVITY] * _of_gravity(tables)),
         drawn,
         _("The matrix of the correlations of all parameters of each sensor."),
     )
 
 
+_CORRELATIONS = _(
+    "Correlations of the parameters, red positive and blue negative: what two of them have in "
+    "common adds up, or cancels, where both are used."
+)
 _BY_GRAVITY = _(
     "The accelerometers' scale errors share the error of gravity, so they are correlated by nearly "
     "+1: differences between them are known far better than each of them."
