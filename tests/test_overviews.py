@@ -104,7 +104,7 @@ def test_the_history_page_has_the_jump_the_due_date_and_every_value(place, imu):
         assert f'<td class="number" data-label="value">{value:.3f}</td>' in html
     sigmas = (values[4] - values[3]) / (0.0206265 * np.sqrt(2))
     assert f"{sigmas:.1f}" in html  # 41.7 sigma
-    assert f"1 of 1, most b_x of the gyros, by {sigmas:.1f} σ" in re.sub("<[^>]*>", "", html)
+    assert f"1 of 1, most bx of the gyros, by {sigmas:.1f} σ" in re.sub("<[^>]*>", "", html)
     for entry in imu.calibrations:
         assert entry.file in html
     assert "<script" not in html and not re.search(r"(src|href)=\"https?:", html)

@@ -28,6 +28,7 @@ from stages.report.sections import (
     unmodelled_effects,
 )
 from stages.report.sections.effect_terms import (
+    OF_A_LAW,
     OF_ANOTHER_MODEL,
     OF_THE_PLAN,
     SET,
@@ -351,7 +352,9 @@ def test_a_scanned_constant_has_its_sigma_or_the_reason_why_it_has_none() -> Non
     turn = own | {"effect": "turn_angle_error", "parameter": "turn_angle_error.turn", "value": 3.0}
     assert [*without_sigma([turn | {"sigma": None}])] == [OF_THE_PLAN]
     degree = tau | {"effect": "gyro_temperature", "parameter": "gyro_temperature.T0"}
-    assert [*without_sigma([degree | {"sigma": None}])] == [SET]
+    law = {"effect": "gyro_all_ramp_of_time", "parameter": "gyro_all_ramp_of_time.shape_1"}
+    constants = [degree | {"sigma": None}, tau | law | {"sigma": None}]
+    assert [*without_sigma(constants)] == [SET, OF_A_LAW]
 
 
 def test_a_constant_of_an_effect_is_not_called_undetermined() -> None:

@@ -27,10 +27,14 @@ def is_scanned(effect: str, parameter: str) -> bool:
 
 SET = _("—: a constant of the effect, set and not estimated.")
 OF_THE_PLAN = _("—: it is a place in the plan, found by a search; it has no σ.")
+OF_A_LAW = _("—: the shape of a law, found by a search; it has no σ of its own.")
 OF_ANOTHER_MODEL = _(
     "—: found by a search, whose σ is not known: it was made with other effects in the model, or "
     "another member of the class in the place of this one."
 )
+
+REASONS = (SET, OF_A_LAW, OF_THE_PLAN, OF_ANOTHER_MODEL)
+SHAPE = "shape_"  # how the names of the constants of a law begin
 
 
 def with_scanned_sigmas(rows: Sequence[Record], detected: Sequence[Record]) -> list[Record]:
@@ -54,11 +58,12 @@ def without_sigma(rows: Sequence[Record]) -> Iterator[str]:
     reasons = set()
     for row in rows:
         if row["value"] is not None and not row["sigma"]:
-            if not is_scanned(row["effect"], row["parameter"].rpartition(".")[2]):
-                reasons.add(SET)
+            name = row["parameter"].rpartition(".")[2]
+            if not is_scanned(row["effect"], name):
+                reasons.add(OF_A_LAW if name.startswith(SHAPE) else SET)
             elif (scan := KNOWN[row["effect"]].scan) is not None:
                 reasons.add(OF_ANOTHER_MODEL if scan.between else OF_THE_PLAN)
-    yield from (reason for reason in (SET, OF_THE_PLAN, OF_ANOTHER_MODEL) if reason in reasons)
+    yield from (reason for reason in REASONS if reason in reasons)
 
 
 # ---- what an effect adds to the readings
