@@ -138,10 +138,11 @@ def law_class(equations: Equations, odds: LawOdds) -> LawClass:
 Path = tuple[int, ...]  # at which of the times it changes
 
 
-def best_paths(equations: Equations, steps: Sequence[int]) -> dict[Path, float]:
-    """The best paths of 2, 3, … changes of one axis, and their drops.
+def best_paths(equations: Equations, steps: Sequence[int], fewest: int = 2) -> dict[Path, float]:
+    """The best paths of `fewest`, … changes of one axis, and their drops.
 
-    `steps`: the columns of a step at each of n times.
+    `steps`: the columns of a step at each of n times. One change is a jump, an effect of the
+    catalogue: a path of one has a meaning beside a jump that is named.
     """
     count = len(steps)
     block = equations.information[np.ix_(steps, steps)]
@@ -158,13 +159,13 @@ def best_paths(equations: Equations, steps: Sequence[int]) -> dict[Path, float]:
     coarse = range(0, count, COARSE)
     pairs = list(combinations(coarse, 2))
     found: dict[int, Path] = {0: ()}
-    for changes in range(2, MAX_CHANGES + 1):
+    for changes in range(fewest, MAX_CHANGES + 1):
         # Another level for a while, or from then on.
         grown = {_toggled(found.get(changes - 2, ()), pair) for pair in pairs}
         grown |= {_toggled(found.get(changes - 1, ()), (place,)) for place in coarse}
         starts = [path for path in grown if len(path) == changes]
         found[changes] = _moved(starts[int(np.argmax(drops(starts)))], count, drops)
-    paths = [found[changes] for changes in range(2, MAX_CHANGES + 1)]
+    paths = [found[changes] for changes in range(fewest, MAX_CHANGES + 1)]
     return dict(zip(paths, drops(paths).tolist(), strict=True))
 
 

@@ -173,7 +173,7 @@ FAMILIES = {
     "harmonic": _("sine of {state}"),
     "exponential": _("exponential of {state}"),
     "ramp": _("ramp that begins later"),
-    "telegraph": _("two levels in turn"),
+    "telegraph": _("changes of level"),
     "hysteresis": _("hysteresis of {state}"),
     "product": _("proportion to {state}"),
 }

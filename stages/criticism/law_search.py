@@ -96,7 +96,8 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
     prior = {e.name: _prior(e, campaign, len(selection.searched)) for e in named}
     tried = []
     for beside in _subsets(named):
-        found = searched(columns, columns.given(beside))
+        jumped = any(effect.name == f"{sensor}_bias_jump" for effect in beside)
+        found = searched(columns, columns.given(beside), 1 if jumped else 2)
         tried.append((_catalogue(columns, beside, prior) + found.odds.total, found, beside))
     score, found, beside = max(tried, key=lambda one: one[0])
     alone = _catalogue(columns, named, prior)
@@ -213,14 +214,17 @@ class Searched:
     odds: LawOdds
 
 
-def searched(columns: Columns, equations: Equations) -> Searched:
+def searched(columns: Columns, equations: Equations, fewest: int = 2) -> Searched:
     """The odds of all laws in these equations.
 
-    Two levels in all axes have the path of one of them.
+    Two levels in all axes have the path of one of them; `fewest`: the changes of a path at least.
     """
     sensor, size = columns.laws[0].name.partition("_")[0], len(equations.right)
     count = len(columns.times)
-    paths = {axis: _path(equations, steps) for axis, steps in zip(AXES, columns.steps, strict=True)}
+    paths = {
+        axis: _path(equations, steps, fewest)
+        for axis, steps in zip(AXES, columns.steps, strict=True)
+    }
     made, shapes = list(columns.laws), list(columns.shapes)
     ways = [0.0] * len(made)
     added = np.zeros((len(AXES) ** 2, size))
@@ -242,9 +246,9 @@ def searched(columns: Columns, equations: Equations) -> Searched:
     return Searched(equations, tuple(made), tuple(shapes), np.array(ways), odds)
 
 
-def _path(equations: Equations, steps: Sequence[int]) -> tuple[int, ...]:
+def _path(equations: Equations, steps: Sequence[int], fewest: int) -> tuple[int, ...]:
     """The most probable path of a telegraph."""
-    found = best_paths(equations, steps)
+    found = best_paths(equations, steps, fewest)
     return max(found, key=lambda path: found[path] / 2 - log_paths(len(steps), len(path)))
 
 

@@ -105,6 +105,7 @@ def _named(selection: Selection, found: FoundLaw, known: dict[str, Cause]) -> Se
 # ---- Sentences about laws that no effect of the catalogue has.
 
 LAW_IN_WORDS = _("{subject}: {form}, {numbers}; no effect of the catalogue does this.")
+FURTHER_JUMP = _("{subject}: {form}, {numbers}; it is a further jump, at a time of its own.")
 LAW_OR_WALK = _(
     "{subject}: {form}, {numbers}; no effect of the catalogue does this. It may also be {walk}: "
     "this campaign cannot distinguish them."
@@ -129,6 +130,7 @@ FORMS = {
     "exponential": _("an exponential of {state}, by e in {first} {unit}"),
     "ramp": _("a ramp from {times} s on"),
     "telegraph": _("two levels, changed at {times} s"),
+    "jump": _("another level from {first_time} s on"),
     "pulse": _("another level from {first_time} s to {last_time} s"),
     "hysteresis": _("hysteresis of {state}, {first} {unit} wide to either side"),
     "product": _("in proportion to {state}"),
@@ -147,7 +149,8 @@ def law_sentence(cause: Cause, law: Law, parameters: Sequence[Estimated]) -> str
     }
     if cause.verdict == ONE_OF_CLASS:
         return LAW_OR_WALK.format(walk=in_words(cause.members[-1]), **values)
-    return LAW_IN_WORDS.format_map(values)
+    jump = law.family == "telegraph" and len(law.shape) == 1
+    return (FURTHER_JUMP if jump else LAW_IN_WORDS).format_map(values)
 
 
 def law_action(law: Law, mount: str) -> str:
@@ -167,8 +170,9 @@ def form_of(law: Law) -> str:
     period = 2 * np.pi / first if law.family == "harmonic" else 0.0
     of_time = f"{significant(HOUR * period, 3)} s"
     times = [f"{HOUR * time:.0f}" for time in law.shape]
-    if law.family == "telegraph" and len(times) == 2:
-        return FORMS["pulse"].format(first_time=times[0], last_time=times[1])
+    if law.family == "telegraph" and len(times) <= 2:
+        form = FORMS["pulse" if len(times) == 2 else "jump"]
+        return form.format(first_time=times[0], last_time=times[-1])
     return FORMS[law.family].format(
         state=state,
         first=significant(first, 3),

@@ -51,6 +51,24 @@ def test_telegraph_noise_is_no_jump_but_a_law_of_two_levels():
 
 
 @pytest.mark.slow
+def test_two_jumps_of_two_axes_have_a_time_each():
+    """They were one jump of both, and another level of one of them from that to the second."""
+    first = {"size_deg_h": [3.0, 0, 0], "at_s": 600.0}
+    second = {"height_deg_h": [0, 0, 1.5], "dwell_s": 1500}  # changes once, with this seed
+    results = criticised(6, {"gyro_bias_jump": first, "gyro_telegraph": second}, {})
+    jump, further = results["criticism/findings"].to_dict("records")
+    assert (jump["cause"], jump["verdict"]) == ("gyro_bias_jump", "found")
+    assert (further["cause"], further["verdict"]) == ("gyro_z_telegraph_of_time", "law")
+    assert "s on, " in further["sentence"] and "further jump" in further["sentence"]
+    sizes = results["criticism/effects"].set_index(["effect", "parameter"])["value"]
+    by_axis = sizes.loc["gyro_bias_jump"].loc[["b_x", "b_y", "b_z"]] / DEGREE_PER_HOUR
+    assert by_axis.tolist() == pytest.approx([3, 0, 0], abs=0.25)
+    own = sizes.loc[further["cause"]]
+    (size,) = own[own.index.str.startswith("k")] / DEGREE_PER_HOUR
+    assert size == pytest.approx(3, abs=0.25)  # from −1.5 to 1.5 °/h
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1801, 102])
 def test_a_ramp_of_one_gyro_is_no_walk_of_all(seed):
     ramp = {"gyro_bias_ramp": {"ramp_deg_h_h": [0, 1.24, 0]}}  # SNR 9
