@@ -76,6 +76,14 @@ rule summary:
     }
 
 
+def test_no_stage_loads_what_takes_longer_than_it_runs() -> None:
+    """scipy.signal loads scipy.stats, and one line in the physics had every stage load both."""
+    modules = ", ".join(f"stages.{stage}.stage" for stage in ORDER)
+    loaded = f"import sys, {modules}; print({{'scipy.stats', 'scipy.signal'}} & {{*sys.modules}})"
+    done = subprocess.run([sys.executable, "-c", loaded], capture_output=True, cwd=chain.ROOT)
+    assert done.stdout.decode().strip() == "set()", done.stderr.decode()
+
+
 def test_the_citation_is_that_of_this_version() -> None:
     citation = YAML(typ="safe").load(chain.ROOT / "CITATION.cff")
     project = tomllib.loads((chain.ROOT / "pyproject.toml").read_text())["project"]

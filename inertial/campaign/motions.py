@@ -25,6 +25,7 @@ from inertial.text.messages import _
 
 
 EQUAL = np.ones(3)
+MAX_ANGLE_OFF = 1e-3  # relative, of a turn by the gyros, to which first-order effects are exact
 MIN_BEND = 0.002  # rad/s, off a straight line in a block; less is a ramp without a corner
 
 
@@ -50,7 +51,11 @@ def at_rest(data: CampaignData, position: StaticPosition, time: float) -> Motion
 
 
 def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) -> Motion:
-    """A rotation in the k blocks of its sums, with the angles that the gyros measured."""
+    """A rotation in the k blocks of its sums, with the angles that the gyros measured.
+
+    Where these are far from the known angle, as of a scale factor that goes with the rate, they are
+    scaled to it: effects depend on the rate of the table, and not on what the gyros make of it.
+    """
     solution, set_position = data.result.since(m.switch_on), position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(set_position)
     gyro, site = solution.gyro, solution.site
@@ -58,6 +63,9 @@ def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) 
     angle = measured_angles(
         turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned, 1 / turn.density
     )
+    known = turn.angle / float(turn.weights @ angle) if not turn.by_hand else np.nan
+    if abs(known - 1) > MAX_ANGLE_OFF and turn.course is None:
+        angle = known * angle
     rate = angle / turn.seconds
     acceleration = np.diff(between_blocks(rate, turn.seconds)[0]) / turn.seconds
     blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)

@@ -20,6 +20,7 @@ from inertial.estimation.gyroscope_observations import (
     SteadyRate,
     WholeTurn,
 )
+from inertial.estimation.turning_noise import with_turning_noise
 from inertial.physics.motion import cross
 from inertial.tables import GYRO
 
@@ -100,7 +101,8 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
         return replace(rate_segment_of(r, *given), stretch=stretch_of(r.plan, r.blocks, shared))
 
     turned = [r for r in usable if r.plan.recorded == "whole"]
-    turns = [whole(r) for r in turned]
+    rests = [static_rate_of(rest, data.heading, np.inf) for rest in positions]
+    turns = with_turning_noise([whole(r) for r in turned], rests)
     steady = [r for r in usable if r.plan.recorded == "steady"]
     rates = [
         replace(steady_rate_of(r, *given), stretch=stretch_of(r.plan, r.steady, shared))

@@ -9,11 +9,12 @@ from math import ceil
 import numpy as np
 import pandas as pd
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Booleans
 from inertial.campaign.campaign_data import CampaignData
 from inertial.estimation.periodic_in_angle import Course
 from inertial.estimation.periodic_in_time import Line
 from inertial.estimation.spectrum import WHITE, NoiseShape, band_levels, noise_shape, white_level
+from inertial.physics.site import EARTH_RATE
 from inertial.signal.stamps import samples_passed
 from inertial.tables import ACCEL, AXES, GYRO
 from inertial.tables.parquet import Stream
@@ -23,6 +24,7 @@ RESTS = ("rest-before", "rest-after")
 MAX_LOST_SAMPLES = 3  # in a row: the phase of an oscillation is still known
 MIN_SAMPLES = 64  # of a steady part
 MIN_WHITE_HZ = 0.5  # from which the white noise is estimated
+MAX_UNEVEN = 1e-3  # of a rate that is even, beside the earth's rate, which the case turns in
 MAX_ACROSS_COSINE = 0.5  # below which an axis is not that of the table
 MIN_UPRIGHT_COSINE = 0.999  # of axis and vertical, from which gravity is constant in the case
 
@@ -142,7 +144,9 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
         step = data.clocks[m.log].step
         angle = np.full(len(rows), np.nan)
         if m.rate is not None and m.acceleration is not None:
-            angle = _angle(rows, (rows[GYRO].to_numpy() - gyro.bias) @ inverse.T @ m.axis, step)
+            rate = (rows[GYRO].to_numpy() - gyro.bias) @ inverse.T @ m.axis
+            angle = _angle(rows, rate, step)
+            steady = steady & _between_ramps(rate, steady)
         columns = [rows[["time", *RESIDUALS]].to_numpy(np.float64), angle[:, None]]
         columns.append(rows[["time", *OF_FORCE]].to_numpy(np.float64))
         residuals, further = unbroken(np.hstack(columns)[steady])
@@ -206,6 +210,19 @@ def _with_shapes(turns: Sequence[SteadyTurn]) -> Iterator[SteadyTurn]:
                 start=turn.start + first * turn.step,
                 shapes=own,
             )
+
+
+def _between_ramps(rate: Array, steady: Booleans) -> Booleans:
+    """Which samples are between the ramps as simulated, (n,); `rate`: (n,), rad/s, as simulated.
+
+    Of a gyro that reads another rate than is predicted, a scale factor with the rate, the simulated
+    ramps are earlier or later than those that were recorded, and lie within its steady part.
+    """
+    even = float(np.median(rate[steady]))
+    near = np.abs(rate - even) <= MAX_UNEVEN * abs(even) + 2 * EARTH_RATE
+    inner = np.flatnonzero(near & steady)
+    places = np.arange(len(rate))
+    return (places >= inner[0]) & (places <= inner[-1])
 
 
 def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:

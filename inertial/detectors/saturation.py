@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import bdtrc
-from scipy.stats import hypergeom
 
 from inertial.arrays import Array, Integers
 from inertial.signal.detector import (
@@ -354,6 +353,8 @@ def _by_the_other_side(values: Array, most: float, count: float, width: int = 1)
     these few readings alone tell: that none of those beyond it is above has the hypergeometric
     chance (Fisher's exact test).
     """
+    from scipy.stats import hypergeom  # here, for it takes longer to load than most stages run
+
     number = np.count_nonzero(values > most - (width - 0.5) * count)
     below = 2 * values.mean() - most
     beyond = np.count_nonzero(values < below - count / 2)

@@ -23,9 +23,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import nnls
-from scipy.stats import chi2, norm
 
 from inertial.arrays import Array
+from inertial.estimation.probability import chi2_isf, norm_isf
 from inertial.estimation.time_angle import Valued
 
 MIN_SIGMAS = 3.0  # of κ above 0, from which a low pass is certain
@@ -49,7 +49,7 @@ class Bandwidth:
 
 def first_order(spread: Valued) -> Bandwidth:
     """The bandwidth by the variance of the delay, s²."""
-    most = spread.value + float(norm.ppf(CONFIDENCE)) * spread.sigma
+    most = spread.value + float(norm_isf(1 - CONFIDENCE)) * spread.sigma
     lower = _hertz(np.sqrt(most)) if most > 0 else None
     if spread.value <= MIN_SIGMAS * spread.sigma:
         return Bandwidth(None, None, lower)
@@ -193,7 +193,7 @@ def _likeliest(shape: Shape, turn: Array, density: Array, degrees: Array) -> Ban
     deviance = np.array([_deviance(shape(turn, L), turn, density, degrees) for L in CONSTANTS])
     best = int(np.argmin(deviance))
     above = deviance - deviance[best]
-    limit = float(chi2.ppf(2 * CONFIDENCE - 1, 1))
+    limit = float(chi2_isf(2 - 2 * CONFIDENCE, 1))
     i = best + int(np.argmax(above[best:] > limit))
     lower = None
     if i > best:

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import log_ndtr, ndtr
-from scipy.stats import norm
 
 from inertial.arrays import Array
 from inertial.estimation.least_squares import pseudo_inverse
+from inertial.estimation.probability import norm_isf
 
 MIN_APART = 1e-3  # of the largest input: inputs that are closer count as one
 CONFIDENCE = 0.95
@@ -143,7 +143,7 @@ def _limits(inputs: Array, outputs: Array, sigma: Array) -> Limits:
     """Of n positive inputs the largest that was lost for certain, and the least that was not."""
     if not len(inputs):
         return Limits(None, None)
-    beyond = float(norm.isf((1 - CONFIDENCE) / len(inputs))) * sigma
+    beyond = float(norm_isf((1 - CONFIDENCE) / len(inputs))) * sigma
     excess = outputs - SENSED_SHARE * inputs
     lost, sensed = inputs[excess < -beyond], inputs[excess > beyond]
     return Limits(

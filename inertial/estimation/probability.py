@@ -79,6 +79,12 @@ def norm_sf(value: ArrayLike) -> Array:
     return np.asarray(special.ndtr(-v))
 
 
+def norm_isf(chance: ArrayLike) -> Array:
+    """Inverse of `norm_sf`."""
+    (p,) = _reals(chance)
+    return np.asarray(-special.ndtri(p))
+
+
 def quadratic_ratio_sf(numerator: Array, denominator: Array, ratio: float) -> float:
     """Probability that one sum of squares of white noise exceeds another by a factor r.
 

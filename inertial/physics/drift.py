@@ -14,7 +14,6 @@ from itertools import pairwise
 from typing import ClassVar, Self
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from inertial.arrays import Array, Booleans
 from inertial.physics.effect import (
@@ -264,5 +263,7 @@ def _slopes(time: Array, course: Array, constant: float) -> Array:
     number = np.bincount(place)
     at, means = np.bincount(place, time) / number, np.bincount(place, course) / number
     even = np.interp(grid, at, means)
+    from scipy.signal import savgol_filter  # here, for it takes longer to load than most stages run
+
     slopes = savgol_filter(even, SLOPE_POINTS, 1, deriv=1, delta=step, mode="interp")
     return np.interp(time, grid, slopes)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtr, ndtri
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import CHANNELS, COLUMNS
@@ -230,7 +230,7 @@ def _scans(folded: Folded) -> Iterator[_Scan]:
 def _of_clock(folded: Folded, scans: list[_Scan], tests: int) -> Iterator[Glitch]:
     if not scans:
         return
-    least = float(norm.isf(FALSE_ALARM_LEVEL / tests / 2))
+    least = float(-ndtri(FALSE_ALARM_LEVEL / tests / 2))
     best = [_best(scans, signature) for signature in range(len(SIGNATURES))]
     for number, (sensor, channel) in enumerate(SIGNATURES):
         sigmas, scan, phase = best[number]
@@ -253,7 +253,7 @@ def _of_clock(folded: Folded, scans: list[_Scan], tests: int) -> Iterator[Glitch
                 k * step,
                 scan.width * step,
                 float(longest.size[k, number]),
-                float(min(2 * norm.sf(abs(scan.sigmas[peak, number])) * tests, 1.0)),
+                float(min(2 * ndtr(-abs(scan.sigmas[peak, number])) * tests, 1.0)),
                 folded.places,
                 folded.origin,
             )

@@ -7,8 +7,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import cho_solve_banded, cholesky_banded
 from scipy.ndimage import median_filter, uniform_filter1d
-from scipy.special import ndtri, stdtr
-from scipy.stats import chi2
+from scipy.special import chdtrc, ndtri, stdtr
 
 from inertial.arrays import Array, Integers
 from inertial.signal.scatter import MAD_TO_SIGMA, in_blocks, median
@@ -148,7 +147,7 @@ def _chance_in_walk(readings: Array, place: int) -> float:
         spread = 2 * float(np.log(factor[1]).sum())
         likelihoods.append([-count * np.log(left) - spread for left in (squares, squares - gain)])
     without, with_it = np.max(likelihoods, axis=0)
-    return float(min(count * chi2.sf(with_it - without, 1), 1.0))
+    return float(min(count * chdtrc(1, max(with_it - without, 0.0)), 1.0))
 
 
 def _corrects(step: Step, other: Step, shortest: int) -> bool:

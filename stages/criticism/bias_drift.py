@@ -4,12 +4,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2
 
 from inertial.arrays import Array
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.campaign.scatter_given_effects import likely_walk
+from inertial.estimation.probability import chi2_sf
 from inertial.estimation.scatter_and_random_walk import sigma_of
 from inertial.model_selection.walk_odds import Equations, walk
 from inertial.physics.drift import without_clock
@@ -58,7 +58,7 @@ def _walk(campaign: Campaign, sensor: str, size: float, effects: Sequence[Effect
     """
     deviance = campaign.deviance_of_random_walk(sensor, effects, PRIOR_SIZE)
     drop = max(deviance(0.0) - deviance(size), 0.0)
-    return Walk(size, sigma_of(deviance, size), len(SENSORS) * float(chi2.sf(drop, 1)) / 2)
+    return Walk(size, sigma_of(deviance, size), len(SENSORS) * float(chi2_sf(drop, 1)) / 2)
 
 
 def walk_evidence(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:

@@ -11,9 +11,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt
 
-from scipy.stats import norm
-
 from inertial.campaign.records import Row, with_mount
+from inertial.estimation.probability import norm_sf
 from inertial.text.parameters import PARTS
 from inertial.text.units import COVERAGE_FACTOR
 
@@ -36,7 +35,7 @@ class Decision:
 def decision(value: float, sigma: float, limit: float, rule: str) -> Decision:
     """The statement on |truth| ≤ limit, all in one unit; the limit is positive."""
     guard = COVERAGE_FACTOR * sigma if rule == GUARD_BAND else 0.0
-    outside = float(norm.sf((limit - value) / sigma) + norm.cdf((-limit - value) / sigma))
+    outside = float(norm_sf((limit - value) / sigma) + norm_sf((limit + value) / sigma))
     if abs(value) <= limit - guard:
         return Decision(CONFORMS, outside)
     if abs(value) > limit + guard:

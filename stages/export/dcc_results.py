@@ -8,9 +8,8 @@ from math import pi, radians, sqrt
 from typing import Any
 from xml.etree.ElementTree import Element, SubElement
 
-from scipy.stats import chi2
-
 from inertial.campaign.records import Row
+from inertial.estimation.probability import chi2_isf
 from inertial.tables import AXES
 from inertial.text import numbers
 from inertial.text.messages import _
@@ -168,7 +167,7 @@ def add_list(
             column = add(add(matrix, "si:columnXMLList"), "si:covarianceXMLList")
             row(column, "value", [number(covariance[i][j]) for i in range(count)])
             row(column, "unit", [_notation(_times(of_row, of_column)) for of_row in powers])
-        row(region, "coverageFactor", [number(sqrt(chi2.ppf(COVERAGE_PROBABILITY, count)))])
+        row(region, "coverageFactor", [number(sqrt(chi2_isf(1 - COVERAGE_PROBABILITY, count)))])
         row(region, "coverageProbability", [number(COVERAGE_PROBABILITY)])
         row(region, "distribution", [NORMAL])
 
