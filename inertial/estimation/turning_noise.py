@@ -62,7 +62,8 @@ def _log_odds(turns: Sequence[RateSegment], rests: Mapping[str, StaticRate]) -> 
         if rest is None or turn.by_hand or np.isnan(turn.angle):
             continue
         seconds = float(turn.weights @ turn.seconds)
-        summed = float(np.nan_to_num(turn.weights @ turn.sums - rest.mean * seconds) @ about)
+        along = np.sign(turn.angle) * about  # alike in all of them
+        summed = float(np.nan_to_num(turn.weights @ turn.sums - rest.mean * seconds) @ along)
         white = np.array([turn.quiet_density, np.fmax(turn.density, turn.quiet_density)])
         of_rest = np.nan_to_num(rest.sigma**2) @ about**2 * seconds**2
         known = turn.angle_sigma**2 + turn.gap_sigma**2 + of_rest

@@ -46,6 +46,7 @@ from laboratory.effects.gyro_hysteresis import GyroHysteresis
 from laboratory.effects.gyro_late_drift import GyroLateDrift
 from laboratory.effects.gyro_latency import GyroLatency
 from laboratory.effects.gyro_low_pass import GyroLowPass
+from laboratory.effects.gyro_rate_noise import GyroRateNoise
 from laboratory.effects.gyro_rate_power import GyroRatePower
 from laboratory.effects.gyro_relaxation import (
     GyroRelaxation,
@@ -127,6 +128,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_scale_temperature": GyroScaleTemperature.specified,
     "gyro_scale_ramp": GyroScaleRamp.specified,
     "gyro_scale_jump": GyroScaleJump.specified,
+    "gyro_rate_noise": GyroRateNoise.specified,
     "gyro_rate_power": GyroRatePower.specified,
     "gyro_stray_field": GyroStrayField.specified,
     "gyro_dead_band": GyroDeadBand.specified,

@@ -1,4 +1,4 @@
-"""Noise that grows for a while: somebody drills next door, and there is nothing to find."""
+"""Noise that grows for a while, or with the rate: there is nothing to find."""
 
 from dataclasses import replace
 
@@ -10,7 +10,9 @@ from hidden import hidden_plans
 import laboratory
 from inertial.campaign.records import Part
 from inertial.campaign.static_positions import StaticPosition
+from inertial.estimation.gyroscope_observations import Position, RateSegment, StaticRate
 from inertial.estimation.spectrum import level_of_pieces, white_level
+from inertial.estimation.turning_noise import with_turning_noise
 
 COUNTS = np.array([6553.6] * 3 + [92160.0] * 3)  # of a reading of 1 m/s², or 1 rad/s, at 100 Hz
 SAMPLES = np.array([5.4e-3] * 3 + [1.9e-4] * 3)  # about the noise of one, m/s² and rad/s
@@ -45,6 +47,39 @@ def test_nothing_is_found(plan, start, end, times):
     recording = laboratory.perform(laboratory.specify(hidden_plans.PLANS[plan](seed=4002)))
     tables = chain.in_memory(louder(recording, start, end, times, 5), "criticism", chain.BESIDE)
     assert tables["criticism/findings"].empty
+
+
+@pytest.mark.slow
+def test_noise_of_a_scale_factor_is_no_effect() -> None:
+    """It adds up in the angle of a turn: two effects of the gyros and two false turns, once."""
+    effects = {"gyro_rate_noise": {"relative_ppm_sqrt_s": [200, 200, 200]}}
+    document = hidden_plans.PLANS["rates"](seed=7, effects=effects)
+    tables = chain.in_memory_of(document, "criticism", chain.BESIDE)
+    assert not tables["criticism/findings"]["verdict"].isin(["found", "one_of_class"]).any()
+
+
+@pytest.mark.parametrize("of_gyros", [True, False])
+def test_angles_that_scatter_show_whose_the_noise_in_motion_is(of_gyros: bool) -> None:
+    """Six pairs of turns about x, y, z: their sums differ by the noise at rest, or by thrice it."""
+    random = np.random.default_rng(11)
+    quiet, moving, seconds, blocks = 1e-5, 3e-5, 40.0, 200
+    turns, rests = list[RateSegment](), list[StaticRate]()
+    for number in range(6):
+        axis, up = np.eye(3)[number % 3], 1 - 2 * (number // 3)
+        place = Position(f"{number}", up * axis)
+        rests.append(StaticRate(place, np.zeros(3), np.full(3, quiet / 10), axis))
+        for sense in (1, -1):
+            angle = sense * up * 2 * np.pi
+            drawn = random.normal(size=(blocks, 3)) * moving * np.sqrt(seconds / blocks)
+            if not of_gyros:  # jitter of a table that ends where it should
+                drawn += random.normal(size=3) * quiet * np.sqrt(seconds) / blocks - drawn.mean(0)
+            sums = 1.003 * angle * up * axis / blocks + drawn
+            each = np.full(blocks, seconds / blocks)
+            levels = np.full(3, moving), np.full(3, quiet)
+            turns.append(RateSegment(place, up * axis, angle, 1e-6, sums, each, *levels))
+    found = with_turning_noise(turns, rests)
+    expected = moving if of_gyros else quiet
+    assert all(turn.quiet_density == pytest.approx(expected) for turn in found)
 
 
 def test_the_level_of_pieces_of_unlike_noise_is_that_of_their_mean_power():

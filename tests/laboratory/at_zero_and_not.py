@@ -77,6 +77,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     "gyro_remanence": ({"offset_deg_h": ZERO}, {"offset_deg_h": ONE}),
     "gyro_scale_ramp": ({"k_ppm_h": ZERO}, {"k_ppm_h": [1e4] * 3}),
     "gyro_scale_jump": ({"k_ppm": ZERO, "at_s": 9}, {"k_ppm": [1e4] * 3, "at_s": 9}),
+    "gyro_rate_noise": ({"relative_ppm_sqrt_s": ZERO}, {"relative_ppm_sqrt_s": ONE}),
     "gyro_rate_power": (
         {"at_10_deg_s_deg_h": ZERO, "power": 1.5},
         {"at_10_deg_s_deg_h": ONE, "power": 1.5},

@@ -484,6 +484,22 @@ def test_flicker_has_a_level_allan_deviation(ideal: Callable[..., Document]) -> 
         assert allan == pytest.approx(0.664 * 2, rel=0.15), samples
 
 
+def test_the_noise_of_a_scale_factor_goes_with_the_rate(performed: Performed) -> None:
+    """200 ppm√s of 40 °/s in samples of 10 ms: 0.08 °/s; of half the rate half as much."""
+    effects = {"gyro_rate_noise": {"relative_ppm_sqrt_s": [0, 0, 200]}}
+    for rate, expected in ((40, 0.08), (-20, 0.04)):
+        move = turn(rate) | {"rate_deg_s": abs(rate)}
+        del move["seconds"]
+        noisy, ideal = (
+            performed(move, effects=each).truth["still"].noisy.gyro for each in (effects, {})
+        )
+        noise = np.degrees(np.diff(noisy - ideal, axis=0)) / 0.01
+        steady = noise[len(noise) // 3 : 2 * len(noise) // 3]
+        close = 5 / sqrt(2 * len(steady))
+        assert steady[:, 2].std() == pytest.approx(expected, rel=close)
+        assert np.abs(noise[:, :2]).max() < 1e-9
+
+
 def test_a_telegraph_has_two_levels_and_the_dwell_that_is_asked_for(
     ideal: Callable[..., Document],
 ) -> None:
