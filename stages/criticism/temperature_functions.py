@@ -383,7 +383,8 @@ def _weighed(functions: Selection, plain: Selection) -> Selection:
 
     def joined(cause: Cause) -> Cause:
         sensor = functions.sensor(cause)
-        if not isinstance(functions.families[cause.effect][0], TemperatureModel):
+        family = functions.families.get(cause.effect, ())  # none of a drift without a law
+        if not any(isinstance(one, TemperatureModel) for one in family):
             return cause
         rivals = [
             member
