@@ -222,7 +222,7 @@ def _between_ramps(rate: Array, steady: Booleans) -> Booleans:
     near = np.abs(rate - even) <= MAX_UNEVEN * abs(even) + 2 * EARTH_RATE
     inner = np.flatnonzero(near & steady)
     places = np.arange(len(rate))
-    return (places >= inner[0]) & (places <= inner[-1])
+    return np.asarray((places >= inner[0]) & (places <= inner[-1]))
 
 
 def _angle(rows: pd.DataFrame, rate: Array, step: float) -> Array:

@@ -25,6 +25,7 @@ from inertial.tables.diagnosed import (
     CAUSES,
     CHANNEL_REPAIRS,
     CONSEQUENCES,
+    DRIFT_MEANS,
     PROPOSED,
     REPAIRS,
     TEMPERATURE_CURVES,

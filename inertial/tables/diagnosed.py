@@ -285,6 +285,18 @@ WARM_UP = Table(
     ),
 )
 
+DRIFT_MEANS = Table(
+    "drift_means",
+    1,
+    (
+        MOUNT,
+        Column("sensor", TEXT, "", "gyro or accel"),
+        Column("method", TEXT, "", "candidate whose effects drift"),
+        Column("parameter", TEXT, "", "of a drift, as in its table of parameters"),
+        Column("of", TEXT, "", "parameter of the sensor that drifts"),
+        Column("mean", DOUBLE, "", "mean change of `of` over the recording, for 1 of `parameter`"),
+    ),
+)
 PROPOSED = Table(
     "proposed",
     1,

@@ -37,6 +37,7 @@ DECLARED = Declared(
         },
         "candidates": From("extension", tables.CANDIDATES),
         "candidate_effects": From("extension", tables.CANDIDATE_EFFECTS),
+        "drift_means": From("extension", tables.DRIFT_MEANS),
     },
     writes={
         "causes": tables.CAUSES,

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import hypot
+from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -15,6 +16,7 @@ from inertial.estimation.triad import UNKNOWNS, linear_names
 from inertial.text.messages import _
 from inertial.text.parameters import MIXTURE, STAGES
 
+DriftMeans = Mapping[tuple[str, str], float]  # by parameter of a drift and what it changes
 NOT_BY_ALL = _("not all effects that these data may show leave it determined")
 
 
@@ -79,33 +81,65 @@ def result_of(
     parameters: Mapping[str, Sequence[Row]],
     covariance: Mapping[tuple[str, str], float],
     probability: Mapping[str, float],
+    drift_means: Mapping[str, DriftMeans] = MappingProxyType({}),
 ) -> Result:
     """The result by a method or, where other members of its class disagree, their mixture.
+
+    Of a drift the bias is that of its beginning, of its end, or of a temperature: they are
+    compared, and mixed, by their means over the recording.
 
     Parameters
     ----------
     parameters : rows of the parameters by method, of this sensor and mount
     covariance : by the ids of two parameters
     probability : of the candidates that compete, by method
+    drift_means : by method
     """
     members = [method, *(other for other in probability if other != method)]
     own = {each: ordered(parameters[each]) for each in members}
     spreads = {each: covariance_of(own[each], covariance) for each in members}
     rows, whole = own[method], spreads[method]
-    values = np.array([[_number(row["value"]) for row in own[m][:UNKNOWNS]] for m in members])
-    within = np.array([spreads[m][:UNKNOWNS, :UNKNOWNS] for m in members])
+    to_means = {each: _to_means(own[each], drift_means.get(each, {})) for each in members}
+    means, covariances = zip(
+        *(_transformed(to_means[each], own[each], spreads[each]) for each in members), strict=True
+    )
+    values = np.array([each[:UNKNOWNS] for each in means])
+    within = np.array([each[:UNKNOWNS, :UNKNOWNS] for each in covariances])
     weights = np.array([probability.get(each, 1.0) for each in members])
     some = weights > 0
     some[0] = True
     if len(members) > 1 and disagree(values[some], within[some]):
         mean, spread = mixture(values, within, weights)
-        whole = beside_effects(spread, whole, float(weights[0] / weights.sum()))
+        mixed = beside_effects(spread, covariances[0], float(weights[0] / weights.sum()))
+        back = 2 * np.eye(len(rows)) - to_means[method]  # the inverse: drifts do not drift
+        mean, whole = _transformed(back, rows, mixed, np.append(mean, means[0][UNKNOWNS:]))
         sigma = np.sqrt(np.diagonal(whole))
         rows = [
             _mixed(row, mean[i], sigma[i]) if i < UNKNOWNS else row for i, row in enumerate(rows)
         ]
         method = MIXTURE
     return Result(method, [_named(row) | {"method": method} for row in rows], whole)
+
+
+def _to_means(rows: Sequence[Row], means: DriftMeans) -> Array:
+    """What gives the parameters of the sensor their means over the recording, (n, n)."""
+    place = {row["parameter"]: i for i, row in enumerate(rows)}
+    transform = np.eye(len(rows))
+    for (parameter, of), mean in means.items():
+        if rows[place[parameter]]["sigma"] is not None:
+            transform[place[of], place[parameter]] += mean
+    return transform
+
+
+def _transformed(
+    transform: Array, rows: Sequence[Row], covariance: Array, values: Array | None = None
+) -> tuple[Array, Array]:
+    """Values, of the rows where none are given, and covariance; NaN stays NaN, and where it is."""
+    values = np.array([_number(row["value"]) for row in rows]) if values is None else values
+    unknown = np.isnan(covariance)
+    changed = transform @ np.where(unknown, 0.0, covariance) @ transform.T
+    moved = transform @ np.nan_to_num(values)
+    return np.where(np.isnan(values), np.nan, moved), np.where(unknown, np.nan, changed)
 
 
 def ordered(rows: Sequence[Row]) -> list[Row]:

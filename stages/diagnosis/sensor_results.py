@@ -182,6 +182,7 @@ class Estimated:
     extension_fit: pd.DataFrame
     candidates: pd.DataFrame
     candidate_effects: pd.DataFrame
+    drift_means: pd.DataFrame
 
     @cached_property
     def _joint(self) -> list[Row]:
@@ -247,8 +248,16 @@ class Estimated:
             alarms = alarms_of(roots, mount, sensor)
             determined = any(row["value"] is not None for row in by_method.get(JOINT, ()))
             decision = decided(candidates, effects, alarms, determined=determined)
+            means: dict[str, dict[tuple[str, str], float]] = {}
+            for row in rows_of(self.drift_means):
+                if _place(row) == (mount, sensor):
+                    means.setdefault(row["method"], {})[row["parameter"], row["of"]] = row["mean"]
             chosen = result_of(
-                decision.method, by_method, self._covariance, competing(candidates, decision)
+                decision.method,
+                by_method,
+                self._covariance,
+                competing(candidates, decision),
+                means,
             ).widened(decision.widened)
             if decision.joint_share and chosen.method != MIXTURE:
                 decision = replace(decision, reason=decision.alone, joint_share=0.0)

@@ -32,6 +32,7 @@ DECLARED = Declared(
         "candidates": tables.CANDIDATES,
         "candidate_effects": tables.CANDIDATE_EFFECTS,
         "warm_up": tables.WARM_UP,
+        "drift_means": tables.DRIFT_MEANS,
         "proposed": tables.PROPOSED,
     },
     unfolded=("proposed",),

@@ -35,7 +35,8 @@ class Solved:
     """The fit of a candidate for a sensor: rows of its parameters, covariance in that order.
 
     `effects`: the name of the effect of each row after the twelve; `constants`: rows of the numbers
-    in the terms of the effects that are not estimated with them: a time, a mean temperature.
+    in the terms of the effects that are not estimated with them: a time, a mean temperature;
+    `fitted`: the effects.
     """
 
     sensor: str
@@ -47,6 +48,7 @@ class Solved:
     mount: str = ""
     constants: Sequence[Row] = ()
     method: str = EXTENDED
+    fitted: Sequence[Effect] = ()
 
     @property
     def stage(self) -> str:
@@ -183,7 +185,16 @@ def solved(
     covariance = estimate.covariance[np.ix_(places, places)]
     method = candidate.method
     return Solved(
-        sensor, rows, covariance, estimate, random_walk, effects, mount, constants, method
+        sensor,
+        rows,
+        covariance,
+        estimate,
+        random_walk,
+        effects,
+        mount,
+        constants,
+        method,
+        candidate.effects,
     )
 
 

@@ -32,6 +32,7 @@ from stages.extension.candidates import (
 )
 from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
 from stages.extension.declared import DECLARED
+from stages.extension.drift_means import drift_means
 from stages.extension.estimates import Solved, moved, solved, unseen_components
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.laws import form_is_open, proposed_rows, with_drift_in_the_bias
@@ -232,6 +233,8 @@ class Extension:
             yield from self._candidates(sensor, normalised(there), solutions, tested, trainings)
             for _solution, mean in pairs.values():
                 yield from self._solution(mean)
+                drifting = drift_means(mean, campaign.motion, campaign.stretches(sensor))
+                yield from (("drift_means", row) for row in drifting)
             if EXTENDED in solutions:
                 likeliest[sensor] = solutions[EXTENDED]
                 if tested[EXTENDED].sensor == sensor:

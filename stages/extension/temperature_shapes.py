@@ -335,6 +335,7 @@ def _written(
         covariance=covariance,
         effects=[row["effect"] for row in rows[UNKNOWNS:]],
         constants=[*(r for r in solution.constants if r["effect"] != model.name), *constants],
+        fitted=[model if one.name == model.name else one for one in solution.fitted],
     )
 
 

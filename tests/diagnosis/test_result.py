@@ -73,6 +73,28 @@ def test_members_that_disagree_are_mixed():
     assert table[first["id"], effect["id"]] == pytest.approx(0.6 * 0.1 * SIGMA**2)
 
 
+def test_drifts_are_compared_and_mixed_by_their_means():
+    """A ramp of 7 a unit whose bias is that of its beginning, 3: on average 3 + 2 · 7 = 17."""
+    ramp, other = rows("extended", 3.0, "gyro_bias_ramp"), rows("member_1", 3.0, "gyro_warm_up")
+    parameters, bias = {"extended": ramp, "member_1": other}, linear_names().index("bias_x")
+    weights = {"extended": 0.6, "member_1": 0.4}
+
+    def result(mean: float) -> Any:
+        means = {"extended": {("gyro_bias_ramp.k", "bias_x"): 2.0}}
+        means["member_1"] = {("gyro_warm_up.k", "bias_x"): mean}
+        return result_of("extended", parameters, covariance(ramp, other), weights, means)
+
+    assert result(2.0).method == "extended"  # they agree
+    mixed = result(4.0)  # 3 + 4 · 7 = 31; the mixture is 0.6 · 17 + 0.4 · 31 = 22.6 on average
+    assert mixed.method == "mixture"
+    assert mixed.rows[bias]["value"] == pytest.approx(22.6 - 2 * 7)
+    assert [row["value"] for row in mixed.rows if row["parameter"] != "bias_x"] == [*[3] * 11, 7]
+    # The mean of each has 4 (1 + m² + 2 m 0.1) within, and 0.6 · 5.6² + 0.4 · 8.4² between them.
+    mean = 0.6 * 4 * 5.4 + 0.4 * 4 * 17.8 + 0.6 * 5.6**2 + 0.4 * 8.4**2
+    with_ramp = 0.6 * 4 * (0.1 + 2)
+    assert mixed.rows[bias]["sigma"] ** 2 == pytest.approx(mean - 4 * with_ramp + 4 * 4)
+
+
 def test_what_a_member_does_not_determine_is_not_determined():
     result = made((3.0, None), extended=0.6, member_1=0.4)
     assert {row["value"] for row in result.rows[:12]} == {None}
