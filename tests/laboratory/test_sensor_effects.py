@@ -493,8 +493,8 @@ def test_the_noise_of_a_scale_factor_goes_with_the_rate(performed: Performed) ->
         noisy, ideal = (
             performed(move, effects=each).truth["still"].noisy.gyro for each in (effects, {})
         )
-        noise = np.degrees(np.diff(noisy - ideal, axis=0)) / 0.01
-        steady = noise[len(noise) // 3 : 2 * len(noise) // 3]
+        noise, truth = (np.degrees(np.diff(each, axis=0)) / 0.01 for each in (noisy - ideal, ideal))
+        steady = noise[np.abs(truth[:, 2] - rate) < 0.01]
         close = 5 / sqrt(2 * len(steady))
         assert steady[:, 2].std() == pytest.approx(expected, rel=close)
         assert np.abs(noise[:, :2]).max() < 1e-9
