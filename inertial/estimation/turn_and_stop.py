@@ -5,7 +5,6 @@
     N⁺ + N⁻ = 2 T (D + M E)         (S3 15)
     mean at rest = D + M E
 
-with the axis up and turns with the axis down cancel what is wrong with it, once each sum is divided
 u: axis of the turn, in body axes; D: bias; E: the earth's rate. S3 states that over a turn the
 earth rate integrates to zero. That holds for its horizontal component at a steady rate; ramps and
 standstill leave a remainder, the same in both directions. So the difference is exact, and the sum

@@ -13,6 +13,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.tables import AXES
 
 MAX_SECONDS = 1.0  # that a step takes: a slower one is no more than a bias that drifts
@@ -28,7 +29,6 @@ MAX_STEPS = 3  # in one turn: what has more is no step, but rings or is noisy th
 MAX_TURNS_SHARE = 1 / 4  # of the turns, that have one: what more have is of the table
 MIN_OF_TABLE = 0.5  # of its size, that other turns have at the same angle of the table
 ROUNDING = 1e-6  # of the largest change: below it readings are alike, as counts are that toggle
-NORMAL = 1.4826  # sigma of a normal distribution by its median absolute deviation
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ def _largest(turn: SteadyTurn) -> StepInTurn | None:
 
 def _scatter(values: Array) -> float:
     """Sigma of most values, whatever a few do."""
-    return NORMAL * float(np.median(np.abs(values - np.median(values))))
+    return MAD_TO_SIGMA * float(np.median(np.abs(values - np.median(values))))
 
 
 def _means(record: Array, width: int) -> Array:

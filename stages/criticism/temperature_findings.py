@@ -20,7 +20,7 @@ from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTUR
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, p_is, plus_minus, significant
-from inertial.text.units import DEGREE, STANDARD_GRAVITY
+from inertial.text.units import DEGREE, ICE_POINT, STANDARD_GRAVITY
 from stages.criticism.finding_rows import (
     ONLY_CONSISTENT,
     TableRow,
@@ -32,7 +32,6 @@ from stages.criticism.finding_rows import (
 from stages.criticism.temperature_models import (
     ACCELEROMETERS,
     GYROS,
-    ICE_POINT,
     MIN_SENSITIVITY,
     SCALE,
     AxisModel,
