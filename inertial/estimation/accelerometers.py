@@ -31,13 +31,8 @@ from inertial.estimation.elimination import (
     whitened,
 )
 from inertial.estimation.least_squares import Estimate, System
-from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
-from inertial.estimation.scatter_and_random_walk import (
-    Deviances,
-    ScatterFit,
-    walk_search,
-    with_random_walk,
-)
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
+from inertial.estimation.scatter_and_random_walk import ScatterFit, walk_search
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Triad
 from inertial.physics.motion import all_level_axes, cross
@@ -155,18 +150,12 @@ def fit(
         result = fit(statics, reference, noise_degrees, effect_sigma, then)
         return replace(result, switch_ons=switched)
     stretches = [static.stretch for static in statics if static.stretch is not None]
-    alternatives = [
-        likelihood.of_scatter([static.position for static in statics]),
-        likelihood.of_scatter([str(np.round(static.up, 3)) for static in statics]),
-    ]
-    if stretches:
-        trend = list(map(linear_trend(stretches), likelihood.stretches))
-        named = [stretch.name for stretch in trend]
-        alternatives.append(likelihood.of_scatter(named, [stretch.weight for stretch in trend]))
+    attitudes = [str(np.round(static.up, 3)) for static in statics]
     noise = float(np.nanmedian([*(static.sigma for static in statics), np.full(3, np.nan)]))
     search = walk_search(stretches, noise, MAX_RANDOM_WALK)
-    likely = Deviances(likelihood.of_scatter(), likelihood.of_walk(), likelihood.of_both)
-    result = with_random_walk(fit_with, likely, SCATTER_BOUNDS, search, alternatives, noise_degrees)
+    times, bounds = (stretches, search), SCATTER_BOUNDS
+    alone = likelihood.of_scatter()
+    result = likelihood.fitted(fit_with, alone, attitudes, *times, bounds, noise_degrees)
     if result.scatter or result.random_walk:
         estimate = weighted(
             statics, reference, result.scatter, result.random_walk, effect_sigma, measured
