@@ -17,7 +17,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre, Row
-from inertial.physics.motion import cross
+from inertial.physics.motion import north_of
 from inertial.physics.site import EARTH_RATE
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.gravity_turned import Turned, signs_of_motions
@@ -126,7 +126,7 @@ class _Misfit:
         self._earth = np.array([upward * rest.up[i] for rest in rests])
         if upward and heading is not None:
             self._earth += [
-                0.0 if rest.mark is None else level * _north(rest.up, rest.mark, heading)[i]
+                0.0 if rest.mark is None else level * north_of(rest.up, rest.mark, heading)[i]
                 for rest in rests
             ]
         if self.number:
@@ -140,13 +140,6 @@ class _Misfit:
         left = signs * self._rate - self._earth
         left -= (self._ones @ left) / self._ones.sum()
         return float(left @ cho_solve(self._weights, left))
-
-
-def _north(up: Array, mark: Array, heading: float) -> Array:
-    """The direction of north in body axes, where the zero mark has a heading."""
-    level = mark - up * (up @ mark)
-    level = level / np.linalg.norm(level)
-    return np.asarray(np.cos(heading) * level + np.sin(heading) * cross(up, level))
 
 
 def _reversal(

@@ -13,6 +13,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
+from inertial.physics.motion import horizontal
 from inertial.physics.site import EARTH_RATE
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.plan_detector import SignChange
@@ -31,7 +32,7 @@ class Rest:
     """What a gyro reads at rest.
 
     order : window and stretch; heading : what has north in the same direction in the body; up :
-    share of the axis that points up; mark : (3,), the zero mark of the table where it is known;
+    share of the axis that points up; mark : (3,), the zero mark of the table, level, where it is known;
     rate, sigma : rad/s, mean; before, after : the last manoeuvre up to it, and the first from it on
     """
 
@@ -118,7 +119,7 @@ def rests_of(
             located.binned.window.log,
             (m.position, turned),
             m.up,
-            m.mark if as_stated else None,
+            horizontal(m.mark, m.up) if as_stated and m.mark is not None else None,
             np.where(read, seen.rate + level, np.nan),
             _sigma_at_rest(seen.unsure, located.binned.quantum[3:]),
             max(one for one in places if one[0] <= place)[1] if places[0][0] <= place else m.name,
