@@ -47,8 +47,7 @@ from stages.segment.repair_readings import (
     scales_of,
     step_of,
 )
-from stages.segment.reversed_parts import reversals
-from stages.segment.sign_changes import sign_changes
+from stages.segment.reversed_parts import reversals, sign_changes
 from stages.segment.stated_marks import marks_off, with_marks
 from stages.segment.steps import (
     APPLIED,
