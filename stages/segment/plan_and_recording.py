@@ -50,15 +50,15 @@ class Undone:
     changes : for that of one of signs, which is not applied, where these change.
     """
 
-    misread: Sequence[Misread] = ()
-    swapped: Sequence[Swapped] = ()
-    rescaled: Sequence[Rescaled] = ()
-    restated: Sequence[Rescaled] = ()
-    reversed: Sequence[Reversed] = ()
-    spans_off: Sequence[SpansOff] = ()
-    rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
-    changes: Mapping[str, SignChange] = field(default_factory=dict)
-    marks_off: Sequence[MarksOff] = ()
+    misread: list[Misread] = field(default_factory=list)
+    swapped: list[Swapped] = field(default_factory=list)
+    rescaled: list[Rescaled] = field(default_factory=list)
+    restated: list[Rescaled] = field(default_factory=list)
+    reversed: list[Reversed] = field(default_factory=list)
+    spans_off: list[SpansOff] = field(default_factory=list)
+    rivals: dict[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
+    changes: dict[str, SignChange] = field(default_factory=dict)
+    marks_off: list[MarksOff] = field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False)
