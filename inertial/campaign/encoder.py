@@ -11,6 +11,7 @@ from inertial.campaign.masked_samples import Accumulator, Batch
 from inertial.campaign.static_positions import Blocks
 from inertial.campaign.sums import Stretches, rows_in
 from inertial.estimation.gyroscope_observations import EncoderWindow, RateSegment
+from inertial.physics.motion import component
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.tables import GYRO
 
@@ -182,7 +183,7 @@ class JumpsOver:
         rates = np.column_stack([batch[name] for name in GYRO])
         for k, start, end in stretches_with_angle(batch, self._stretches):
             part, axis = slice(start, end), self._about[batch.log][k]
-            along = rates[part][:, axis != 0] @ axis[axis != 0]
+            along = component(rates[part], axis)
             read = batch["record"][part], batch["time"][part], batch["table_angle"][part]
             self._jumps[batch.log][k] += jumps_of(*read, along)
 

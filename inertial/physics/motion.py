@@ -43,6 +43,12 @@ def level_axes(up: Array) -> tuple[Array, Array]:
     return first, second
 
 
+def component(vectors: Array, axis: Array) -> Array:
+    """Of vectors, (n, 3), along an axis, (n,), by the channels that it needs: others may be NaN."""
+    own = np.flatnonzero(axis)
+    return np.asarray(vectors[:, own] @ axis[own])
+
+
 def horizontal(direction: Array, up: Array) -> Array:
     """The horizontal part of a direction, (3,), as a unit vector."""
     level = direction - up * (up @ direction)
