@@ -29,7 +29,13 @@ from stages.criticism import block_sentences as sentences
 from stages.criticism.another_imu import another_imu
 from stages.criticism.bias_drift import drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
-from stages.criticism.finding_rows import TableRow, finding_id, member_rows, parameter_row
+from stages.criticism.finding_rows import (
+    TableRow,
+    finding_id,
+    finding_row,
+    member_rows,
+    parameter_row,
+)
 from stages.criticism.jump_not_testable import jumps_not_testable
 from stages.criticism.laws import WithoutLaw, law_action
 from stages.criticism.one_manoeuvre import carrier_of_excess
@@ -205,33 +211,26 @@ class BlockResults:
         else:
             sentence = sentences.cause_sentence(cause, effect, parameters, self._places(effect))
             size = cause.snr, "sigma"
-        yield (
-            "findings",
-            {
-                "id": identifier,
-                "mount": self.mount,
-                "cause": cause.effect,
-                "sensor": sensor,
-                "count": len(effect.times) if isinstance(effect, Restarts) else 1,
-                "size": size[0],
-                "unit": size[1],
-                "p_value": cause.p_value,
-                "severity": 2,
-                "sentence": sentence,
-                "consequence": sentences.CONSEQUENCE
-                if clear
-                else sentences.CONSEQUENCE_WITHOUT_LAW,
-                "action": self._action(cause, parameters)
-                + sentences.split_sentence(split if clear else None),
-                "verdict": cause.verdict,
-                "statistic": cause.statistic,
-                "degrees": cause.degrees,
-                "threshold": cause.threshold or None,
-                "snr": cause.snr,
-                "split_manoeuvre": split.manoeuvre if split else None,
-                "split_snr": split.separation if split else None,
-                "split_stated": clear if split else None,
-            },
+        yield finding_row(
+            cause.effect,
+            self.mount,
+            sensor=sensor,
+            count=len(effect.times) if isinstance(effect, Restarts) else 1,
+            size=size[0],
+            unit=size[1],
+            p_value=cause.p_value,
+            sentence=sentence,
+            consequence=sentences.CONSEQUENCE if clear else sentences.CONSEQUENCE_WITHOUT_LAW,
+            action=self._action(cause, parameters)
+            + sentences.split_sentence(split if clear else None),
+            verdict=cause.verdict,
+            statistic=cause.statistic,
+            degrees=cause.degrees,
+            threshold=cause.threshold or None,
+            snr=cause.snr,
+            split_manoeuvre=split.manoeuvre if split else None,
+            split_snr=split.separation if split else None,
+            split_stated=clear if split else None,
         )
         if cause.effect == drift_name(sensor):
             others = self.lawless.members[sensor]
@@ -375,21 +374,16 @@ def unexplained_rows(
         if carrier is not None:
             sentence += WITHOUT.format(manoeuvre=carrier)
             action = ACTION_IF_CARRIED.format(manoeuvres=carrier)
-        yield (
-            "findings",
-            {
-                "id": finding_id(f"unexplained/{sensor}", mount),
-                "mount": mount,
-                "cause": "unexplained",
-                "sensor": sensor,
-                "count": 1,
-                "size": ratio,
-                "unit": "sigma",
-                "p_value": p_value,
-                "severity": 2,
-                "sentence": sentence,
-                "consequence": SCATTER,
-                "action": action,
-                "moves": carrier and moved_by(campaign, sensor, [carrier], effects),
-            },
+        yield finding_row(
+            "unexplained",
+            mount,
+            id=finding_id(f"unexplained/{sensor}", mount),
+            sensor=sensor,
+            size=ratio,
+            unit="sigma",
+            p_value=p_value,
+            sentence=sentence,
+            consequence=SCATTER,
+            action=action,
+            moves=carrier and moved_by(campaign, sensor, [carrier], effects),
         )

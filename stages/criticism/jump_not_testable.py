@@ -6,7 +6,7 @@ from inertial.campaign.hypotheses import JUMP_NOT_TESTABLE
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS
 from inertial.sensors import PLURAL, SENSORS
 from inertial.text.messages import _
-from stages.criticism.finding_rows import TableRow, finding_id
+from stages.criticism.finding_rows import TableRow, finding_id, finding_row
 from stages.criticism.selection import Selection
 
 CHANGES = ("bias_jump", "bias_per_log")  # of a sensor, by the end of the effect's name
@@ -37,21 +37,16 @@ def jumps_not_testable(selection: Selection, mount: str) -> Iterator[TableRow]:
             continue
         changed = [(own, named[own], same) for own, same in changes.items() if own in named]
         if any(_hidden(selection, *each) for each in changed):
-            yield (
-                "findings",
-                {
-                    "id": finding_id(JUMP_NOT_TESTABLE, mount, other),
-                    "mount": mount,
-                    "cause": JUMP_NOT_TESTABLE,
-                    "sensor": other,
-                    "count": 1,
-                    "unit": "",
-                    "severity": 2,
-                    "sentence": SENTENCE.format(changing=PLURAL[sensor], others=PLURAL[other]),
-                    "consequence": CONSEQUENCE,
-                    "action": ACTION,
-                    "verdict": FOUND,
-                },
+            yield finding_row(
+                JUMP_NOT_TESTABLE,
+                mount,
+                id=finding_id(JUMP_NOT_TESTABLE, mount, other),
+                sensor=other,
+                unit="",
+                sentence=SENTENCE.format(changing=PLURAL[sensor], others=PLURAL[other]),
+                consequence=CONSEQUENCE,
+                action=ACTION,
+                verdict=FOUND,
             )
 
 

@@ -15,7 +15,7 @@ from inertial.model_selection.cause import FOUND, UNKNOWN_STRUCTURE
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import STANDARD_GRAVITY
-from stages.criticism.finding_rows import TableRow, finding_id
+from stages.criticism.finding_rows import TableRow, finding_row
 
 CAUSE = "rest_scatter"
 MIN_RATIO = 3.0  # to the noise of a rest: nine tenths of the variance of the rests
@@ -49,25 +49,19 @@ def rest_scatter_rows(campaign: Campaign, mount: str) -> Iterator[TableRow]:
     if size < MIN_RATIO * noise:
         return
     sentence = SENTENCE + (BEYOND if beyond else WITHIN)
-    yield (
-        "findings",
-        {
-            "id": finding_id(CAUSE, mount),
-            "mount": mount,
-            "cause": CAUSE,
-            "sensor": "accel",
-            "count": 1,
-            "size": size,
-            "unit": "m/s²",
-            "severity": 2,
-            "sentence": sentence.format(
-                size=significant(size, 2),
-                micro=significant(size / STANDARD_GRAVITY * 1e6, 2),
-                ratio=significant(size / noise, 2),
-                motion=significant(by_hand.of_motion, 2),
-            ),
-            "consequence": CONSEQUENCE,
-            "action": ACTION,
-            "verdict": UNKNOWN_STRUCTURE if beyond else FOUND,
-        },
+    yield finding_row(
+        CAUSE,
+        mount,
+        sensor="accel",
+        size=size,
+        unit="m/s²",
+        sentence=sentence.format(
+            size=significant(size, 2),
+            micro=significant(size / STANDARD_GRAVITY * 1e6, 2),
+            ratio=significant(size / noise, 2),
+            motion=significant(by_hand.of_motion, 2),
+        ),
+        consequence=CONSEQUENCE,
+        action=ACTION,
+        verdict=UNKNOWN_STRUCTURE if beyond else FOUND,
     )

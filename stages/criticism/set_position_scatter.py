@@ -22,7 +22,7 @@ from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import ARC_SECOND
-from stages.criticism.finding_rows import TableRow, finding_id, member_rows
+from stages.criticism.finding_rows import TableRow, finding_id, finding_row, member_rows
 from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.rivals import MAX_LOG_ODDS, members_of
 from stages.criticism.selection import Selection
@@ -79,7 +79,6 @@ class PositionScatter:
         """The finding, of the sensor that shows it, or of both."""
         found = significant(self.value / ARC_SECOND, 2)
         sensors = [sensor for sensor, drop in self.drops.items() if drop > MIN_DROP]
-        identifier = finding_id(CAUSE, mount)
         sentence = SCATTER.format(
             found=found,
             sigma=significant(self.sigma / ARC_SECOND, 2),
@@ -90,24 +89,19 @@ class PositionScatter:
         if self.rivals:
             names = listed([in_words(rival) for rival in self.rivals], "or")
             sentence += INSTEAD.format(rivals=names)
-        yield (
-            "findings",
-            {
-                "id": identifier,
-                "mount": mount,
-                "cause": CAUSE,
-                "sensor": sensors[0] if len(sensors) == 1 else None,
-                "count": 1,
-                "size": self.value,
-                "unit": "rad",
-                "severity": 3,
-                "sentence": sentence,
-                "consequence": CONSEQUENCE,
-                "action": self._action.format(found=found),
-                "verdict": "one_of_class" if self.rivals else "found",
-            },
+        yield finding_row(
+            CAUSE,
+            mount,
+            sensor=sensors[0] if len(sensors) == 1 else None,
+            size=self.value,
+            unit="rad",
+            severity=3,
+            sentence=sentence,
+            consequence=CONSEQUENCE,
+            action=self._action.format(found=found),
+            verdict="one_of_class" if self.rivals else "found",
         )
-        yield from member_rows(identifier, mount, [CAUSE, *self.rivals])
+        yield from member_rows(finding_id(CAUSE, mount), mount, [CAUSE, *self.rivals])
 
 
 def select_beside_scatter(

@@ -10,7 +10,7 @@ from inertial.estimation.probability import chi2_sf
 from inertial.model_selection.cause import FOUND
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from stages.criticism.finding_rows import TableRow, finding_id
+from stages.criticism.finding_rows import TableRow, finding_row
 
 ASYMMETRY = "gyro_scale_asymmetry"
 MIN_SIGMAS = 5.0  # of each gyro's asymmetry
@@ -42,24 +42,18 @@ def shared_asymmetry(estimates: Sequence[Estimated], mount: str) -> Iterator[Tab
     if (values**2 * weights < MIN_SIGMAS**2).any() or chi2_sf(spread, 2) < MIN_P:
         return
     size = significant(1e6 * abs(mean), 3)
-    yield (
-        "findings",
-        {
-            "id": finding_id(SENSE_OF_TURNS, mount),
-            "mount": mount,
-            "cause": SENSE_OF_TURNS,
-            "sensor": "gyro",
-            "count": 1,
-            "size": mean,
-            "unit": "1",
-            "severity": 2,
-            "sentence": SENTENCE.format(
-                size=significant(1e6 * mean, 3),
-                sigma=significant(1e6 * sigma, 2),
-                share=significant(2e6 * abs(mean), 3),
-            ),
-            "consequence": CONSEQUENCE.format(size=size),
-            "action": ACTION,
-            "verdict": FOUND,
-        },
+    yield finding_row(
+        SENSE_OF_TURNS,
+        mount,
+        sensor="gyro",
+        size=mean,
+        unit="1",
+        sentence=SENTENCE.format(
+            size=significant(1e6 * mean, 3),
+            sigma=significant(1e6 * sigma, 2),
+            share=significant(2e6 * abs(mean), 3),
+        ),
+        consequence=CONSEQUENCE.format(size=size),
+        action=ACTION,
+        verdict=FOUND,
     )

@@ -7,7 +7,7 @@ from inertial.campaign.hypotheses import STEP_IN_TURN
 from inertial.model_selection.cause import FOUND
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, plus_minus, significant
-from stages.criticism.finding_rows import TableRow, finding_id
+from stages.criticism.finding_rows import TableRow, finding_id, finding_row
 from stages.criticism.oscillation_search import SearchResult
 from stages.criticism.step_in_turn import StepInTurn
 
@@ -33,32 +33,27 @@ def step_rows(
     `logs`: the log of each manoeuvre.
     """
     for number, (step, moved) in enumerate(zip(result.steps, moves, strict=True)):
-        yield (
-            "findings",
-            {
-                "id": finding_id(STEP_IN_TURN, mount, *([str(number + 1)] if number else [])),
-                "mount": mount,
-                "cause": STEP_IN_TURN,
-                "sensor": "gyro",
-                "axis": step.axis,
-                "log": logs[step.manoeuvre],
-                "manoeuvre": step.manoeuvre,
-                "from_s": step.from_s,
-                "to_s": step.to_s,
-                "count": 1,
-                "size": abs(step.size),
-                "unit": "rad",
-                "p_value": step.chance(len(result.turns)),
-                "severity": 2,
-                "sentence": _sentence(step),
-                "consequence": CONSEQUENCE,
-                "action": ACTION,
-                "verdict": FOUND,
-                "statistic": step.sigmas**2,
-                "degrees": 1,
-                "snr": step.sigmas,
-                "moves": moved,
-            },
+        yield finding_row(
+            STEP_IN_TURN,
+            mount,
+            id=finding_id(STEP_IN_TURN, mount, *([str(number + 1)] if number else [])),
+            sensor="gyro",
+            axis=step.axis,
+            log=logs[step.manoeuvre],
+            manoeuvre=step.manoeuvre,
+            from_s=step.from_s,
+            to_s=step.to_s,
+            size=abs(step.size),
+            unit="rad",
+            p_value=step.chance(len(result.turns)),
+            sentence=_sentence(step),
+            consequence=CONSEQUENCE,
+            action=ACTION,
+            verdict=FOUND,
+            statistic=step.sigmas**2,
+            degrees=1,
+            snr=step.sigmas,
+            moves=moved,
         )
 
 
