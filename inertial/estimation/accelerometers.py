@@ -1,4 +1,4 @@
-"""The accelerometers from static positions: weighted least squares, and the six-position formula.
+"""The accelerometers from static positions by weighted least squares.
 
     mean reading = M · (g u + δ × g u) + bias + noise
 
@@ -396,43 +396,3 @@ def _spanned(ups: Array) -> Array:
 def triad_of(estimate: Estimate) -> Triad:
     """M and bias of an estimate."""
     return Triad(estimate.values[:9].reshape(3, 3), estimate.values[9:12])
-
-
-def six_position_formula(
-    statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
-    scatter: float = 0.0,
-) -> tuple[Array, Array] | None:
-    """M̂ = L Aᵀ (A Aᵀ)⁻¹ of S0 (3-6), without weights, and its covariance.
-
-    L holds the means, A = [g u; 1]. None where the attitudes do not span the four columns.
-
-    Returns
-    -------
-    the twelve unknowns (M by rows, bias) and their covariance
-    """
-    n = len(statics)
-    truth = np.vstack([np.column_stack([gravity * s.up for s in statics]), np.ones(n)])
-    means = np.column_stack([static.mean for static in statics])
-    if np.linalg.matrix_rank(truth) < 4 or not np.isfinite(means).all():
-        return None
-    inverse = truth.T @ np.linalg.inv(truth @ truth.T)  # (n, 4)
-    solution = means @ inverse  # (3, 4)
-    # The solution is linear in the means, channel by channel: weights (12, n, 3).
-    weights = np.concatenate(
-        [np.einsum("nk,rc->rknc", inverse[:, :3], np.eye(3)).reshape(9, n, 3),
-         np.einsum("n,rc->rnc", inverse[:, 3], np.eye(3))]
-    )  # fmt: skip
-    noise = np.array([static.sigma for static in statics]) ** 2 + scatter**2
-    covariance = np.einsum("anc,nc,bnc->ab", weights, noise, weights)
-    # An error of gravity is upward; that of a tilt horizontal, and the same for one position.
-    up = np.einsum("anc,nc->an", weights, np.array([static.up for static in statics]))
-    covariance += gravity_sigma**2 * np.outer(up.sum(axis=1), up.sum(axis=1))
-    names = np.array([static.position for static in statics])
-    for position in dict.fromkeys(names):
-        every, upward = weights[:, names == position].sum(axis=1), up[:, names == position]
-        horizontal = every @ every.T - np.outer(upward.sum(axis=1), upward.sum(axis=1))
-        covariance += (position_sigma * gravity) ** 2 * horizontal
-    return np.append(solution[:, :3].ravel(), solution[:, 3]), covariance
