@@ -43,7 +43,7 @@ from stages.criticism.restarts import (
 )
 from stages.criticism.selection import Selection, pooled_evidence_rows
 from stages.criticism.set_position_scatter import PositionScatter, select_beside_scatter
-from stages.criticism.step_results import step_rows
+from stages.criticism.step_in_turn import step_rows
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_functions import select_with_temperature
 
@@ -136,7 +136,8 @@ def _of_mount(
     moves = shifts(data, turns, spectrum.oscillations, campaign)
     yield from OscillationResults(spectrum, mount, moves).rows()
     moved = shifts_by_steps(data, spectrum.steps, campaign, quiet)
-    yield from step_rows(spectrum, moved, {m.name: m.log for m in data.plan}, mount)
+    logs = {m.name: m.log for m in data.plan}
+    yield from step_rows(spectrum.steps, len(spectrum.turns), moved, logs, mount)
     at_rest_of_gyros = measured.drifts["gyro"]
     yield from other_scores(
         random_walks.get("gyro"),
