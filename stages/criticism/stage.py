@@ -52,6 +52,9 @@ from stages.criticism.temperature_functions import select_with_temperature
 BLOCKS_SHARE, STRUCTURE_SHARE, UNEXPLAINED_SHARE = 0.5, 0.2, 0.1
 SPECTRUM_SHARE, TEMPERATURE_SHARE = 0.1, 0.1
 
+# The named effects, the tests of what they leave, the campaign of both; a scatter of positions.
+Selected = tuple[tuple[Selection, Tested, Campaign], PositionScatter | None]
+
 
 def criticism(
     mounts: Sequence[CampaignData],
@@ -88,32 +91,17 @@ def _of_mount(
     spectrum = replace(spectrum, oscillations=with_rests(turns, spectrum.oscillations))
     quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
     measured = campaign_of(replace(data, blocks=quiet))
-    levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
-    select = partial(
-        _selected, measured, partial(_without, data=replace(data, blocks=quiet)), level, degrees
-    )
+    without = partial(_without, data=replace(data, blocks=quiet))
+    select = partial(_selected, measured, without, level, degrees)
     at_gaps = times_of_gaps(measured, gaps, data.clocks)
-    (selection, tested, campaign), scatter = select(at_gaps)
-    if (times := at_changes(selection, levels[0])) is not None:
-        at_gaps = times
-        (selection, tested, campaign), scatter = select(at_gaps)
-    if at_gaps and selection.named.causes:
-        again = select(at_gaps, warm_up_at=at_gaps)
-        if is_better(again[0][0], selection):
-            (selection, tested, campaign), scatter = again
+    (selection, tested, campaign), scatter = _with_restarts(select, at_gaps, level * BLOCKS_SHARE)
     selection = named_at_gap(selection)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
     for sensor, drift in measured.drifts.items():
         if drift:
-            yield (
-                "drifts_at_rest",
-                {
-                    "mount": mount,
-                    "sensor": sensor,
-                    "kept": campaign.drifts[sensor] is drift,
-                },
-            )
+            kept = campaign.drifts[sensor] is drift
+            yield "drifts_at_rest", {"mount": mount, "sensor": sensor, "kept": kept}
     if scatter is not None:
         yield from scatter.rows(mount)
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
@@ -154,6 +142,22 @@ def _of_mount(
     yield from pooled_evidence_rows(selection, mount)
 
 
+def _with_restarts(select: Callable[..., Selected], at_gaps: list[float], level: float) -> Selected:
+    """What is selected with restarts at those gaps alone at which the biases change.
+
+    And with a warm-up that begins again there, where that is likelier. `level`: of a change.
+    """
+    found = select(at_gaps)
+    if (times := at_changes(found[0][0], level)) is not None:
+        at_gaps = times
+        found = select(at_gaps)
+    if at_gaps and found[0][0].named.causes:
+        again = select(at_gaps, warm_up_at=at_gaps)
+        if is_better(again[0][0], found[0][0]):
+            return again
+    return found
+
+
 def _selected(
     measured: Campaign,
     without: Callable[[Campaign, str], Campaign],
@@ -161,7 +165,7 @@ def _selected(
     degrees: float,
     at_gaps: Sequence[float],
     warm_up_at: Sequence[float] = (),
-) -> tuple[tuple[Selection, Tested, Campaign], PositionScatter | None]:
+) -> Selected:
     """The named effects, tests, their campaign, scatter.
 
     at_gaps, warm_up_at : s since the first sample, where the biases may be others, and where a
