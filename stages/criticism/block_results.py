@@ -282,8 +282,8 @@ class BlockResults:
             return []
         total, family = self.selection.evidence.total, self.selection.families[effect.name]
         others = [i for n, c in self.causes.items() if n != effect.name for i in c.columns]
-        searched = next(s for s in self.selection.searched if s.name == effect.name)
-        drops = [total.drop([*columns, *others])[0] for columns in searched.candidates]
+        candidates = self.selection.search_of(effect.name).candidates
+        drops = [total.drop([*columns, *others])[0] for columns in candidates]
         near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - MAX_RIVAL_DROP]
         if isinstance(effect, SettingIn):
             near.sort(key=lambda i: family[i].at or 0)
