@@ -345,3 +345,16 @@ def share_a_clock(table: pd.DataFrame) -> bool:
     begin, end = np.array(sorted(_span(row) for row in rows_of(table))).T
     pauses = begin[1:] - end[:-1]
     return bool((pauses > 0).all() and (begin[0] > MIN_ABSOLUTE or (pauses < MAX_PAUSE).all()))
+
+
+def sizes_of_result(parameters: Iterable[Row]) -> dict[tuple[str, str, str], Row]:
+    """The rows of the result that are parameters of effects, by mount, effect and parameter.
+
+    Of an effect in the models of both sensors those with the smaller sigma.
+    """
+    found: dict[tuple[str, str, str], Row] = {}
+    for row in parameters:
+        if row["effect"] is not None and row["sigma"]:
+            key = (row["mount"], row["effect"], row["parameter"].rpartition(".")[2])
+            found[key] = min(found.get(key, row), row, key=lambda one: one["sigma"])
+    return found

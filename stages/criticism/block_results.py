@@ -29,6 +29,7 @@ from stages.criticism import block_sentences as sentences
 from stages.criticism.another_imu import another_imu
 from stages.criticism.bias_drift import drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
+from stages.criticism.confounded_causes import ASYMMETRY, jumps_not_testable, shared_asymmetry
 from stages.criticism.finding_rows import (
     TableRow,
     finding_id,
@@ -36,13 +37,11 @@ from stages.criticism.finding_rows import (
     member_rows,
     parameter_row,
 )
-from stages.criticism.jump_not_testable import jumps_not_testable
 from stages.criticism.laws import WithoutLaw, law_action
 from stages.criticism.one_manoeuvre import carrier_of_excess
 from stages.criticism.residual_structure import ACTION_IF_CARRIED, moved_by
 from stages.criticism.restarts import first_after
 from stages.criticism.selection import Selection
-from stages.criticism.shared_asymmetry import ASYMMETRY, shared_asymmetry
 
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2

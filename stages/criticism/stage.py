@@ -30,9 +30,13 @@ from stages.criticism.oscillation_removal import (
 )
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations
+from stages.criticism.position_scatter import (
+    PositionScatter,
+    rest_scatter_rows,
+    select_beside_scatter,
+)
 from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
-from stages.criticism.rest_scatter import rest_scatter_rows
 from stages.criticism.restarts import (
     at_changes,
     beginning_again,
@@ -42,7 +46,6 @@ from stages.criticism.restarts import (
     times_of_gaps,
 )
 from stages.criticism.selection import Selection, pooled_evidence_rows
-from stages.criticism.set_position_scatter import PositionScatter, select_beside_scatter
 from stages.criticism.step_in_turn import step_rows
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_functions import select_with_temperature
