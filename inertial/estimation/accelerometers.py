@@ -213,8 +213,8 @@ def _drifting(
     about: Triad,
     effect_sigma: Mapping[str, float] | None,
     keys: Sequence[Hashable],
-    scatter: float = 0.0,
-    measured: MeasuredDrift = NO_DRIFT,
+    scatter: float,
+    measured: MeasuredDrift,
 ) -> DriftingEquations:
     """The same, to which drifts may be added; `keys`: what has one key is one block."""
     effect_sigma = effect_sigma or {}
