@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
-from inertial.campaign.attitudes_by_hand import Handled, with_attitudes
 from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.passages import Handled, with_attitudes
 from inertial.campaign.rate_segments import GyroInputs, gyro_inputs
 from inertial.campaign.records import (
     Clock,

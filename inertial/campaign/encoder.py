@@ -11,6 +11,8 @@ from inertial.campaign.masked_samples import Accumulator, Batch
 from inertial.campaign.static_positions import Blocks
 from inertial.campaign.sums import Stretches, rows_in
 from inertial.estimation.gyroscope_observations import EncoderWindow, RateSegment
+from inertial.physics.motion import component
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.tables import GYRO
 
 # ---- The angle of the table's encoder where stretches of the records of a log begin and end.
@@ -141,7 +143,6 @@ JUMP_SECONDS = 0.1  # within which an encoder jumps, in its log of 10 Hz or more
 MIN_SCATTERS = 10.0  # of the differences over that time, from which one is a jump
 MAX_EVEN_PAUSE = 1.5  # sample intervals: over more nothing is known of what the gyros felt
 MIN_OWN_SHARE = 0.5  # of a jump, by which the encoder leaves its own steady course
-SIGMA_OF_DEVIATION = 1.4826  # of normal noise, by its median absolute deviation
 
 
 @dataclass(frozen=True)
@@ -182,7 +183,7 @@ class JumpsOver:
         rates = np.column_stack([batch[name] for name in GYRO])
         for k, start, end in stretches_with_angle(batch, self._stretches):
             part, axis = slice(start, end), self._about[batch.log][k]
-            along = rates[part][:, axis != 0] @ axis[axis != 0]
+            along = component(rates[part], axis)
             read = batch["record"][part], batch["time"][part], batch["table_angle"][part]
             self._jumps[batch.log][k] += jumps_of(*read, along)
 
@@ -238,7 +239,7 @@ def _differences(off: Array, length: int) -> tuple[Array, float]:
     if known.sum() <= 3 * length:
         return np.zeros(len(beyond)), 0.0
     beyond = np.where(known, beyond - np.median(beyond[known]), 0.0)
-    return beyond, SIGMA_OF_DEVIATION * float(np.median(np.abs(beyond[known])))
+    return beyond, MAD_TO_SIGMA * float(np.median(np.abs(beyond[known])))
 
 
 class WithoutJumps:

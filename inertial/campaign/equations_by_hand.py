@@ -11,9 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from inertial.campaign.attitudes_by_hand import Handled
 from inertial.campaign.motions import Merged
-from inertial.campaign.passages import RecordedPassage
+from inertial.campaign.passages import Handled, RecordedPassage
 from inertial.campaign.records import Known
 from inertial.campaign.solution import Solution
 from inertial.estimation import accelerometers, multi_position

@@ -17,7 +17,16 @@ from inertial.estimation.scatter_and_random_walk import ScatterFit, SwitchOns
 from inertial.tables import AXES, BODY, OF_TRIAD
 from inertial.tables.campaign_inputs import ESTIMATION
 from inertial.text.messages import _
-from inertial.text.parameters import CROSS, FREE, MOUNTING, PARTS, SCALE, SENSOR_OF, SYMMETRIC
+from inertial.text.parameters import (
+    CROSS,
+    FREE,
+    JOINT,
+    MOUNTING,
+    PARTS,
+    SCALE,
+    SENSOR_OF,
+    SYMMETRIC,
+)
 
 
 @dataclass(frozen=True)
@@ -187,11 +196,11 @@ class Estimates:
             | switch_on_columns(fitted.switch_ons)
         )
 
-    def add_averaging(self, method: str, seconds: float, estimate: Estimate) -> None:
-        """The estimate from the first seconds of each static position."""
+    def add_averaging(self, seconds: float, estimate: Estimate) -> None:
+        """The joint estimate from the first seconds of each static position."""
         values = triad.errors_of(estimate.values[:12])
         self.rows["averaging"] += [
-            self._key(method, name)
+            self._key(JOINT, name)
             | {
                 "seconds": seconds,
                 "value": float(values[i]),

@@ -7,6 +7,7 @@ equations of the estimation are formed of them as of recorded ones.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 import pandas as pd
@@ -71,14 +72,7 @@ def session_seconds(plan: Sequence[Manoeuvre], pace: Pace) -> float:
 
 def _visits(plan: Sequence[Manoeuvre]) -> Iterator[list[Manoeuvre]]:
     """Consecutive manoeuvres of one position."""
-    visit: list[Manoeuvre] = []
-    for m in plan:
-        if visit and visit[-1].position != m.position:
-            yield visit
-            visit = []
-        visit.append(m)
-    if visit:
-        yield visit
+    return (list(visit) for _position, visit in groupby(plan, key=lambda m: m.position))
 
 
 def _periods(plan: Sequence[Manoeuvre], pace: Pace, start: float) -> Iterator[Period]:

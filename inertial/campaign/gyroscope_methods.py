@@ -16,11 +16,16 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import NAMES, Estimates, Wanted
 from inertial.campaign.rate_segments import GyroInputs, angles_about, position_of
 from inertial.estimation import gyroscopes
-from inertial.estimation.gyroscope_formulas import Solution, Upright, two_positions
+from inertial.estimation.gyroscope_formulas import (
+    CROSS_SIGMA,
+    Solution,
+    Upright,
+    turn_and_stop,
+    two_positions,
+)
 from inertial.estimation.rate_table import rate_table
 from inertial.estimation.scatter_and_random_walk import ScatterFit
 from inertial.estimation.triad import errors_of
-from inertial.estimation.turn_and_stop import CROSS_SIGMA, turn_and_stop
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.parameters import BIAS

@@ -13,7 +13,7 @@ import pandas as pd
 from inertial.arrays import Array
 from inertial.campaign.records import Row, grouped, rows_of
 from inertial.effects import KNOWN
-from inertial.estimation.triad import linear_names
+from inertial.estimation.triad import linear_names, triad_of_errors
 from inertial.physics.effect import Effect
 from inertial.physics.forward import Sized, Triad, force_of, rate_of
 from inertial.physics.motion import Motion
@@ -55,10 +55,7 @@ class SensorResult:
         """M and bias; none where they are not wholly determined, or not usable."""
         names = linear_names()
         values = [self.rows.get(name, {}).get("value") for name in names]
-        if any(value is None for value in values):
-            return None
-        numbers = np.array(values, dtype=np.float64)
-        return Triad(np.eye(3) + numbers[: -len(BIAS)].reshape(3, 3), numbers[-len(BIAS) :])
+        return None if None in values else triad_of_errors(np.array(values, np.float64))
 
     def shifted(self, bias: Array | None) -> "SensorResult":
         """The same with a bias that is larger by (3,); or the same."""

@@ -5,23 +5,33 @@ beginning of the next one in the same log. A few samples that are lost or masked
 interpolated between those beside them; where more are missing, no attitude can be carried through.
 Nor through a walk with the IMU between two rests: its errors, of vibration and of rates that change
 between samples, are none that the other motions show.
+
+The positions get the attitude that the accelerometers give them, so that every later stage has a
+plan of rests that each have an upward direction. The azimuth stays unknown, and so does the tilt:
+the direction is that of the readings themselves.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Clock, Part
-from inertial.campaign.unknown_attitude import FreeStaticPosition
+from inertial.campaign.records import Clock, Manoeuvre, Part, Performed
+from inertial.campaign.unknown_attitude import FreeStaticPosition, free_static_positions
 from inertial.estimation.attitude import Passage
+from inertial.estimation.between_positions import Stop
+from inertial.physics.forward import Triad
 from inertial.signal.runs import MAX_LOST_RUN
 from inertial.tables import GYRO
 from inertial.text.messages import _
+
+if TYPE_CHECKING:
+    from inertial.campaign.campaign_data import CampaignData
 
 BETWEEN = "between"  # phase of the blocks from one rest to the next
 MAX_LOST_SHARE = 0.1  # of a motion
@@ -134,3 +144,50 @@ def _interpolated(part: pd.DataFrame) -> pd.DataFrame:
     between = (values[holes - 1] + values[holes]) / 2
     between[:, columns.index("seconds")] = part["missing_s"].to_numpy(np.float64)[holes]
     return pd.DataFrame(np.insert(values, holes, between, axis=0), columns=columns)
+
+
+# ---- The plan of rests that the attitudes by the accelerometers make.
+
+
+@dataclass(frozen=True)
+class Handled:
+    """The positions of a session by hand in their order, and the motions between them."""
+
+    stops: list[Stop]
+    passages: list[RecordedPassage]
+
+
+def with_attitudes(data: "CampaignData", accelerometer: Triad) -> "CampaignData":
+    """The campaign with each of its static positions as a rest of the plan."""
+    positions, _ = free_static_positions(data)
+    if not positions:
+        return data
+    moving, _ = passages_of(positions, data.blocks, data.noise, data.clocks)
+    blocks = data.blocks.copy()
+    for position in positions:
+        part = position.force.part
+        own = (blocks["manoeuvre"] == part.manoeuvre) & (blocks["phase"] == part.phase)
+        blocks.loc[own, ["manoeuvre", "phase"]] = [position.label, "rest"]
+    turns = [m for m in data.plan if m.do == "turn" and m.up is not None]
+    done = {position.label: Performed(position.label, "") for position in positions}
+    return replace(
+        data,
+        plan=[*(_rest(position, accelerometer) for position in positions), *turns],
+        performed={**data.performed, **done},
+        blocks=blocks,
+        by_hand=Handled([position.stop for position in positions], moving),
+    )
+
+
+def _rest(position: FreeStaticPosition, accelerometer: Triad) -> Manoeuvre:
+    force = np.linalg.solve(accelerometer.matrix, position.rest.mean - accelerometer.bias)
+    return replace(
+        position.force.manoeuvre,
+        name=position.label,
+        do="rest",
+        position=position.label,
+        up=force / np.linalg.norm(force),
+        mark=None,
+        about=None,
+        angle=None,
+    )

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import cos, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +20,7 @@ from inertial.estimation.gyroscope_observations import (
     WholeTurn,
 )
 from inertial.estimation.turning_noise import with_turning_noise
-from inertial.physics.motion import cross
+from inertial.physics.motion import horizontal, north_of
 from inertial.tables import GYRO
 
 if TYPE_CHECKING:
@@ -137,12 +136,10 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
         return Position(m.position, np.zeros(3))
     if m.mark is None:
         return Position(m.position, up)
-    mark = m.mark - up * (up @ m.mark)
-    mark = mark / np.linalg.norm(mark)
+    mark = horizontal(m.mark, up)
     if heading is None:
         return Position(m.position, up, mark=mark)
-    # The azimuth counts clockwise, so north lies counter-clockwise of the mark, seen from above.
-    return Position(m.position, up, north=cos(heading) * mark + sin(heading) * cross(up, mark))
+    return Position(m.position, up, north=north_of(up, mark, heading))
 
 
 def static_rate_of(position: StaticPosition, heading: float | None, seconds: float) -> StaticRate:

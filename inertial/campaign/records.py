@@ -1,7 +1,7 @@
 """Rows of the small tables as records with types: manoeuvres, what was performed, what is known."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, TypeVar
 
 import numpy as np
@@ -88,6 +88,10 @@ class Manoeuvre:
         return f"{self.name}-{number:02d}"
 
 
+VECTORS = ("up", "mark", "about", "tumble_axis", "tumbled")
+STATED = [field.name for field in fields(Manoeuvre) if field.name != "name"]
+
+
 def with_mount(name: str, mount: str) -> str:
     """A part of an identifier, with the mount where the campaign has several; else it is empty."""
     return f"{name}@{mount}" if mount else name
@@ -104,20 +108,12 @@ def by_mount(plan: Sequence[Manoeuvre]) -> list[tuple[str, list[Manoeuvre]]]:
 
 def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
     """The manoeuvres of the plan in their order."""
-    return [
-        Manoeuvre(
-            row["manoeuvre"],
-            *(row[key] for key in ("do", "log", "position", "mount")),
-            *(_vector(row, stem) for stem in ("up", "mark", "about")),
-            *(row[key] for key in ("angle", "angle_sigma", "rate")),
-            *(row[key] for key in ("acceleration", "seconds", "recorded")),
-            *(row[key] for key in ("from_s", "to_s", "from_row", "to_row", "label")),
-            *(row[key] for key in ("temperature", "temperature_sigma", "rate_sigma")),
-            *(row[key] for key in ("switch_on", "tumble")),
-            *(_vector(row, stem) for stem in ("tumble_axis", "tumbled")),
-        )
-        for row in rows_of(table)
-    ]
+    return [_manoeuvre(row) for row in rows_of(table)]
+
+
+def _manoeuvre(row: Row) -> Manoeuvre:
+    own: Row = {key: _vector(row, key) if key in VECTORS else row[key] for key in STATED}
+    return Manoeuvre(row["manoeuvre"], **own)
 
 
 def _vector(row: Row, stem: str) -> Array | None:
@@ -349,3 +345,16 @@ def share_a_clock(table: pd.DataFrame) -> bool:
     begin, end = np.array(sorted(_span(row) for row in rows_of(table))).T
     pauses = begin[1:] - end[:-1]
     return bool((pauses > 0).all() and (begin[0] > MIN_ABSOLUTE or (pauses < MAX_PAUSE).all()))
+
+
+def sizes_of_result(parameters: Iterable[Row]) -> dict[tuple[str, str, str], Row]:
+    """The rows of the result that are parameters of effects, by mount, effect and parameter.
+
+    Of an effect in the models of both sensors those with the smaller sigma.
+    """
+    found: dict[tuple[str, str, str], Row] = {}
+    for row in parameters:
+        if row["effect"] is not None and row["sigma"]:
+            key = (row["mount"], row["effect"], row["parameter"].rpartition(".")[2])
+            found[key] = min(found.get(key, row), row, key=lambda one: one["sigma"])
+    return found

@@ -12,7 +12,7 @@ from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
 from inertial.estimation.gyroscope_observations import TABLE, Earth, Position
 from inertial.estimation.position_outlier import is_off
 from inertial.estimation.scatter_and_random_walk import covering
-from inertial.estimation.triad import linear_names
+from inertial.estimation.triad import linear_names, triad_of_errors
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross, level_axes
 from inertial.tables import AXES
@@ -205,5 +205,4 @@ def triad_of(parameters: pd.DataFrame, mount: str = "", method: str = JOINT) -> 
     values = {row["parameter"]: row["value"] for row in joint_rows(parameters, mount, method)}
     if any(values.get(name) is None for name in BIAS):
         return None
-    known = [values.get(name) or 0.0 for name in linear_names()]
-    return Triad(np.eye(3) + np.reshape(known[:-3], (3, 3)), np.array(known[-3:]))
+    return triad_of_errors([values.get(name) or 0.0 for name in linear_names()])

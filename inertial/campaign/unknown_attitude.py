@@ -186,7 +186,7 @@ def add_free_accelerometers(estimates: Estimates, data: "CampaignData") -> list[
     left_out += [part for part, _ in off]
     if positions:
         fitted = fitted_to(data, positions)
-        add_symmetric(estimates, FREE, fitted.estimate)
+        add_symmetric(estimates, fitted.estimate)
         estimates.add_fit(FREE, fitted, [position.force.part for position in positions], left_out)
     elif left_out:
         estimates.add_nothing(FREE, omissions(left_out))
@@ -230,7 +230,7 @@ def _moved(off: Sequence[tuple[Part, OffLength]], mount: str) -> Finding:
     )
 
 
-def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None:
+def add_symmetric(estimates: Estimates, estimate: Estimate) -> None:
     """P and bias, also as the twelve unknowns with M = P, and why some are not determined."""
     parameters = {name: name for name in NAMES}
     parameters |= {f"scale_{axis}": f"symmetric_{axis}{axis}" for axis in AXES}
@@ -248,7 +248,7 @@ def add_symmetric(estimates: Estimates, method: str, estimate: Estimate) -> None
         if not estimate.determined[i]:
             reasons[name] = in_words(max(unobservable_directions, key=partial(_share, i)))
     estimates.add(
-        method,
+        FREE,
         names,
         values,
         jacobian @ estimate.covariance[:UNKNOWNS, :UNKNOWNS] @ jacobian.T,

@@ -15,7 +15,6 @@ from inertial.detectors.encoder_against_plan import (
     EncoderScale,
     EncoderScaleOrEccentricity,
 )
-from inertial.detectors.fixture_creep import FixtureCreep
 from inertial.detectors.gap import Gap
 from inertial.detectors.impact import Impact
 from inertial.detectors.manoeuvres_against_plan import (
@@ -26,7 +25,6 @@ from inertial.detectors.manoeuvres_against_plan import (
     TurningPointOnce,
     WrongSpans,
 )
-from inertial.detectors.marks_against_plan import WrongMark
 from inertial.detectors.misread_axes_and_signs import (
     AxisSwap,
     AxisSwapAgainstPlan,
@@ -38,13 +36,12 @@ from inertial.detectors.misread_axes_and_signs import (
 from inertial.detectors.motion_after_turns import MotionAfterTurns
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
-from inertial.detectors.position_not_kept import PositionNotKept
+from inertial.detectors.position_not_kept import FixtureCreep, PositionNotKept
 from inertial.detectors.processed_readings import BiasRemoved, NormalisedForce
 from inertial.detectors.quantisation import Quantisation
 from inertial.detectors.receiver_statements import StatusInvalid, WrongImuType
-from inertial.detectors.repeated_records import Duplicate, HeldRecord
+from inertial.detectors.repeated_records import Duplicate, HeldRecord, SlowerSensor
 from inertial.detectors.saturation import Saturation
-from inertial.detectors.slower_sensor import SlowerSensor
 from inertial.detectors.spike import Spikes
 from inertial.detectors.stamp_faults import (
     ArrivalStamps,
@@ -72,6 +69,7 @@ from inertial.detectors.turns_against_plan import (
     IncompleteTurn,
     TurnTooFar,
     WrongDirection,
+    WrongMark,
     WrongRate,
 )
 from inertial.detectors.wrong_scale_factor import (

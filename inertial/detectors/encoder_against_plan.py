@@ -11,6 +11,7 @@ from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
+from inertial.text.units import ARC_SECOND
 
 MIN_TURNS = 3  # that agree; two may stop alike
 MAX_CHANCE = 5e-3  # that turns which stop anywhere differ from the plan so nearly alike
@@ -20,7 +21,6 @@ MIN_LOG_ODDS = 5.3  # by which the gyros contradict an encoder: 200 to 1, as MAX
 MAX_CHANCE_OF_MEAN = 1e-3  # that turns which stop anywhere differ from the plan on the mean
 MAX_APART = np.radians(5.0)  # of jumps that are at one place of the encoder
 MAX_ECCENTRICITY = np.radians(0.1)  # of an encoder on the axis of a table
-ARC_SECOND = np.pi / 648_000  # rad
 
 
 class EncoderJump(PlanDetector):
@@ -383,4 +383,4 @@ def _largest_mean(recorded: Recorded, read: Integers, off: Array) -> float:
 
 def _arc(angle: float) -> str:
     """An angle, rad, in arc seconds, with its sign."""
-    return fixed(float(np.degrees(angle)) * 3600, 0)
+    return fixed(angle / ARC_SECOND, 0)

@@ -7,10 +7,8 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.estimation.accelerometers import StaticForce
-from inertial.estimation.gyroscope_formulas import Readings, Solution
+from inertial.estimation.gyroscope_formulas import CROSS_SIGMA, Readings, Solution, pooling
 from inertial.estimation.least_squares import pseudo_inverse
-
-CROSS_SIGMA = 0.01  # rad, of a cross term that is not determined: mounting within half a degree
 
 
 @dataclass(frozen=True)
@@ -68,20 +66,44 @@ def up_and_down(
     )
 
 
-def pooling(ups: Array) -> tuple[Array, Array]:
-    """The static positions of each attitude.
+def six_position_formula(
+    statics: Sequence[StaticForce],
+    gravity: float,
+    gravity_sigma: float,
+    position_sigma: float,
+    scatter: float = 0.0,
+) -> tuple[Array, Array] | None:
+    """M̂ = L Aᵀ (A Aᵀ)⁻¹ of S0 (3-6), without weights, and its covariance.
 
-    Parameters
-    ----------
-    ups : (n, 3), upward directions in body axes
+    L holds the means, A = [g u; 1]. None where the attitudes do not span the four columns.
 
     Returns
     -------
-    attitudes (m, 3), and the weights of the readings in their means (m, n)
+    the twelve unknowns (M by rows, bias) and their covariance
     """
-    attitudes, number = np.unique(np.round(ups, 9) + 0.0, axis=0, return_inverse=True)
-    members = number.ravel()[None, :] == np.arange(len(attitudes))[:, None]
-    return attitudes, members / members.sum(axis=1, keepdims=True)
+    n = len(statics)
+    truth = np.vstack([np.column_stack([gravity * s.up for s in statics]), np.ones(n)])
+    means = np.column_stack([static.mean for static in statics])
+    if np.linalg.matrix_rank(truth) < 4 or not np.isfinite(means).all():
+        return None
+    inverse = truth.T @ np.linalg.inv(truth @ truth.T)  # (n, 4)
+    solution = means @ inverse  # (3, 4)
+    # The solution is linear in the means, channel by channel: weights (12, n, 3).
+    weights = np.concatenate(
+        [np.einsum("nk,rc->rknc", inverse[:, :3], np.eye(3)).reshape(9, n, 3),
+         np.einsum("n,rc->rnc", inverse[:, 3], np.eye(3))]
+    )  # fmt: skip
+    noise = np.array([static.sigma for static in statics]) ** 2 + scatter**2
+    covariance = np.einsum("anc,nc,bnc->ab", weights, noise, weights)
+    # An error of gravity is upward; that of a tilt horizontal, and the same for one position.
+    up = np.einsum("anc,nc->an", weights, np.array([static.up for static in statics]))
+    covariance += gravity_sigma**2 * np.outer(up.sum(axis=1), up.sum(axis=1))
+    names = np.array([static.position for static in statics])
+    for position in dict.fromkeys(names):
+        every, upward = weights[:, names == position].sum(axis=1), up[:, names == position]
+        horizontal = every @ every.T - np.outer(upward.sum(axis=1), upward.sum(axis=1))
+        covariance += (position_sigma * gravity) ** 2 * horizontal
+    return np.append(solution[:, :3].ravel(), solution[:, 3]), covariance
 
 
 def pooled_positions(

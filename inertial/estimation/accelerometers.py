@@ -1,4 +1,4 @@
-"""The accelerometers from static positions: weighted least squares, and the six-position formula.
+"""The accelerometers from static positions by weighted least squares.
 
     mean reading = M · (g u + δ × g u) + bias + noise
 
@@ -31,13 +31,8 @@ from inertial.estimation.elimination import (
     whitened,
 )
 from inertial.estimation.least_squares import Estimate, System
-from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
-from inertial.estimation.scatter_and_random_walk import (
-    Deviances,
-    ScatterFit,
-    walk_search,
-    with_random_walk,
-)
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
+from inertial.estimation.scatter_and_random_walk import ScatterFit, walk_search
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.forward import Triad
 from inertial.physics.motion import all_level_axes, cross
@@ -155,18 +150,12 @@ def fit(
         result = fit(statics, reference, noise_degrees, effect_sigma, then)
         return replace(result, switch_ons=switched)
     stretches = [static.stretch for static in statics if static.stretch is not None]
-    alternatives = [
-        likelihood.of_scatter([static.position for static in statics]),
-        likelihood.of_scatter([str(np.round(static.up, 3)) for static in statics]),
-    ]
-    if stretches:
-        trend = list(map(linear_trend(stretches), likelihood.stretches))
-        named = [stretch.name for stretch in trend]
-        alternatives.append(likelihood.of_scatter(named, [stretch.weight for stretch in trend]))
+    attitudes = [str(np.round(static.up, 3)) for static in statics]
     noise = float(np.nanmedian([*(static.sigma for static in statics), np.full(3, np.nan)]))
     search = walk_search(stretches, noise, MAX_RANDOM_WALK)
-    likely = Deviances(likelihood.of_scatter(), likelihood.of_walk(), likelihood.of_both)
-    result = with_random_walk(fit_with, likely, SCATTER_BOUNDS, search, alternatives, noise_degrees)
+    times, bounds = (stretches, search), SCATTER_BOUNDS
+    alone = likelihood.of_scatter()
+    result = likelihood.fitted(fit_with, alone, attitudes, *times, bounds, noise_degrees)
     if result.scatter or result.random_walk:
         estimate = weighted(
             statics, reference, result.scatter, result.random_walk, effect_sigma, measured
@@ -224,8 +213,8 @@ def _drifting(
     about: Triad,
     effect_sigma: Mapping[str, float] | None,
     keys: Sequence[Hashable],
-    scatter: float = 0.0,
-    measured: MeasuredDrift = NO_DRIFT,
+    scatter: float,
+    measured: MeasuredDrift,
 ) -> DriftingEquations:
     """The same, to which drifts may be added; `keys`: what has one key is one block."""
     effect_sigma = effect_sigma or {}
@@ -407,43 +396,3 @@ def _spanned(ups: Array) -> Array:
 def triad_of(estimate: Estimate) -> Triad:
     """M and bias of an estimate."""
     return Triad(estimate.values[:9].reshape(3, 3), estimate.values[9:12])
-
-
-def six_position_formula(
-    statics: Sequence[StaticForce],
-    gravity: float,
-    gravity_sigma: float,
-    position_sigma: float,
-    scatter: float = 0.0,
-) -> tuple[Array, Array] | None:
-    """M̂ = L Aᵀ (A Aᵀ)⁻¹ of S0 (3-6), without weights, and its covariance.
-
-    L holds the means, A = [g u; 1]. None where the attitudes do not span the four columns.
-
-    Returns
-    -------
-    the twelve unknowns (M by rows, bias) and their covariance
-    """
-    n = len(statics)
-    truth = np.vstack([np.column_stack([gravity * s.up for s in statics]), np.ones(n)])
-    means = np.column_stack([static.mean for static in statics])
-    if np.linalg.matrix_rank(truth) < 4 or not np.isfinite(means).all():
-        return None
-    inverse = truth.T @ np.linalg.inv(truth @ truth.T)  # (n, 4)
-    solution = means @ inverse  # (3, 4)
-    # The solution is linear in the means, channel by channel: weights (12, n, 3).
-    weights = np.concatenate(
-        [np.einsum("nk,rc->rknc", inverse[:, :3], np.eye(3)).reshape(9, n, 3),
-         np.einsum("n,rc->rnc", inverse[:, 3], np.eye(3))]
-    )  # fmt: skip
-    noise = np.array([static.sigma for static in statics]) ** 2 + scatter**2
-    covariance = np.einsum("anc,nc,bnc->ab", weights, noise, weights)
-    # An error of gravity is upward; that of a tilt horizontal, and the same for one position.
-    up = np.einsum("anc,nc->an", weights, np.array([static.up for static in statics]))
-    covariance += gravity_sigma**2 * np.outer(up.sum(axis=1), up.sum(axis=1))
-    names = np.array([static.position for static in statics])
-    for position in dict.fromkeys(names):
-        every, upward = weights[:, names == position].sum(axis=1), up[:, names == position]
-        horizontal = every @ every.T - np.outer(upward.sum(axis=1), upward.sum(axis=1))
-        covariance += (position_sigma * gravity) ** 2 * horizontal
-    return np.append(solution[:, :3].ravel(), solution[:, 3]), covariance

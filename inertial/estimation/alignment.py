@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.physics.motion import cross, level_axes, turned_all
+from inertial.physics.motion import cross, horizontal, level_axes, north_of, turned_all
 
 
 @dataclass(frozen=True)
@@ -49,10 +49,7 @@ class CoarseAlignment:
 
     def with_azimuth(self, direction: Array, azimuth: float, sigma: float) -> "CoarseAlignment":
         """The same levels with a known azimuth of a body direction."""
-        level = direction - (direction @ self.up) * self.up
-        level /= np.linalg.norm(level)
-        right = cross(level, self.up)  # clockwise, seen from above
-        north = np.cos(azimuth) * level - np.sin(azimuth) * right
+        north = north_of(self.up, horizontal(direction, self.up), azimuth)
         return _aligned(self.up, north, self.tilt_sigma, sigma, 0.0)
 
 

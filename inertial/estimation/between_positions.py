@@ -49,7 +49,7 @@ from inertial.estimation.scatter_and_random_walk import (
     likeliest,
 )
 from inertial.estimation.triad import UNKNOWNS, design_of
-from inertial.physics.motion import cross
+from inertial.physics.motion import cross, horizontal
 
 ROUNDS = 2  # of the scatter, about the last result
 NONE = Scatter()
@@ -412,8 +412,7 @@ def _data(stops: Sequence[Stop], passages: Sequence[Passage], known: Prior) -> "
 
 def _level(up: Array, about: Array) -> Array:
     """Two horizontal directions, (2, 3), the first as near as possible to `about`."""
-    first = about - (about @ up) * up
-    first = first / np.linalg.norm(first)
+    first = horizontal(about, up)
     return np.array([first, cross(up, first)])
 
 

@@ -26,19 +26,26 @@ from scipy.linalg import block_diag, solve_triangular
 
 from inertial.arrays import Array
 from inertial.estimation.elimination import EquationBlock, Name, eliminate, partial_r_factor
-from inertial.estimation.least_squares import System, solve
+from inertial.estimation.least_squares import Estimate, System, remaining, solve
 from inertial.estimation.random_walk import (
     NO_DRIFT,
     MeasuredDrift,
     Stretch,
+    linear_trend,
     measured_covariance,
     walk_covariance,
     with_drifts,
 )
-from inertial.estimation.scatter_and_random_walk import SwitchOns, between
+from inertial.estimation.scatter_and_random_walk import (
+    Deviance,
+    Deviances,
+    ScatterFit,
+    SwitchOns,
+    WalkSearch,
+    between,
+    with_random_walk,
+)
 from inertial.estimation.triad import UNKNOWNS
-
-Deviance = Callable[[float], float]
 
 
 @dataclass(frozen=True)
@@ -66,17 +73,8 @@ class DriftingEquations:
         shared = len(self.prior)
         drift = (scatter, walk, self.measured)
         blocks, drift_sigma = with_drifts(self.blocks, shared, self.bias, *drift)
-        rows, eliminated = eliminate(blocks, shared, {**self.sigma, **drift_sigma})
-        return System(
-            rows[:, :-1],
-            rows[:, -1] + rows[:, :-1] @ self.prior,
-            np.ones(len(rows)),
-            self.prior,
-            self.prior_sigma,
-            self.parameters,
-            self.names,
-            eliminated,
-        )
+        left = eliminate(blocks, shared, {**self.sigma, **drift_sigma})
+        return remaining(*left, self.prior, self.prior_sigma, self.parameters, self.names)
 
     def sharing(self, errors: Sequence[Name]) -> "DriftingEquations":
         """The same with these errors as the last effects, so that they are not eliminated."""
@@ -183,6 +181,35 @@ class DriftLikelihood:
     def of_both(self, scatter: float, walk: float) -> float:
         """With a scatter of each stretch and a random walk."""
         return self._of(self._spread(scatter, walk))(1.0)
+
+    def fitted(
+        self,
+        fit: Callable[[float, float], Estimate],
+        of_scatter: Deviance,
+        attitudes: Sequence[str],
+        stretches: Sequence[Stretch],
+        search: WalkSearch | None,
+        between: tuple[float, float],
+        noise_degrees: float,
+    ) -> ScatterFit:
+        """The fit with the scatter and the random walk of largest restricted likelihood.
+
+        What resembles a random walk are differences from position to position, from attitude to
+        attitude, and a drift in proportion to time.
+
+        Parameters
+        ----------
+        of_scatter : deviance as a function of a scatter alone
+        attitudes : of the n blocks; `stretches`: with a time, all of the campaign
+        fit, search, between, noise_degrees : as in `with_random_walk`
+        """
+        alternatives = [self.of_scatter(self.positions), self.of_scatter(attitudes)]
+        if stretches:
+            trend = list(map(linear_trend(stretches), self.stretches))
+            names, weights = zip(*((s.name, s.weight) for s in trend), strict=True)
+            alternatives.append(self.of_scatter(names, weights))
+        likely = Deviances(of_scatter, self.of_walk(), self.of_both)
+        return with_random_walk(fit, likely, between, search, alternatives, noise_degrees)
 
     def switch_ons(self) -> "SwitchOns | None":
         """By what the bias of each axis differs between switch-ons; None where there is one."""

@@ -259,23 +259,7 @@ def segment_equations(
     along = weight * (point.matrix @ segment.about)
     if not np.any(along):
         return None
-    vague = horizontal_sigma(segment.position, earth)
-    own = dict.fromkeys(horizontal_names(segment.position), vague)
-    own |= dict.fromkeys(tilt_axes(segment.position, segment.about), position_sigma)
-    if segment.windows:
-        own |= {DELAY: DELAY_SIGMA, **dict.fromkeys(WAVES, ECCENTRICITY_SIGMA)}
-        edges = {edge for w in segment.windows for edge in (w.start, w.end)}
-        own |= dict.fromkeys((_edge(name, e) for e in sorted(edges)), segment.angle_sigma / SQRT2)
-    else:
-        own[("angle", name)] = segment.angle_sigma
-        if segment.gaps:
-            own[("gap angle", name)] = segment.gap_sigma
-    if segment.clock_sigma:
-        own[(CLOCK, segment.clock)] = segment.clock_sigma
-    waves = waves_within(float(segment.seconds.sum()), instability * recorded, segment.density)
-    course = [(number + 1, axis) for number, axis in np.argwhere(waves > 0).tolist()]
-    names = [(f"wave {number} of bias {axis}", name) for number, axis in course]
-    own |= dict(zip(names, waves[waves > 0].tolist(), strict=True))
+    own, course = _own_errors(segment, name, earth, position_sigma, instability * recorded)
     sigma |= own
     sums = np.where(recorded, segment.sums, 0.0)
     angle = _block_angles(segment, sums, weight, point, earth)
@@ -315,6 +299,32 @@ def segment_equations(
     known = known[np.isfinite(known).all(axis=1)]
     stacked, count = np.vstack([*rows, known]), count - 1 + len(known)
     return EquationBlock(compressed(stacked), tuple(own), count, 0.0)
+
+
+def _own_errors(
+    segment: RateSegment, name: str, earth: Earth, position_sigma: float, instability: Array
+) -> tuple[dict[Name, float], list[tuple[int, int]]]:
+    """The errors of a rate segment with their sigmas, and number and axis of each wave of biases.
+
+    The waves are the last of the errors; `instability`: 0 of a gyro that is not recorded.
+    """
+    vague = horizontal_sigma(segment.position, earth)
+    own = dict.fromkeys(horizontal_names(segment.position), vague)
+    own |= dict.fromkeys(tilt_axes(segment.position, segment.about), position_sigma)
+    if segment.windows:
+        own |= {DELAY: DELAY_SIGMA, **dict.fromkeys(WAVES, ECCENTRICITY_SIGMA)}
+        edges = {edge for w in segment.windows for edge in (w.start, w.end)}
+        own |= dict.fromkeys((_edge(name, e) for e in sorted(edges)), segment.angle_sigma / SQRT2)
+    else:
+        own[("angle", name)] = segment.angle_sigma
+        if segment.gaps:
+            own[("gap angle", name)] = segment.gap_sigma
+    if segment.clock_sigma:
+        own[(CLOCK, segment.clock)] = segment.clock_sigma
+    waves = waves_within(float(segment.seconds.sum()), instability, segment.density)
+    course = [(number + 1, axis) for number, axis in np.argwhere(waves > 0).tolist()]
+    names = [(f"wave {number} of bias {axis}", name) for number, axis in course]
+    return own | dict(zip(names, waves[waves > 0].tolist(), strict=True)), course
 
 
 def _block_angles(

@@ -24,13 +24,8 @@ from inertial.estimation.gyroscope_observations import (
 )
 from inertial.estimation.horizontal_earth_rate import known_azimuths, size_constraint
 from inertial.estimation.least_squares import Estimate, System, solve
-from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch, linear_trend
-from inertial.estimation.scatter_and_random_walk import (
-    Deviances,
-    ScatterFit,
-    walk_search,
-    with_random_walk,
-)
+from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift, Stretch
+from inertial.estimation.scatter_and_random_walk import ScatterFit, walk_search
 from inertial.estimation.triad import UNKNOWNS
 
 # Vague priors: M within 0.1 of the unit matrix, the bias within 1 rad/s. Without rate segments only
@@ -114,23 +109,15 @@ def fit(
         return drifting.system(scatter, walk).solve_shared()
 
     every: list[StaticRate | RateSegment | SteadyRate] = [*statics, *segments, *steadies]
-    attitudes = {item.position.name: str(np.round(item.position.up, 3)) for item in every}
+    ups = {item.position.name: str(np.round(item.position.up, 3)) for item in every}
+    attitudes = [ups[position] for position in likelihood.positions]
     stretches = [item.stretch for item in every if item.stretch is not None]
-    alternatives = [
-        likelihood.of_scatter(likelihood.positions),
-        likelihood.of_scatter([attitudes[position] for position in likelihood.positions]),
-    ]
-    if stretches:
-        trend = list(map(linear_trend(stretches), likelihood.stretches))
-        named = [stretch.name for stretch in trend]
-        alternatives.append(likelihood.of_scatter(named, [stretch.weight for stretch in trend]))
     sigmas = [item.sigma for item in every if not isinstance(item, RateSegment)]
     noise = float(np.nanmedian([*sigmas, np.full(3, np.nan)])) if sigmas else 0.0
     search = walk_search(stretches, noise, MAX_RANDOM_WALK)
-    likely = Deviances(
-        likelihood.of_scatter(likelihood.stretches), likelihood.of_walk(), likelihood.of_both
-    )
-    result = with_random_walk(fit_with, likely, SCATTER_BOUNDS, search, alternatives, noise_degrees)
+    times, bounds = (stretches, search), SCATTER_BOUNDS
+    alone = likelihood.of_scatter(likelihood.stretches)
+    result = likelihood.fitted(fit_with, alone, attitudes, *times, bounds, noise_degrees)
     if result.scatter or result.random_walk:
         estimate = joint(statics, *others, result.scatter, result.random_walk, measured)
     return replace(result, estimate=estimate)

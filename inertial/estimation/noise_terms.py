@@ -22,7 +22,7 @@ from functools import cached_property
 
 import numpy as np
 
-from inertial.arrays import Array, Booleans
+from inertial.arrays import Array, Booleans, Integers
 from inertial.estimation.multiresolution import BINS_PER_OCTAVE, Bins, Lowest, Powers
 from inertial.estimation.noise_likelihood import Fit, Likelihood
 from inertial.estimation.noise_model import STOCHASTIC, TERMS, NoiseModel
@@ -315,7 +315,7 @@ def _lines(
         if np.array_equal(found, lines):
             break
         lines, leaked = found, _leaked_into(bins, density, beside, found, within)
-    ratio, count = _by_half_octave(
+    ratio, count, _place = _by_half_octave(
         bins.frequency[used], density[used] / expected[used], degrees[used]
     )
     significance = np.sqrt(chi2_isf(MISFIT_LEVEL / len(ratio), 1))
@@ -351,27 +351,27 @@ def _beside(density: Array) -> Array:
     return np.asarray(np.median(around, axis=1))
 
 
-def _by_half_octave(frequency: Array, ratio: Array, degrees: Array) -> tuple[Array, Array]:
-    """The mean ratio of each half octave, weighted by degrees of freedom, and their sum."""
-    place = np.floor(2 * np.log2(frequency)).astype(np.int64)
-    place -= place.min()
-    count = np.bincount(place, degrees)
-    mean = np.bincount(place, degrees * ratio)[count > 0] / count[count > 0]
-    return np.asarray(mean), np.asarray(count[count > 0], np.float64)
+def _by_half_octave(
+    frequency: Array, ratio: Array, degrees: Array
+) -> tuple[Array, Array, Integers]:
+    """Of each half octave the mean ratio, weighted by degrees of freedom, and their sum.
+
+    And of each bin the place of its half octave among them.
+    """
+    _halves, place = np.unique(np.floor(2 * np.log2(frequency)), return_inverse=True)
+    count = np.asarray(np.bincount(place, degrees), np.float64)
+    return np.bincount(place, degrees * ratio) / count, count, place
 
 
 def _widened(likelihood: Likelihood, frequency: Array) -> tuple[Likelihood, float]:
     """The likelihood with the degrees of freedom that the misfit of each half octave leaves."""
     fit = likelihood.maximum(range(4), ramp=True)
     ratio = likelihood.density / (fit.variances / likelihood.unit @ likelihood.shapes)
-    place = np.floor(2 * np.log2(frequency)).astype(np.int64)
-    place -= place.min()
-    count = np.bincount(place, likelihood.degrees)
-    mean = np.bincount(place, likelihood.degrees * ratio) / np.maximum(count, 1)
+    mean, count, place = _by_half_octave(frequency, ratio, likelihood.degrees)
     squares = count * (mean - 1) ** 2 / 2
-    excess = np.where(chi2_sf(squares, 1) < MISFIT_LEVEL / np.sum(count > 0), squares, 1.0)
+    excess = np.where(chi2_sf(squares, 1) < MISFIT_LEVEL / len(count), squares, 1.0)
     widened = replace(likelihood, degrees=likelihood.degrees / excess[place])
-    return widened, float(np.mean(squares[count > 0]))
+    return widened, float(np.mean(squares))
 
 
 def _ranges(bins: Bins, lines: Booleans) -> Array:

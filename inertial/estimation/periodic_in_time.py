@@ -36,7 +36,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Taken:
-    """A line that was removed from a record: Hz, and its amplitude present."""
+    """A line that was removed from a record: Hz, and the amplitude that it had."""
 
     frequency: float
     amplitude: float

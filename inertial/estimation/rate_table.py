@@ -53,7 +53,7 @@ class RateTable:
     def rms(self) -> Array:
         """Standard deviation of a run by the residuals of each gyro, (3,), rad/s.
 
-        NaN where no degree of freedom is values.
+        NaN where no degree of freedom is left.
         """
         squares = np.nansum(self.residuals**2, axis=0)
         free = np.where(self.degrees > 0, self.degrees, 1)
@@ -201,7 +201,7 @@ def columns_of(data: OwnAxis) -> dict[str, Array]:
     `cubic`: ω³, so that the scale factor changes by c ω², one c for all, s²/rad²; `cubic of each`:
     one c for each gyro; `bent`: ω|ω|, one for all, s/rad; `asymmetry`: |ω|, half of the difference
     of the scale factors forward and backward, one for all; `table`: a relative error of the table's
-    rate at_rate each set rate, the same in both directions.
+    rate at each set rate, the same in both directions.
     """
     rate, magnitude = data.rate, np.abs(data.rate)
     each = data.gyro[:, None] == np.unique(data.gyro)[None, :]

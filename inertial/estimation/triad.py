@@ -7,10 +7,12 @@ the case; the symmetric P holds the scale factors and the non-orthogonality.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.linalg import polar
 from scipy.spatial.transform import Rotation
 
 from inertial.arrays import Array
+from inertial.physics.forward import Triad
 from inertial.text.parameters import AXES, BIAS
 
 # Order of the twelve unknowns: M by rows, then the bias.
@@ -30,6 +32,12 @@ def linear_names() -> tuple[str, ...]:
 def errors_of(unknowns: Array) -> Array:
     """The unknowns with M − I for M: scale factor errors and cross terms, (12,)."""
     return np.asarray(unknowns - np.append(np.eye(3).ravel(), np.zeros(3)))
+
+
+def triad_of_errors(errors: ArrayLike) -> Triad:
+    """The triad of scale factor errors and cross terms, M − I by rows, and the bias, (12,)."""
+    values = np.asarray(errors, np.float64)
+    return Triad(np.eye(3) + values[:9].reshape(3, 3), values[9:])
 
 
 def mounting_and_symmetric(matrix: Array) -> Array:

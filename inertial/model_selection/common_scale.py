@@ -11,8 +11,8 @@ covariance C_c. Of the e only differences between tables that share IMUs are obs
 each IMU are eliminated at once, so that every campaign costs the same.
 
 How large θ is, is not known beforehand; chances are averaged over what the residuals beside free
-tables leave possible, as in `type_mean`. A change that all axes of one IMU have in common in one
-campaign (of its own clock or temperature) is the rival. It is weighed as in `fleet_search`, and
+tables leave possible, as in `fleet_components`. A change that all axes of one IMU have in common in
+one campaign (of its own clock or temperature) is the rival. It is weighed as in `fleet_search`, and
 must not be what the IMUs differ by: with a variance of its own, which they show likewise, the
 tables must still differ. Of one IMU, once on each table, nothing tells the two apart.
 """
@@ -24,8 +24,8 @@ from functools import cached_property
 import numpy as np
 
 from inertial.arrays import Array, Integers
+from inertial.estimation.fleet_components import INNER, Mixture
 from inertial.estimation.probability import chi2_sf, norm_sf
-from inertial.estimation.type_mean import INNER, Mixture
 from inertial.model_selection.fleet_evidence import whitened
 from inertial.model_selection.fleet_search import MIN_WEIGHT, log_evidence
 
@@ -304,7 +304,7 @@ def comparisons(of: ScaleFactors) -> Iterator[Comparison]:
 def _chances(left: Sequence[float], degrees: int) -> Array:
     """The probability of each of CHANGES, with which so much remains: chi-squared at the true one.
 
-    What no change explains is left at zero (Viechtbauer 2007), as in `type_mean`.
+    What no change explains is left at zero (Viechtbauer 2007), as in `fleet_components`.
     """
     up_to = chi2_sf(np.maximum(left, 0.0), degrees)
     up_to[-1] = 1.0

@@ -47,9 +47,9 @@ class ScatterTests:
         drops = self._drops(self.along[:, None])[:, 0]
         return self._p_value(drops, self.chi_squared, self.used)
 
-    def smallest_by_chance(self, draws: int, random: np.random.Generator) -> Array:
-        """The smallest p-value of all candidates where there is a scatter only, (draws,)."""
-        counts = [min(MAX_BATCH, draws - i) for i in range(0, draws, MAX_BATCH)]
+    def smallest_by_chance(self, random: np.random.Generator) -> Array:
+        """The smallest p-value of all candidates where there is a scatter only, (DRAWS,)."""
+        counts = [min(MAX_BATCH, DRAWS - i) for i in range(0, DRAWS, MAX_BATCH)]
         return np.concatenate([self._smallest(count, random) for count in counts])
 
     def _smallest(self, draws: int, random: np.random.Generator) -> Array:
@@ -122,7 +122,7 @@ def residual_columns(sensor: EffectInformation, raw: Array) -> tuple[Array, Arra
 def named_share(tests: Sequence[ScatterTests], level: float) -> float:
     """The p-value that the smallest of all falls below with the probability `level`."""
     random = np.random.default_rng(0)
-    smallest = [one.smallest_by_chance(DRAWS, random) for one in tests]
+    smallest = [one.smallest_by_chance(random) for one in tests]
     return share_of_level(np.sort(np.min(smallest, axis=0)), level)
 
 

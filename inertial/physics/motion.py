@@ -43,6 +43,26 @@ def level_axes(up: Array) -> tuple[Array, Array]:
     return first, second
 
 
+def component(vectors: Array, axis: Array) -> Array:
+    """Of vectors, (n, 3), along an axis, (n,), by the channels that it needs: others may be NaN."""
+    own = np.flatnonzero(axis)
+    return np.asarray(vectors[:, own] @ axis[own])
+
+
+def horizontal(direction: Array, up: Array) -> Array:
+    """The horizontal part of a direction, (3,), as a unit vector."""
+    level = direction - up * (up @ direction)
+    return np.asarray(level / np.linalg.norm(level))
+
+
+def north_of(up: Array, mark: Array, azimuth: float) -> Array:
+    """North in body axes, (3,), where the horizontal direction `mark` has an azimuth, rad.
+
+    It counts clockwise, so north lies counter-clockwise of the mark, seen from above.
+    """
+    return np.asarray(np.cos(azimuth) * mark + np.sin(azimuth) * cross(up, mark))
+
+
 def without_leans(up: Array) -> Array:
     """Upward directions (n, 3) with 0 for components that are but the lean of a set position.
 

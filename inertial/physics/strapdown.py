@@ -21,7 +21,7 @@ from scipy.linalg import block_diag, expm
 
 from inertial.arrays import Array, Integers
 from inertial.physics.forward import Site
-from inertial.physics.motion import cross, level_axes
+from inertial.physics.motion import cross, horizontal, level_axes
 
 EARTH_RADIUS = 6371e3  # m, mean
 
@@ -49,8 +49,7 @@ def aligned(force: Array, rate: Array, site: Site, north: Array | None, compass:
     up = force / np.linalg.norm(force)
     known = north is not None or compass
     direction = north if north is not None else rate if compass else level_axes(up)[0]
-    level = direction - up * (up @ direction)
-    level = level / np.linalg.norm(level)
+    level = horizontal(direction, up)
     attitude = np.array([cross(level, up), level, up])
     return Start(attitude, np.array([0.0, site.earth_level if known else 0.0, site.earth_up]))
 

@@ -169,13 +169,14 @@ def _compared(values: Array) -> tuple[Array, Array, Array]:
     scatter = MAD_TO_SIGMA * median(blocks)
     sigma = scatter[:, np.minimum(np.arange(n) // length, number - 1)]
     steep = np.abs(c + d - a - b) / 2 > MAX_SLOPE_SIGMA * sigma
-    bent = np.abs(_second_difference(level, BEND_READINGS)) > MAX_BEND_SIGMA * sigma
+    bent = np.abs(_second_difference(level)) > MAX_BEND_SIGMA * sigma
     sigma[steep | bent] = 0.0
     return off, level, sigma
 
 
-def _second_difference(values: Array, step: int) -> Array:
-    """By so many readings, (k, n); the outermost have themselves in place of those beyond."""
+def _second_difference(values: Array) -> Array:
+    """Of (k, n), by `BEND_READINGS`; the outermost have themselves in place of those beyond."""
+    step = BEND_READINGS
     padded = np.pad(values, ((0, 0), (step, step)), mode="edge")
     return np.asarray(padded[:, : -2 * step] + padded[:, 2 * step :] - 2 * values)
 

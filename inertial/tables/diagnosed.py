@@ -294,9 +294,7 @@ DRIFT_MEANS = Table(
         Column("method", TEXT, "", "candidate whose effects drift"),
         Column("parameter", TEXT, "", "of a drift, as in its table of parameters"),
         Column("of", TEXT, "", "parameter of the sensor that drifts"),
-        Column(
-            "mean", DOUBLE, "of/parameter", "mean change of `of` over the recording for 1 of it"
-        ),
+        Column("mean", DOUBLE, "of/parameter", "change of `of` on average over the recording"),
     ),
 )
 PROPOSED = Table(

@@ -12,8 +12,13 @@ import numpy as np
 
 from inertial.campaign.estimates import NAMES, Estimates, Wanted
 from inertial.campaign.static_positions import StaticPosition
-from inertial.estimation.accelerometer_formulas import Upright, pooled_positions, up_and_down
-from inertial.estimation.accelerometers import Reference, StaticForce, six_position_formula
+from inertial.estimation.accelerometer_formulas import (
+    Upright,
+    pooled_positions,
+    six_position_formula,
+    up_and_down,
+)
+from inertial.estimation.accelerometers import Reference, StaticForce
 from inertial.estimation.triad import UNKNOWNS, errors_of
 from inertial.tables import AXES
 

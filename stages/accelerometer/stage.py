@@ -93,7 +93,7 @@ def accelerometer(
             shorter = equations(
                 part, reference, fitted.scatter, result, effect_sigma, fitted.random_walk, drift
             )
-            estimates.add_averaging("joint", seconds, shorter.solve_shared())
+            estimates.add_averaging(seconds, shorter.solve_shared())
         planned = [
             pair for pair in zip(positions, stops, strict=True) if pair[0].manoeuvre.do == "rest"
         ]

@@ -10,13 +10,13 @@ import pandas as pd
 from inertial import tables
 from inertial.arrays import Array
 from inertial.campaign import findings as findings
-from inertial.campaign.attitudes_by_hand import with_attitudes
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.campaign.findings import Finding
 from inertial.campaign.masked_samples import MaskedSamples
 from inertial.campaign.measurement import NOTHING, Measurement, SensorResult, measurements_of
 from inertial.campaign.observations import campaign_of
+from inertial.campaign.passages import with_attitudes
 from inertial.campaign.records import Row, rows_of
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.random_walk import measured_covariance

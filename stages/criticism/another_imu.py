@@ -16,7 +16,7 @@ from inertial.physics.motion import Motion
 from inertial.sensors import SENSORS
 from inertial.tables import AXES
 from inertial.text.messages import _
-from stages.criticism.finding_rows import TableRow, finding_id, snr_of
+from stages.criticism.finding_rows import TableRow, finding_row, snr_of
 from stages.criticism.selection import Selection
 
 MIN_CAUSES = 3  # named; one or two are what they are named
@@ -110,24 +110,20 @@ def another_imu(campaign: Campaign, selection: Selection, mount: str) -> Iterato
     drop, degrees = shown.total.drop(columns)
     there = motion.visit[np.isin(motion.run, best.runs)]
     first, last = (campaign.planned[int(visit)] for visit in (there.min(), there.max()))
-    yield (
-        "findings",
-        {
-            "id": finding_id(ANOTHER_IMU, mount),
-            "mount": mount,
-            "cause": ANOTHER_IMU,
-            "sensor": None,
-            "count": len(best.runs),
-            "size": snr_of(drop, degrees),
-            "unit": "sigma",
-            "p_value": None,
-            "severity": 3,
-            "sentence": SENTENCE.format(first=first, last=last, count=degrees, causes=len(named)),
-            "consequence": CONSEQUENCE,
-            "action": ACTION,
-            "verdict": FOUND,
-            "statistic": drop,
-            "degrees": degrees,
-            "snr": snr_of(drop, degrees),
-        },
+    yield finding_row(
+        ANOTHER_IMU,
+        mount,
+        sensor=None,
+        count=len(best.runs),
+        size=snr_of(drop, degrees),
+        unit="sigma",
+        p_value=None,
+        severity=3,
+        sentence=SENTENCE.format(first=first, last=last, count=degrees, causes=len(named)),
+        consequence=CONSEQUENCE,
+        action=ACTION,
+        verdict=FOUND,
+        statistic=drop,
+        degrees=degrees,
+        snr=snr_of(drop, degrees),
     )

@@ -29,14 +29,19 @@ from stages.criticism import block_sentences as sentences
 from stages.criticism.another_imu import another_imu
 from stages.criticism.bias_drift import drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
-from stages.criticism.finding_rows import TableRow, finding_id, member_rows, parameter_row
-from stages.criticism.jump_not_testable import jumps_not_testable
+from stages.criticism.confounded_causes import ASYMMETRY, jumps_not_testable, shared_asymmetry
+from stages.criticism.finding_rows import (
+    TableRow,
+    finding_id,
+    finding_row,
+    member_rows,
+    parameter_row,
+)
 from stages.criticism.laws import WithoutLaw, law_action
 from stages.criticism.one_manoeuvre import carrier_of_excess
 from stages.criticism.residual_structure import ACTION_IF_CARRIED, moved_by
 from stages.criticism.restarts import first_after
 from stages.criticism.selection import Selection
-from stages.criticism.shared_asymmetry import ASYMMETRY, shared_asymmetry
 
 NAMED = (FOUND, ONE_OF_CLASS, LAW)
 MAX_RIVAL_DROP = 6.0  # of chi-squared between two positions that are both possible: 95 % of 2
@@ -205,33 +210,26 @@ class BlockResults:
         else:
             sentence = sentences.cause_sentence(cause, effect, parameters, self._places(effect))
             size = cause.snr, "sigma"
-        yield (
-            "findings",
-            {
-                "id": identifier,
-                "mount": self.mount,
-                "cause": cause.effect,
-                "sensor": sensor,
-                "count": len(effect.times) if isinstance(effect, Restarts) else 1,
-                "size": size[0],
-                "unit": size[1],
-                "p_value": cause.p_value,
-                "severity": 2,
-                "sentence": sentence,
-                "consequence": sentences.CONSEQUENCE
-                if clear
-                else sentences.CONSEQUENCE_WITHOUT_LAW,
-                "action": self._action(cause, parameters)
-                + sentences.split_sentence(split if clear else None),
-                "verdict": cause.verdict,
-                "statistic": cause.statistic,
-                "degrees": cause.degrees,
-                "threshold": cause.threshold or None,
-                "snr": cause.snr,
-                "split_manoeuvre": split.manoeuvre if split else None,
-                "split_snr": split.separation if split else None,
-                "split_stated": clear if split else None,
-            },
+        yield finding_row(
+            cause.effect,
+            self.mount,
+            sensor=sensor,
+            count=len(effect.times) if isinstance(effect, Restarts) else 1,
+            size=size[0],
+            unit=size[1],
+            p_value=cause.p_value,
+            sentence=sentence,
+            consequence=sentences.CONSEQUENCE if clear else sentences.CONSEQUENCE_WITHOUT_LAW,
+            action=self._action(cause, parameters)
+            + sentences.split_sentence(split if clear else None),
+            verdict=cause.verdict,
+            statistic=cause.statistic,
+            degrees=cause.degrees,
+            threshold=cause.threshold or None,
+            snr=cause.snr,
+            split_manoeuvre=split.manoeuvre if split else None,
+            split_snr=split.separation if split else None,
+            split_stated=clear if split else None,
         )
         if cause.effect == drift_name(sensor):
             others = self.lawless.members[sensor]
@@ -283,8 +281,8 @@ class BlockResults:
             return []
         total, family = self.selection.evidence.total, self.selection.families[effect.name]
         others = [i for n, c in self.causes.items() if n != effect.name for i in c.columns]
-        searched = next(s for s in self.selection.searched if s.name == effect.name)
-        drops = [total.drop([*columns, *others])[0] for columns in searched.candidates]
+        candidates = self.selection.search_of(effect.name).candidates
+        drops = [total.drop([*columns, *others])[0] for columns in candidates]
         near = [i for i in np.argsort(drops)[::-1] if drops[i] > max(drops) - MAX_RIVAL_DROP]
         if isinstance(effect, SettingIn):
             near.sort(key=lambda i: family[i].at or 0)
@@ -375,21 +373,16 @@ def unexplained_rows(
         if carrier is not None:
             sentence += WITHOUT.format(manoeuvre=carrier)
             action = ACTION_IF_CARRIED.format(manoeuvres=carrier)
-        yield (
-            "findings",
-            {
-                "id": finding_id(f"unexplained/{sensor}", mount),
-                "mount": mount,
-                "cause": "unexplained",
-                "sensor": sensor,
-                "count": 1,
-                "size": ratio,
-                "unit": "sigma",
-                "p_value": p_value,
-                "severity": 2,
-                "sentence": sentence,
-                "consequence": SCATTER,
-                "action": action,
-                "moves": carrier and moved_by(campaign, sensor, [carrier], effects),
-            },
+        yield finding_row(
+            "unexplained",
+            mount,
+            id=finding_id(f"unexplained/{sensor}", mount),
+            sensor=sensor,
+            size=ratio,
+            unit="sigma",
+            p_value=p_value,
+            sentence=sentence,
+            consequence=SCATTER,
+            action=action,
+            moves=carrier and moved_by(campaign, sensor, [carrier], effects),
         )

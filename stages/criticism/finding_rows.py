@@ -20,6 +20,18 @@ def finding_id(cause: str, mount: str, *places: str) -> str:
     return "/".join(["criticism", with_mount(cause, mount), *places])
 
 
+def finding_row(cause: str, mount: str, **columns: Any) -> TableRow:
+    """A row of `findings`: one, of severity 2, called by its cause, unless `columns` differ."""
+    row = {
+        "id": finding_id(cause, mount),
+        "mount": mount,
+        "cause": cause,
+        "count": 1,
+        "severity": 2,
+    }
+    return "findings", row | columns
+
+
 def member_rows(
     finding: str,
     mount: str,

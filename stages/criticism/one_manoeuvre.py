@@ -22,7 +22,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import p_is
-from stages.criticism.finding_rows import TableRow, finding_id, member_rows, snr_of
+from stages.criticism.finding_rows import TableRow, finding_id, finding_row, member_rows, snr_of
 from stages.criticism.residual_structure import (
     ACTION_IF_CARRIED,
     CAUSE,
@@ -131,32 +131,27 @@ def off_rows(selection: Selection, tested: Tested, mount: str) -> Iterator[Table
         names = listed([in_words(name) for name in off.members])
         identifier = finding_id(f"{CAUSE}/{sensor}", mount)
         moves = moved_by(selection.campaign, sensor, [off.manoeuvre])
-        yield (
-            "findings",
-            {
-                "id": identifier,
-                "mount": mount,
-                "cause": CAUSE,
-                "sensor": sensor,
-                "count": 1,
-                "size": drop**0.5,
-                "unit": "sigma",
-                "p_value": chance,
-                "severity": 2,
-                "sentence": OFF.format(
-                    sensors=PLURAL[sensor],
-                    manoeuvre=off.manoeuvre,
-                    p_value=p_is(chance),
-                    effects=names,
-                ),
-                "consequence": consequence([off.manoeuvre], moves),
-                "action": ACTION_IF_CARRIED.format(manoeuvres=off.manoeuvre),
-                "verdict": UNKNOWN_STRUCTURE,
-                "statistic": drop,
-                "degrees": degrees,
-                "snr": snr_of(drop, degrees),
-                "moves": moves,
-            },
+        yield finding_row(
+            CAUSE,
+            mount,
+            id=identifier,
+            sensor=sensor,
+            size=drop**0.5,
+            unit="sigma",
+            p_value=chance,
+            sentence=OFF.format(
+                sensors=PLURAL[sensor],
+                manoeuvre=off.manoeuvre,
+                p_value=p_is(chance),
+                effects=names,
+            ),
+            consequence=consequence([off.manoeuvre], moves),
+            action=ACTION_IF_CARRIED.format(manoeuvres=off.manoeuvre),
+            verdict=UNKNOWN_STRUCTURE,
+            statistic=drop,
+            degrees=degrees,
+            snr=snr_of(drop, degrees),
+            moves=moves,
         )
         yield from member_rows(identifier, mount, off.members)
         row = {"finding": identifier, "mount": mount, "rank": 1, "manoeuvre": off.manoeuvre}

@@ -20,6 +20,7 @@ from stages.criticism import oscillation_sentences as sentences
 from stages.criticism.finding_rows import (
     TableRow,
     finding_id,
+    finding_row,
     member_rows,
     parameter_row,
     snr_of,
@@ -143,30 +144,25 @@ class OscillationResults:
     def _finding(self, named: NamedOscillation) -> Iterator[TableRow]:
         oscillation, ripple, members = named.oscillation, named.ripple, named.oscillation.effects
         several = len(members) > 1
-        yield (
-            "findings",
-            {
-                "id": named.finding,
-                "mount": self.mount,
-                "cause": named.effect,
-                "sensor": "gyro",
-                "count": 1,
-                "size": _size_of(oscillation, ripple),
-                "unit": "rad" if ripple else "rad/s",
-                "p_value": oscillation.p_value,
-                "severity": 2,
-                "sentence": self._sentence(oscillation),
-                "consequence": sentences.consequence(oscillation),
-                "action": sentences.action(oscillation),
-                "verdict": named.verdict,
-                "statistic": named.statistic,
-                "degrees": named.degrees,
-                "snr": named.snr,
-                "moves": named.moves,
-                "split_manoeuvre": sentences.SPLIT if several else None,
-                "split_snr": sqrt(named.statistic / len(oscillation.lines)) if several else None,
-                "split_stated": False if several else None,
-            },
+        yield finding_row(
+            named.effect,
+            self.mount,
+            id=named.finding,
+            sensor="gyro",
+            size=_size_of(oscillation, ripple),
+            unit="rad" if ripple else "rad/s",
+            p_value=oscillation.p_value,
+            sentence=self._sentence(oscillation),
+            consequence=sentences.consequence(oscillation),
+            action=sentences.action(oscillation),
+            verdict=named.verdict,
+            statistic=named.statistic,
+            degrees=named.degrees,
+            snr=named.snr,
+            moves=named.moves,
+            split_manoeuvre=sentences.SPLIT if several else None,
+            split_snr=sqrt(named.statistic / len(oscillation.lines)) if several else None,
+            split_stated=False if several else None,
         )
         likelier = float(expit(oscillation.log_odds))
         probability = (likelier, 1 - likelier) if several else (1.0,)

@@ -30,7 +30,14 @@ from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, significant
 from inertial.text.parameters import AXES
-from stages.criticism.finding_rows import ONLY_CONSISTENT, TableRow, finding_id, member_rows, snr_of
+from stages.criticism.finding_rows import (
+    ONLY_CONSISTENT,
+    TableRow,
+    finding_id,
+    finding_row,
+    member_rows,
+    snr_of,
+)
 
 PRIOR_SIGMA = 1e4  # of a named effect's parameters, in their typical sizes
 BINS = 60  # of a figure
@@ -396,27 +403,23 @@ def _finding(
         sentence.append(ONLY_CONSISTENT.format(effects=names))
     moves = moved_by(tested.fitted.campaign, sensor, carried, tested.fitted.named)
     identifier = finding_id(f"{CAUSE}/{sensor}", mount)
-    yield (
-        "findings",
-        {
-            "id": identifier,
-            "mount": mount,
-            "cause": CAUSE,
-            "sensor": sensor,
-            "count": len(tests),
-            "size": best.statistic**0.5,
-            "unit": "sigma",
-            "p_value": best.p_value,
-            "severity": 2,
-            "sentence": " ".join(sentence),
-            "consequence": consequence(carried, moves),
-            "action": action,
-            "verdict": UNKNOWN_STRUCTURE,
-            "statistic": best.statistic,
-            "degrees": best.degrees,
-            "moves": moves,
-            "snr": snr_of(best.statistic, best.degrees),
-        },
+    yield finding_row(
+        CAUSE,
+        mount,
+        id=identifier,
+        sensor=sensor,
+        count=len(tests),
+        size=best.statistic**0.5,
+        unit="sigma",
+        p_value=best.p_value,
+        sentence=" ".join(sentence),
+        consequence=consequence(carried, moves),
+        action=action,
+        verdict=UNKNOWN_STRUCTURE,
+        statistic=best.statistic,
+        degrees=best.degrees,
+        moves=moves,
+        snr=snr_of(best.statistic, best.degrees),
     )
     yield from member_rows(identifier, mount, consistent)
     for rank, manoeuvre in enumerate(carried, 1):

@@ -142,9 +142,8 @@ def _instead(selection: Selection, cause: Cause) -> tuple[Restarts | None, list[
     if cause.effect not in JUMPS | RESTARTS or name not in selection.families:
         return None, []
     restarts = selection.effect(name, 0)
-    searched = next(one for one in selection.searched if one.name == name)
     assert isinstance(restarts, Restarts)
-    return restarts, list(searched.candidates[0])
+    return restarts, list(selection.search_of(name).candidates[0])
 
 
 def named_at_gap(selection: Selection) -> Selection:

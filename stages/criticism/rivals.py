@@ -123,7 +123,7 @@ def with_further_jumps(selection: Selection) -> Selection:
 
 def _log_evidence_of_jumps(selection: Selection, jump: str, rest: walk_odds.Equations) -> float:
     """Of as many further jumps as are likeliest, each given those before."""
-    searched = next(one for one in selection.searched if one.name == jump)
+    searched = selection.search_of(jump)
     whole = np.diag(selection.evidence.observable().total.information)
     evidence = best = 0.0
     for _ in range(MAX_FURTHER_JUMPS):

@@ -72,8 +72,7 @@ class Selection:
 
     def half_waves(self, sensor: str) -> Sequence[Sequence[int]]:
         """The columns of the half waves of each axis."""
-        drift = next(each for each in self.searched if each.name == drift_name(sensor))
-        return drift.candidates[: walk_odds.AXES]
+        return self.search_of(drift_name(sensor)).candidates[: walk_odds.AXES]
 
     @property
     def log_evidence(self) -> float:
@@ -92,6 +91,10 @@ class Selection:
         own = [searched for searched in self.searched if searched.name in effects]
         scanned = [(searched.candidates, self.prior(searched)) for searched in own]
         return first.log_evidence + walk_odds.laws(first.rest, scanned)
+
+    def search_of(self, name: str) -> SearchedEffect:
+        """The columns that an effect was searched with."""
+        return next(one for one in self.searched if one.name == name)
 
     def effect(self, name: str, value: int) -> Effect:
         """A candidate."""
@@ -160,7 +163,7 @@ class Selection:
         A time at which nothing is excited is as likely as its neighbours, so all values of the scan
         count, with their likelihood and the share of the range that each stands for.
         """
-        searched = next(one for one in self.searched if one.name == cause.effect)
+        searched = self.search_of(cause.effect)
         total = self.beside_others(cause).total
         drops = np.array([total.drop(columns)[0] for columns in searched.candidates])
         at = np.array([one.at for one in self.families[cause.effect]], np.float64)

@@ -30,9 +30,13 @@ from stages.criticism.oscillation_removal import (
 )
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations
+from stages.criticism.position_scatter import (
+    PositionScatter,
+    rest_scatter_rows,
+    select_beside_scatter,
+)
 from stages.criticism.random_walk_results import other_scores, random_walk_rows, walk_at_rest_rows
 from stages.criticism.residual_structure import Tested, structure_rows, structure_tests
-from stages.criticism.rest_scatter import rest_scatter_rows
 from stages.criticism.restarts import (
     at_changes,
     beginning_again,
@@ -42,8 +46,7 @@ from stages.criticism.restarts import (
     times_of_gaps,
 )
 from stages.criticism.selection import Selection, pooled_evidence_rows
-from stages.criticism.set_position_scatter import PositionScatter, select_beside_scatter
-from stages.criticism.step_results import step_rows
+from stages.criticism.step_in_turn import step_rows
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_functions import select_with_temperature
 
@@ -51,6 +54,9 @@ from stages.criticism.temperature_functions import select_with_temperature
 # structure, compares them with the noise, searches the spectrum, and functions of temperature.
 BLOCKS_SHARE, STRUCTURE_SHARE, UNEXPLAINED_SHARE = 0.5, 0.2, 0.1
 SPECTRUM_SHARE, TEMPERATURE_SHARE = 0.1, 0.1
+
+# The named effects, the tests of what they leave, the campaign of both; a scatter of positions.
+Selected = tuple[tuple[Selection, Tested, Campaign], PositionScatter | None]
 
 
 def criticism(
@@ -88,32 +94,17 @@ def _of_mount(
     spectrum = replace(spectrum, oscillations=with_rests(turns, spectrum.oscillations))
     quiet = without_lines(data.blocks, data.plan, turns, spectrum.oscillations)
     measured = campaign_of(replace(data, blocks=quiet))
-    levels = (level * BLOCKS_SHARE, level * STRUCTURE_SHARE)
-    select = partial(
-        _selected, measured, partial(_without, data=replace(data, blocks=quiet)), level, degrees
-    )
+    without = partial(_without, data=replace(data, blocks=quiet))
+    select = partial(_selected, measured, without, level, degrees)
     at_gaps = times_of_gaps(measured, gaps, data.clocks)
-    (selection, tested, campaign), scatter = select(at_gaps)
-    if (times := at_changes(selection, levels[0])) is not None:
-        at_gaps = times
-        (selection, tested, campaign), scatter = select(at_gaps)
-    if at_gaps and selection.named.causes:
-        again = select(at_gaps, warm_up_at=at_gaps)
-        if is_better(again[0][0], selection):
-            (selection, tested, campaign), scatter = again
+    (selection, tested, campaign), scatter = _with_restarts(select, at_gaps, level * BLOCKS_SHARE)
     selection = named_at_gap(selection)
     selection = selection.without_certain_names([sensor for sensor in SENSORS if tested.of(sensor)])
     selection = selection.consistent_with_rounding({s: data.noise.rounded(s) for s in SENSORS})
     for sensor, drift in measured.drifts.items():
         if drift:
-            yield (
-                "drifts_at_rest",
-                {
-                    "mount": mount,
-                    "sensor": sensor,
-                    "kept": campaign.drifts[sensor] is drift,
-                },
-            )
+            kept = campaign.drifts[sensor] is drift
+            yield "drifts_at_rest", {"mount": mount, "sensor": sensor, "kept": kept}
     if scatter is not None:
         yield from scatter.rows(mount)
     random_walks = random_walks_with_sigmas(selection.campaign, selection.fitted)
@@ -136,7 +127,8 @@ def _of_mount(
     moves = shifts(data, turns, spectrum.oscillations, campaign)
     yield from OscillationResults(spectrum, mount, moves).rows()
     moved = shifts_by_steps(data, spectrum.steps, campaign, quiet)
-    yield from step_rows(spectrum, moved, {m.name: m.log for m in data.plan}, mount)
+    logs = {m.name: m.log for m in data.plan}
+    yield from step_rows(spectrum.steps, len(spectrum.turns), moved, logs, mount)
     at_rest_of_gyros = measured.drifts["gyro"]
     yield from other_scores(
         random_walks.get("gyro"),
@@ -153,6 +145,22 @@ def _of_mount(
     yield from pooled_evidence_rows(selection, mount)
 
 
+def _with_restarts(select: Callable[..., Selected], at_gaps: list[float], level: float) -> Selected:
+    """What is selected with restarts at those gaps alone at which the biases change.
+
+    And with a warm-up that begins again there, where that is likelier. `level`: of a change.
+    """
+    found = select(at_gaps)
+    if (times := at_changes(found[0][0], level)) is not None:
+        at_gaps = times
+        found = select(at_gaps)
+    if at_gaps and found[0][0].named.causes:
+        again = select(at_gaps, warm_up_at=at_gaps)
+        if is_better(again[0][0], found[0][0]):
+            return again
+    return found
+
+
 def _selected(
     measured: Campaign,
     without: Callable[[Campaign, str], Campaign],
@@ -160,7 +168,7 @@ def _selected(
     degrees: float,
     at_gaps: Sequence[float],
     warm_up_at: Sequence[float] = (),
-) -> tuple[tuple[Selection, Tested, Campaign], PositionScatter | None]:
+) -> Selected:
     """The named effects, tests, their campaign, scatter.
 
     at_gaps, warm_up_at : s since the first sample, where the biases may be others, and where a

@@ -5,15 +5,21 @@ ripples of "all" turns, at frequencies of which none is there. It is found first
 is left out of the search for lines.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import erfc, sqrt
+from math import degrees, erfc, sqrt
 
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.campaign.hypotheses import STEP_IN_TURN
 from inertial.campaign.steady_residuals import SteadyTurn
+from inertial.model_selection.cause import FOUND
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.tables import AXES
+from inertial.text.messages import _
+from inertial.text.numbers import fixed, plus_minus, significant
+from stages.criticism.finding_rows import TableRow, finding_id, finding_row
 
 MAX_SECONDS = 1.0  # that a step takes: a slower one is no more than a bias that drifts
 MAX_SHARE = 1 / 8  # of a turn, that it takes: the rest tells how the residuals scatter
@@ -28,7 +34,6 @@ MAX_STEPS = 3  # in one turn: what has more is no step, but rings or is noisy th
 MAX_TURNS_SHARE = 1 / 4  # of the turns, that have one: what more have is of the table
 MIN_OF_TABLE = 0.5  # of its size, that other turns have at the same angle of the table
 ROUNDING = 1e-6  # of the largest change: below it readings are alike, as counts are that toggle
-NORMAL = 1.4826  # sigma of a normal distribution by its median absolute deviation
 
 
 @dataclass(frozen=True)
@@ -135,7 +140,7 @@ def _largest(turn: SteadyTurn) -> StepInTurn | None:
 
 def _scatter(values: Array) -> float:
     """Sigma of most values, whatever a few do."""
-    return NORMAL * float(np.median(np.abs(values - np.median(values))))
+    return MAD_TO_SIGMA * float(np.median(np.abs(values - np.median(values))))
 
 
 def _means(record: Array, width: int) -> Array:
@@ -236,3 +241,66 @@ def _of_table(step: StepInTurn, turn: SteadyTurn, turns: Sequence[SteadyTurn]) -
     if not sizes or not np.isfinite(weights).all():
         return False
     return bool(np.average(sizes, weights=weights) / own > MIN_OF_TABLE)
+
+
+# ---- Their findings.
+
+
+SENTENCE = _(
+    "In {manoeuvre} alone the case turns further than the table by {size}° about {axis} within "
+    "{seconds} s, at {time} s of the log: the IMU slips in its fixture, or the table jumps once."
+)
+CONSEQUENCE = _(
+    "The angle of this turn is off by so much; if the IMU slipped, its axes point elsewhere in all "
+    "that follows."
+)
+ACTION = _(
+    "The stretch is left out of the search for oscillations. Fasten the IMU, look at the drive of "
+    "the table, and record the turn again."
+)
+
+
+def step_rows(
+    steps: Sequence[StepInTurn],
+    turns: int,
+    moves: Sequence[float | None],
+    logs: Mapping[str, str],
+    mount: str,
+) -> Iterator[TableRow]:
+    """A finding for each step; `turns`: how many were searched.
+
+    `moves`: the largest shift of a parameter by each, in its sigma; `logs`: of the manoeuvres.
+    """
+    for number, (step, moved) in enumerate(zip(steps, moves, strict=True)):
+        yield finding_row(
+            STEP_IN_TURN,
+            mount,
+            id=finding_id(STEP_IN_TURN, mount, *([str(number + 1)] if number else [])),
+            sensor="gyro",
+            axis=step.axis,
+            log=logs[step.manoeuvre],
+            manoeuvre=step.manoeuvre,
+            from_s=step.from_s,
+            to_s=step.to_s,
+            size=abs(step.size),
+            unit="rad",
+            p_value=step.chance(turns),
+            sentence=_sentence(step),
+            consequence=CONSEQUENCE,
+            action=ACTION,
+            verdict=FOUND,
+            statistic=step.sigmas**2,
+            degrees=1,
+            snr=step.sigmas,
+            moves=moved,
+        )
+
+
+def _sentence(step: StepInTurn) -> str:
+    return SENTENCE.format(
+        manoeuvre=step.manoeuvre,
+        size=plus_minus(degrees(step.size), degrees(step.sigma)),
+        axis=step.axis,
+        seconds=significant(step.to_s - step.from_s, 2),
+        time=fixed((step.from_s + step.to_s) / 2, 2),
+    )

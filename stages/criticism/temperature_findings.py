@@ -20,11 +20,12 @@ from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTUR
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, p_is, plus_minus, significant
-from inertial.text.units import DEGREE, STANDARD_GRAVITY
+from inertial.text.units import DEGREE, ICE_POINT, STANDARD_GRAVITY
 from stages.criticism.finding_rows import (
     ONLY_CONSISTENT,
     TableRow,
     finding_id,
+    finding_row,
     member_rows,
     parameter_row,
     snr_of,
@@ -32,7 +33,6 @@ from stages.criticism.finding_rows import (
 from stages.criticism.temperature_models import (
     ACCELEROMETERS,
     GYROS,
-    ICE_POINT,
     MIN_SENSITIVITY,
     SCALE,
     AxisModel,
@@ -140,32 +140,27 @@ def _finding(dependence: TemperatureDependence, mount: str) -> Iterator[TableRow
     split = _split(dependence)
     cause = UNKNOWN_STRUCTURE if dependence.structured else next(iter(effects))
     identifier = finding_id(f"temperature/{sweep.manoeuvre.name}/{sweep.kind}", mount)
-    yield (
-        "findings",
-        {
-            "id": identifier,
-            "mount": mount,
-            "cause": cause,
-            "sensor": sweep.sensor,
-            "axis": best.axis,
-            "log": sweep.manoeuvre.log,
-            "manoeuvre": sweep.manoeuvre.name,
-            "count": 1,
-            "size": best.change,
-            "unit": KINDS[sweep.kind].si,
-            "p_value": p_value,
-            "severity": 2,
-            "sentence": _sentence(dependence, effects),
-            "consequence": _consequence(dependence),
-            "action": _action(dependence, split),
-            "verdict": verdict,
-            "statistic": statistic,
-            "degrees": count,
-            "snr": snr_of(statistic, count),
-            "split_manoeuvre": split,
-            "split_stated": True,
-            "predictor": "temperature",
-        },
+    yield finding_row(
+        cause,
+        mount,
+        id=identifier,
+        sensor=sweep.sensor,
+        axis=best.axis,
+        log=sweep.manoeuvre.log,
+        manoeuvre=sweep.manoeuvre.name,
+        size=best.change,
+        unit=KINDS[sweep.kind].si,
+        p_value=p_value,
+        sentence=_sentence(dependence, effects),
+        consequence=_consequence(dependence),
+        action=_action(dependence, split),
+        verdict=verdict,
+        statistic=statistic,
+        degrees=count,
+        snr=snr_of(statistic, count),
+        split_manoeuvre=split,
+        split_stated=True,
+        predictor="temperature",
     )
     yield from member_rows(identifier, mount, list(effects))
     for parameter in _parameters(dependence):

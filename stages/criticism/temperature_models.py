@@ -11,7 +11,7 @@ from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
 from inertial.estimation.regression import Curve, Knee, curve_of, knee_of
 from inertial.text.messages import _
-from inertial.text.units import STANDARD_GRAVITY
+from inertial.text.units import ICE_POINT, STANDARD_GRAVITY
 from stages.criticism.finding_rows import TableRow
 
 # ---- Means at temperatures, without time: readings at rest, and scale factors of turns.
@@ -147,7 +147,6 @@ def _at(turn: Sweep, rest: Sweep, i: int) -> Array:
 
 # ---- The polynomial that each axis follows, and its residuals.
 
-ICE_POINT = 273.15  # K
 MIN_LOG_ODDS = float(np.log(20))  # of a knee
 MIN_SENSITIVITY = 0.5  # cosine or sine: of an accelerometer to its scale factor, or to a tilt
 

@@ -4,9 +4,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from inertial.campaign.competition import ExplainedFindings
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
-from inertial.campaign.effect_sizes import sizes_of_result
 from inertial.campaign.hypotheses import Findings
-from inertial.campaign.records import Row, rows_of
+from inertial.campaign.records import Row, rows_of, sizes_of_result
 from inertial.effects import KNOWN, TEMPERATURE_MODELS
 from inertial.effects.restarts import Restarts
 from inertial.text.parameters import AXES

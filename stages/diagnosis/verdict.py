@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import degrees
 
-from inertial.campaign.hypotheses import MODEL
+from inertial.campaign.hypotheses import MODEL, TABLE_MOVING
 from inertial.effects import KNOWN
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed, significant
-from inertial.text.parameters import CROSS, SCALE, sign_of
-from inertial.text.units import ICE_POINT, quantity
+from inertial.text.parameters import CROSS, FREE, SCALE, sign_of
+from inertial.text.units import ARC_SECOND, ICE_POINT, STANDARD_GRAVITY, quantity
 from stages.diagnosis.causes import (
     CURVE,
     INTERPOLATED,
@@ -24,7 +24,6 @@ from stages.diagnosis.causes import (
     REPAIRED,
     Cause,
 )
-from stages.diagnosis.rests_that_move import bounded
 from stages.diagnosis.sensor_results import TWELVE, SensorResult
 
 USABLE, WITHIN_LIMITS, ON_CONDITION, NOT_USABLE = (
@@ -80,7 +79,7 @@ def verdict(
     `only_noise`: whether the campaign is a recording of the noise in one attitude.
     """
     own = [
-        bounded(cause.of(result.sensor), result)
+        _bounded_tilt(cause.of(result.sensor), result)
         for cause in causes
         if result.sensor in cause.sensors
     ]
@@ -103,12 +102,8 @@ def verdict(
     conditions = list(dict.fromkeys(cause.condition for cause in own if cause.condition))
     if conditions:
         unconfirmed = [cause for cause in own if cause.condition]
-        set_right = _(
-            "{sensors}: {causes}. Set right; the result is valid on condition: {conditions}."
-        )
-        assumed = _("{sensors}: {causes}. The result is valid on condition: {conditions}.")
         applied = any(cause.cure == REPAIRED for cause in unconfirmed)
-        sentence = (set_right if applied else assumed).format(
+        sentence = (IF_SET_RIGHT if applied else IF_ASSUMED).format(
             sensors=sensors,
             causes=_names(unconfirmed),
             conditions="; ".join(text.rstrip(".") for text in conditions),
@@ -130,6 +125,21 @@ def verdict(
             sensors=sensors,
         ),
     )
+
+
+def _bounded_tilt(cause: Cause, result: SensorResult) -> Cause:
+    """The cause with what it moves of the accelerometers at most, where that is hardly anything.
+
+    By |f| = g a rest counts by the length of its mean force alone, which a tilt by θ shortens by no
+    more than g θ²/2; as if all of it went into the least uncertain bias.
+    """
+    if cause.main.cause != TABLE_MOVING or cause.cure != NONE or cause.moves is not None:
+        return cause
+    if result.sensor != "accel" or result.chosen.method != FREE or not result.bias_sigma:
+        return cause
+    tilts = [abs(each.cause.row["size"] or 0.0) * ARC_SECOND for each in cause.members]
+    moves = sum(STANDARD_GRAVITY * tilt**2 / 2 for tilt in tilts) / result.bias_sigma
+    return replace(cause, moves=moves) if moves < MAX_HARMLESS_MOVE else cause
 
 
 def _coarse(result: SensorResult) -> str:

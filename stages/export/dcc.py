@@ -30,11 +30,11 @@ from stages.export.dcc_results import (
     add_conformity,
     add_data,
     add_line,
+    add_name,
     add_noise,
     add_real,
     add_result,
     add_rich,
-    add_text,
     unusable,
 )
 
@@ -123,7 +123,7 @@ def dcc(content: Row, stated: Stated) -> str:
 
 def _software(parent: Element, content: Row) -> None:
     software = add(add(parent, "dcc:dccSoftware"), "dcc:software")
-    add_text(software, "dcc:name", content["format"])
+    add_name(software, content["format"])
     codes = [made["code"] for made in content["made_by"]]
     add_line(software, "dcc:release", codes[-1] if codes else None)
     add(software, "dcc:type", "application")
@@ -151,7 +151,7 @@ def _core(parent: Element, content: Row, stated: Stated) -> None:
 
 def _item(parent: Element, content: Row, stated: Stated) -> None:
     item = add(add(parent, "dcc:items"), "dcc:item")
-    add_text(item, "dcc:name", content["instrument"])
+    add_name(item, content["instrument"])
     described = [
         f"{name}: {stated.text(key) or NOT_STATED}"
         for key, name in (("item.condition", _("condition")), ("item.axes", _("axes of the case")))
@@ -159,11 +159,11 @@ def _item(parent: Element, content: Row, stated: Stated) -> None:
     add_rich(item, "dcc:description", *described)
     if firmware := stated.text("item.firmware"):
         software = add(add(item, "dcc:installedSoftwares"), "dcc:software")
-        add_text(software, "dcc:name", _("firmware"))
+        add_name(software, _("firmware"))
         add_line(software, "dcc:release", firmware)
         add(software, "dcc:type", "firmware")
     if maker := stated.text("item.maker"):
-        add_text(add(item, "dcc:manufacturer"), "dcc:name", maker)
+        add_name(add(item, "dcc:manufacturer"), maker)
     if part := stated.text("item.part"):
         add_line(item, "dcc:model", part)
     serial = (content["serial"], _("serial number"), "basic_serialNumber")
@@ -179,7 +179,7 @@ def _identifications(
         one = add(identifications, "dcc:identification", refType=kind)
         add(one, "dcc:issuer", issuer)
         add_line(one, "dcc:value", value)
-        add_text(one, "dcc:name", name)
+        add_name(one, name)
 
 
 def _laboratory(parent: Element, content: Row, stated: Stated) -> None:
@@ -192,7 +192,7 @@ def _laboratory(parent: Element, content: Row, stated: Stated) -> None:
 
 
 def _contact(parent: Element, name: str | None, address: str | None) -> None:
-    add_text(parent, "dcc:name", name)
+    add_name(parent, name)
     add_rich(add(parent, "dcc:location"), "dcc:further", address or NOT_STATED)
 
 
@@ -201,7 +201,7 @@ def _persons(parent: Element, stated: Stated) -> None:
     for item, role in (("released_by", _("released by")), ("calibrated_by", _("calibrated by"))):
         if item == "released_by" or stated.text(item):
             one = add(persons, "dcc:respPerson")
-            add_text(add(one, "dcc:person"), "dcc:name", stated.text(item))
+            add_name(add(one, "dcc:person"), stated.text(item))
             add_line(one, "dcc:role", role)
             add(one, "dcc:mainSigner", "true" if item == "released_by" else "false")
 
@@ -236,7 +236,7 @@ def _measurements(parent: Element, content: Row, stated: Stated) -> None:
     for number, mount in enumerate(content["mounts"], 1):
         name = _("Errors of the sensors, mount {mount}", mount=mount["mount"])
         result = add(parent, "dcc:measurementResult")
-        add_text(result, "dcc:name", name if several else _("Errors of the sensors"))
+        add_name(result, name if several else _("Errors of the sensors"))
         add_rich(result, "dcc:description", *content["equation"].values())
         _method(result, [mount[kind] for kind in TRIADS], stated)
         _equipment(result, content, stated)
@@ -250,9 +250,9 @@ def _measurements(parent: Element, content: Row, stated: Stated) -> None:
         add_noise(parent, content["noise"])
     if not len(parent):
         result = add(parent, "dcc:measurementResult")
-        add_text(result, "dcc:name", NO_VALUES)
+        add_name(result, NO_VALUES)
         only = add(add(result, "dcc:results"), "dcc:result")
-        add_text(only, "dcc:name", NO_VALUES)
+        add_name(only, NO_VALUES)
         add_data(only, content["not_exported"] or NO_VALUES)
 
 
@@ -262,7 +262,7 @@ def _method(parent: Element, triads: Sequence[Row], stated: Stated) -> None:
     )
     version = stated.text("procedure.version")
     name = stated.text("procedure.name") or NOT_STATED
-    add_text(method, "dcc:name", f"{name}, {version}" if version else name)
+    add_name(method, f"{name}, {version}" if version else name)
     deviations = stated.text("procedure.deviations") or NOT_STATED
     estimated = [
         f"{sensors}: {triad['method']} ({triad['why_this_method']})"
@@ -282,7 +282,7 @@ def _equipment(parent: Element, content: Row, stated: Stated) -> None:
     equipment = add(parent, "dcc:measuringEquipments")
     for row in stated.standards:
         one = add(equipment, "dcc:measuringEquipment", refType="basic_referenceStandard")
-        add_text(one, "dcc:name", row["name"])
+        add_name(one, row["name"])
         words = [
             _("realises: {quantity}", quantity=REALISES[row["realises"]]),
             _("calibrated by: {laboratory}", laboratory=row["issued_by"] or NOT_STATED),
@@ -294,7 +294,7 @@ def _equipment(parent: Element, content: Row, stated: Stated) -> None:
         _identifications(one, "calibrationLaboratory", [number, of])
     if not {"angle", "rate"} & {row["realises"] for row in stated.standards}:
         one = add(equipment, "dcc:measuringEquipment", refType="basic_referenceStandard")
-        add_text(one, "dcc:name", content["table"])
+        add_name(one, content["table"])
 
 
 def _conditions(parent: Element, content: Row, stated: Stated) -> None:
@@ -319,7 +319,7 @@ def _conditions(parent: Element, content: Row, stated: Stated) -> None:
     conditions = add(parent, "dcc:influenceConditions")
     for name, origin, values, uncertainty in found:
         condition = add(conditions, "dcc:influenceCondition")
-        add_text(condition, "dcc:name", name)
+        add_name(condition, name)
         add_rich(condition, "dcc:description", origin)
         data = add(condition, "dcc:data")
         for value in values:

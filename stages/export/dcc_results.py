@@ -188,9 +188,9 @@ NO_VALUES = _("No values")
 CONFORMS = {"conforms": "pass", "does_not_conform": "fail"}  # not_assessed: neither
 
 
-def add_text(parent: Element, tag: str, text: str | None) -> None:
+def add_name(parent: Element, text: str | None) -> None:
     """A name; `not stated` where there is none."""
-    add(add(parent, tag), "dcc:content", text or NOT_STATED)
+    add(add(parent, "dcc:name"), "dcc:content", text or NOT_STATED)
 
 
 def add_rich(parent: Element, tag: str, *paragraphs: str) -> None:
@@ -215,7 +215,7 @@ def unusable(triad: Row) -> bool:
 def add_result(parent: Element, identifier: str, sensors: str, triad: Row) -> None:
     """M, bias and effects of three sensors: values, U and covariance under their symbols."""
     result = add(parent, "dcc:result")
-    add_text(result, "dcc:name", _("Parameters of the {sensors}", sensors=sensors))
+    add_name(result, _("Parameters of the {sensors}", sensors=sensors))
     if unusable(triad):
         add_data(result, triad["sentence"])
         return
@@ -224,13 +224,11 @@ def add_result(parent: Element, identifier: str, sensors: str, triad: Row) -> No
     names = [name.rpartition("/")[2] for name in triad["covariance"]["names"]]
     if names:
         quantity = add(data, "dcc:quantity", id=identifier, refType=MEASURED)
-        add_text(
-            quantity, "dcc:name", _("Matrix M, bias, and effects of the {sensors}", sensors=sensors)
-        )
+        add_name(quantity, _("Matrix M, bias, and effects of the {sensors}", sensors=sensors))
         add_list(quantity, [own.pop(name) for name in names], triad["covariance"]["value"])
     if triad["inverse"]["value"] is not None:
         quantity = add(data, "dcc:quantity", refType=MEASURED)
-        add_text(quantity, "dcc:name", _("Inverse of M"))
+        add_name(quantity, _("Inverse of M"))
         add_list(quantity, [*_matrix("inverse", triad["inverse"]).values()])
     for value in own.values():  # constants of effects
         factor, its_unit = CONSTANTS.get(value.unit, (1.0, value.unit))
@@ -277,9 +275,9 @@ def _matrix(symbol: str, matrix: Row) -> dict[str, Value]:
 def add_noise(parent: Element, noise: Sequence[Row]) -> None:
     """White noise of each channel as density."""
     result = add(parent, "dcc:measurementResult")
-    add_text(result, "dcc:name", _("Noise of the readings"))
+    add_name(result, _("Noise of the readings"))
     only = add(add(result, "dcc:results"), "dcc:result")
-    add_text(only, "dcc:name", _("White noise of each channel, density"))
+    add_name(only, _("White noise of each channel, density"))
     quantity = add(add(only, "dcc:data"), "dcc:quantity", id="noise", refType=MEASURED)
     rows = [Value(row["channel"], row["density"], row["sigma"], row["unit"]) for row in noise]
     add_list(quantity, rows)
@@ -297,7 +295,7 @@ def add_conformity(parent: Element, rows: Sequence[Row], mount: Row, number: int
         listed = value is not None and not unusable(mount[kind])
         refers = {"refId": f"{kind}-{number}"} if listed else {}
         one = add(statements, "dcc:metaData", refType="basic_conformity", **refers)
-        add_text(one, "dcc:name", f"{kind}, {row['quantity']}")
+        add_name(one, f"{kind}, {row['quantity']}")
         said = [STATEMENTS[row["statement"]]]
         if row["risk"] is not None:
             risk = numbers.probability(row["risk"])

@@ -64,7 +64,7 @@ def gyroscope(
             shorter = linear.system(
                 inputs.first_static_rates(seconds), fitted.scatter, fitted.random_walk
             )
-            estimates.add_averaging("joint", seconds, shorter.solve_shared())
+            estimates.add_averaging(seconds, shorter.solve_shared())
         add_formulas(estimates, data, fitted, wanted_bias)
         if stops_between_turns(data.plan):
             add_turn_and_stop(estimates, inputs, fitted.scatter)

@@ -18,7 +18,7 @@ from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Part, Row, rows_of
 from inertial.campaign.solution import switch_ons_of
-from inertial.estimation.triad import linear_names
+from inertial.estimation.triad import linear_names, triad_of_errors
 from inertial.physics.forward import Triad
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
@@ -112,11 +112,10 @@ def published_triads(rows: Sequence[Row]) -> dict[str, Triad]:
     }
     if not values:
         return {}
-    triads = {}
-    for sensor in ("accel", "gyro"):
-        twelve = np.array([values.get((sensor, name), 0.0) for name in names], np.float64)
-        triads[sensor] = Triad(np.eye(3) + twelve[:9].reshape(3, 3), twelve[9:])
-    return triads
+    return {
+        sensor: triad_of_errors([values.get((sensor, name), 0.0) for name in names])
+        for sensor in ("accel", "gyro")
+    }
 
 
 # ---- What a calibration that leaves parameters open says about navigation, and why it is not tried

@@ -1,7 +1,7 @@
 """White noise of every channel in every manoeuvre, and all terms of the noise at rest."""
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain, groupby, pairwise, product
 
 import numpy as np
@@ -12,7 +12,7 @@ from inertial.arrays import Array, Integers
 from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
-from inertial.campaign.records import Row, clocks_of, rows_of
+from inertial.campaign.records import Clock, Row, clocks_of, rows_of
 from inertial.sensors import COLUMNS, PLURAL
 from inertial.signal.scatter import smallest_step
 from inertial.tables.stage import Stage, Tables
@@ -98,31 +98,14 @@ def noise(
     carried : logs and sensors whose counts carry over what they leave
     of_means : the levels of means without time
     """
-    clock = clocks_of(clocks)
     sheet = {f"{row['sensor']}_{row['axis']}": row for row in rows_of(sensors)}
-    quiet = _quiet(segments)
-    spectra: dict[tuple[str, str], Spectra] = {}
-    lengths = [row["to_record"] - row["from_record"] for row in quiet if row["phase"] != "steady"]
-    static = StaticStretches(max(lengths, default=0))
-    number = 0
-    changes = np.full(len(tables.CHANNELS), np.inf)
-    levels_seen: list[Array] = []
-    for log, record, values, continues in _unbroken(masked_samples, gaps):
-        changes = np.minimum(changes, [smallest_step(channel) for channel in values.T])
-        levels_seen.append(values[0])
-        step = clock[log].duration
-        number += not continues
-        for row in quiet:
-            if row["log"] != log or step is None:
-                continue
-            inside_it = (record >= row["from_record"]) & (record < row["to_record"])
-            chosen = values[inside_it]
-            collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), Spectra())
-            for start in range(0, len(chosen), MAX_SAMPLES):
-                collected.add(chosen[start : start + MAX_SAMPLES], 1 / step, (from_hz, to_hz))
-            collected.carried |= {sensor for sensor in COLUMNS if (log, sensor) in carried}
-            if row["phase"] != "steady" and len(chosen):
-                static.add((row["manoeuvre"], row["phase"], number), chosen, step)
+    spectra, static, counts = _read(
+        _unbroken(masked_samples, gaps),
+        _quiet(segments),
+        clocks_of(clocks),
+        carried,
+        (from_hz, to_hz),
+    )
     shapes = shapes_of(spectra)
     rows = [
         row | {"data_sheet": sheet[row["channel"]]["white_noise"]}
@@ -132,7 +115,6 @@ def noise(
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
     noises = list(static.noises())
     drifts = dict(chain.from_iterable(n.drifts(sheet) for n in noises))
-    counts = count_sizes(changes, np.reshape(levels_seen, (-1, len(changes))))
     levels = effective_levels(measured, drifts, rounding_levels(spectra, counts))
     if of_means:
         own = pd.DataFrame(of_means, columns=levels.columns)
@@ -146,6 +128,38 @@ def noise(
         "terms": terms,
         "findings": table_of([] if _by_hand(manoeuvres) else list(louder(terms))),
     }
+
+
+def _read(
+    parts: Iterable[tuple[str, Integers, Array, bool]],
+    quiet: Sequence[Row],
+    clock: Mapping[str, Clock],
+    carried: frozenset[tuple[str, str]],
+    band: tuple[float, float],
+) -> tuple[dict[tuple[str, str], Spectra], StaticStretches, Array]:
+    """From one pass over the samples: spectra by manoeuvre and phase, rests, sizes of counts."""
+    lengths = [row["to_record"] - row["from_record"] for row in quiet if row["phase"] != "steady"]
+    spectra: dict[tuple[str, str], Spectra] = {}
+    static = StaticStretches(max(lengths, default=0))
+    number = 0
+    changes = np.full(len(tables.CHANNELS), np.inf)
+    levels_seen: list[Array] = []
+    for log, record, values, continues in parts:
+        changes = np.minimum(changes, [smallest_step(channel) for channel in values.T])
+        levels_seen.append(values[0])
+        step = clock[log].duration
+        number += not continues
+        for row in quiet:
+            if row["log"] != log or step is None:
+                continue
+            chosen = values[(record >= row["from_record"]) & (record < row["to_record"])]
+            collected = spectra.setdefault((row["manoeuvre"], PHASES[row["phase"]]), Spectra())
+            for start in range(0, len(chosen), MAX_SAMPLES):
+                collected.add(chosen[start : start + MAX_SAMPLES], 1 / step, band)
+            collected.carried |= {sensor for sensor in COLUMNS if (log, sensor) in carried}
+            if row["phase"] != "steady" and len(chosen):
+                static.add((row["manoeuvre"], row["phase"], number), chosen, step)
+    return spectra, static, count_sizes(changes, np.reshape(levels_seen, (-1, len(changes))))
 
 
 def _by_hand(manoeuvres: pd.DataFrame) -> bool:

@@ -11,6 +11,7 @@ from inertial.arrays import Array
 from inertial.campaign.encoder import Jump, JumpsOver
 from inertial.campaign.records import Manoeuvre
 from inertial.campaign.static_positions import ENCODER
+from inertial.physics.motion import component
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
@@ -57,7 +58,7 @@ def by_encoder(
     in_part = not (steady or np.isfinite(value))
     value = _in_motion(moving) if in_part else value
     seconds = moving["seconds"].to_numpy(np.float64)
-    about = moving[GYRO].to_numpy(np.float64)[:, m.axis != 0] @ m.axis[m.axis != 0]
+    about = component(moving[GYRO].to_numpy(np.float64), m.axis)
     read = float(np.nansum(about * seconds))
     if not np.isfinite(value) or read == 0:
         return ByEncoder(m, used=False)

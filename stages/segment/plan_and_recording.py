@@ -7,13 +7,14 @@ from typing import TypeVar
 import numpy as np
 import pandas as pd
 
-from inertial.arrays import Array, Integers
+from inertial.arrays import Array
 from inertial.campaign.detection import Examination, ExaminationOfStretches
 from inertial.campaign.encoder import Jump
 from inertial.campaign.findings import Detection, Finding, detections_of
 from inertial.campaign.log_lines import RecordRange
 from inertial.campaign.masked_samples import Batch, Masks
 from inertial.campaign.records import Manoeuvre, Performed
+from inertial.physics.motion import component
 from inertial.signal.detector import Detector, Event, Given, Log
 from inertial.signal.gravity_turned import rate_of_gravity
 from inertial.signal.plan_detector import (
@@ -50,15 +51,15 @@ class Undone:
     changes : for that of one of signs, which is not applied, where these change.
     """
 
-    misread: Sequence[Misread] = ()
-    swapped: Sequence[Swapped] = ()
-    rescaled: Sequence[Rescaled] = ()
-    restated: Sequence[Rescaled] = ()
-    reversed: Sequence[Reversed] = ()
-    spans_off: Sequence[SpansOff] = ()
-    rivals: Mapping[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
-    changes: Mapping[str, SignChange] = field(default_factory=dict)
-    marks_off: Sequence[MarksOff] = ()
+    misread: list[Misread] = field(default_factory=list)
+    swapped: list[Swapped] = field(default_factory=list)
+    rescaled: list[Rescaled] = field(default_factory=list)
+    restated: list[Rescaled] = field(default_factory=list)
+    reversed: list[Reversed] = field(default_factory=list)
+    spans_off: list[SpansOff] = field(default_factory=list)
+    rivals: dict[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
+    changes: dict[str, SignChange] = field(default_factory=dict)
+    marks_off: list[MarksOff] = field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,8 +205,7 @@ def _unsteady(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
     for i, m in enumerate(plan):
         if m.about is None or m.name not in rates:
             continue
-        own = np.flatnonzero(m.about)  # another gyro may have no readings
-        along = rates[m.name][:, own] @ m.about[own]
+        along = component(rates[m.name], m.about)
         along = along[np.isfinite(along)]
         if len(along) >= QUARTERS:
             means = [quarter.mean() for quarter in np.array_split(along, QUARTERS)]
@@ -246,23 +246,21 @@ def _turned_farther(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> Array:
     """
     angle = np.full(len(plan), np.nan)
     position = blocks["manoeuvre"].map({m.name: m.position for m in plan})
-    at_rest = blocks["phase"].isin(STATIC_PHASES).to_numpy()
-    rests = dict(list(blocks[at_rest].groupby(position[at_rest])))
-    turns = dict(list(blocks[~at_rest].groupby("manoeuvre")))
+    static = blocks["phase"].isin(STATIC_PHASES).to_numpy()
+    rests = dict(list(blocks[static].groupby(position[static])))
+    turns = dict(list(blocks[~static].groupby("manoeuvre")))
     for i, m in enumerate(plan):
         if m.about is None or m.do != "turn" or m.name not in turns or m.position not in rests:
             continue
-        own = np.flatnonzero(m.about)
-
-        def along(part: pd.DataFrame, about: Array = m.about, own: Integers = own) -> Array:
-            return np.asarray(part[list(GYRO)].to_numpy(np.float64)[:, own] @ about[own])
-
         rest, turn = rests[m.position], turns[m.name]
-        known = np.isfinite(along(rest)) & (rest["seconds"].to_numpy(np.float64) > 0)
+        at_rest, turning = (
+            component(part[list(GYRO)].to_numpy(np.float64), m.about) for part in (rest, turn)
+        )
+        known = np.isfinite(at_rest) & (rest["seconds"].to_numpy(np.float64) > 0)
         if not known.any() or (turn["missing_s"] != 0).any():
             continue
-        still = float(np.average(along(rest)[known], weights=rest["seconds"][known]))
-        angle[i] = float(np.sum((along(turn) - still) * turn["seconds"].to_numpy(np.float64)))
+        still = float(np.average(at_rest[known], weights=rest["seconds"][known]))
+        angle[i] = float(np.sum((turning - still) * turn["seconds"].to_numpy(np.float64)))
     return angle
 
 

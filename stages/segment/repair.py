@@ -20,13 +20,10 @@ from inertial.signal.detector import Given
 from inertial.signal.gravity_turned import Turned
 from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import (
-    MarksOff,
     Misread,
     Rescaled,
     Reversed,
-    SignChange,
     SpansOff,
-    Swapped,
 )
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
@@ -47,8 +44,7 @@ from stages.segment.repair_readings import (
     scales_of,
     step_of,
 )
-from stages.segment.reversed_parts import reversals
-from stages.segment.sign_changes import sign_changes
+from stages.segment.reversed_parts import reversals, sign_changes
 from stages.segment.stated_marks import marks_off, with_marks
 from stages.segment.steps import (
     APPLIED,
@@ -151,17 +147,9 @@ class _Campaign:
         self._rows: list[Row] = []
         self._channels: list[Row] = []
         self._masks: list[Row] = []
-        self._misread: list[Misread] = []
-        self._swapped: list[Swapped] = []
-        self._rescaled: list[Rescaled] = []
-        self._restated: list[Rescaled] = []
-        self._reversed: list[Reversed] = []
-        self._spans_off: list[SpansOff] = []
-        self._marks_off: list[MarksOff] = []
+        self._undone = Undone()
         self._by_gravity = False  # whether gravity shows the gyros to be as they are named
         self._gravity_turns = False  # whether it shows what they are named by at all
-        self._rivals: dict[str, list[tuple[str, str]]] = {}
-        self._changes: dict[str, SignChange] = {}  # by repair
         self._explain()
 
     def _explain(self) -> None:
@@ -170,19 +158,8 @@ class _Campaign:
         )
 
     def result(self) -> SetRight:
-        undone = Undone(
-            self._misread,
-            self._swapped,
-            self._rescaled,
-            self._restated,
-            self._reversed,
-            self._spans_off,
-            self._rivals,
-            self._changes,
-            self._marks_off,
-        )
         found = (self._plan, self._level, self._explained)
-        return SetRight(*found, self._rows, self._channels, self._masks, undone)
+        return SetRight(*found, self._rows, self._channels, self._masks, self._undone)
 
     @property
     def _applied(self) -> set[str]:
@@ -246,7 +223,7 @@ class _Campaign:
             step = spans_step(each.log)
             words = spans_in_words(each)
             self._decide(step, words, log=each.log, value=0.0, stated=each.late, unit="s")
-            self._spans_off.append(replace(each, repair=step.id))
+            self._undone.spans_off.append(replace(each, repair=step.id))
 
     # ---- sizes of counts
 
@@ -274,7 +251,9 @@ class _Campaign:
             ]
             if scale.sensor == "gyro":
                 names = [one.name for one in scale.seen]
-                self._rescaled.append(Rescaled(scale.factor, scale.why, scale.log, names, step.id))
+                self._undone.rescaled.append(
+                    Rescaled(scale.factor, scale.why, scale.log, names, step.id)
+                )
         if channels:
             self._read_again(channels)
             self._explain()
@@ -301,7 +280,7 @@ class _Campaign:
         channels = [*self._axes_everywhere(explained), *self._axes_of_logs(explained)]
         plan = self._plan_as_found(explained)
         for taken, steps in explained.rivals.items():
-            self._rivals[taken] = [(step.id, self._in_words(step)) for step in steps]
+            self._undone.rivals[taken] = [(step.id, self._in_words(step)) for step in steps]
             for step in steps:
                 self._decide(step, self._in_words(step), rival=True, finding=taken)
         moved = any(a is not b for a, b in zip(plan, self._plan, strict=True))
@@ -345,15 +324,15 @@ class _Campaign:
             if each.sensor == "gyro" and not rival:
                 found = (self._plan, self._level, each.axes, self._basis.earth_rate)
                 for change in sign_changes(explained.located, *found):
-                    self._changes[step.id] = change
+                    self._undone.changes[step.id] = change
                     logs = [] if change.parted or each.axes.moved > 1 else change.logs
             if not logs:
                 continue  # it is both in one log: no repair of that is right
-            if step.id in self._changes:
-                each = replace(each, change=self._changes[step.id])
+            if step.id in self._undone.changes:
+                each = replace(each, change=self._undone.changes[step.id])
                 condition = axes_in_words(each)
             if self._decide(step, condition, explained.fitting, rival=rival):
-                self._misread.append(replace(each, undone=True))
+                self._undone.misread.append(replace(each, undone=True))
                 yield from self._axes(step, each, each.axes, logs)
 
     def _axes_of_logs(self, explained: ExplainedRecording) -> Iterator[Row]:
@@ -368,7 +347,7 @@ class _Campaign:
             unsure = common != AS_NAMED and axes_step(each.sensor, common).id not in self._applied
             condition = axes_in_words(each) + (f"; {MOUNTING}" if turned else "")
             if self._decide(step, condition, explained.fitting, each.log, rival=turned or unsure):
-                self._misread.append(replace(each, undone=True))
+                self._undone.misread.append(replace(each, undone=True))
                 logs = self._logs(each.log)
                 yield from self._axes(step, each, composed(each.axes, common.inverse), logs)
 
@@ -387,21 +366,21 @@ class _Campaign:
             step, swapped = exchange_step(exchanged), in_order(exchanged, self._plan)
             place, rival = {"manoeuvre": swapped.names[0]}, step.id in explained.rivals
             if self._decide(step, exchange_in_words(swapped), fitting, rival=rival, **place):
-                self._swapped.append(replace(swapped, undone=True))
+                self._undone.swapped.append(replace(swapped, undone=True))
                 plan = exchanged_back(plan, exchanged)
         for turns in explained.other_sense:
             step = sense_step(turns)
             why = self._in_words(step)
             if self._decide(step, why, fitting, rival=step.id in explained.rivals):
                 told = (turns.about, why, self._by_gravity, turns.upended)
-                self._reversed.append(Reversed(step.id, turns.names, *told))
+                self._undone.reversed.append(Reversed(step.id, turns.names, *told))
                 plan = turned_back(plan, turns)
         return plan
 
     def set_axes_by_gravity(self) -> None:
         """Axes of one sensor that the other one contradicts, whatever the plan says."""
         others = (row["state"] for row in self._rows if row["repair"] != "count_size")
-        if self._changes or any(state not in APPLIED for state in others):
+        if self._undone.changes or any(state not in APPLIED for state in others):
             return
         seen = axes_by_gravity(self._binned, self._level)
         if seen is None or self._in_part(seen):
@@ -419,7 +398,7 @@ class _Campaign:
                 channels += rows
         if chosen:
             rivals = [(other.repair, words[other.repair]) for other in chosen[1:]]
-            self._misread.append(replace(chosen[0], undone=bool(channels), rivals=rivals))
+            self._undone.misread.append(replace(chosen[0], undone=bool(channels), rivals=rivals))
         if channels:
             self._read_again(channels)
             self._explain()
@@ -451,7 +430,7 @@ class _Campaign:
                 channels += self._axes(step, misread, each.axes, each.part.logs)
             else:
                 self._masks += [row | {"finding": step.id} for row in each.masks]
-            self._misread.append(replace(misread, undone=undone))
+            self._undone.misread.append(replace(misread, undone=undone))
         if channels:
             self._read_again(channels)
             self._explain()
@@ -475,7 +454,7 @@ class _Campaign:
         fitting = (len(turns) - number, len(turns), len(turns))
         if self._decide(step, condition, fitting, value=restated.ratio, stated=1.0):
             why = _("the plan states another rate than the table was set to")
-            self._restated.append(Rescaled(restated.ratio, why, "", restated.names, step.id))
+            self._undone.restated.append(Rescaled(restated.ratio, why, "", restated.names, step.id))
             self._plan_again(at_other_rate(self._plan, restated.ratio, restated.names))
             self._explain()
 
@@ -489,7 +468,7 @@ class _Campaign:
         if off is None:
             return
         undone = self._decide(step, marks_in_words(off), rival=off.undecided)
-        self._marks_off.append(replace(off, repair=step.id, undone=undone))
+        self._undone.marks_off.append(replace(off, repair=step.id, undone=undone))
         if undone:
             self._plan_again(with_marks(self._plan, marks))
             self._explain()

@@ -12,7 +12,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
-from inertial.physics.motion import cross, turned
+from inertial.physics.motion import horizontal, north_of, turned
 from inertial.physics.site import EARTH_RATE
 from inertial.signal.plan_detector import MarksOff
 from stages.segment.located import AS_PLANNED, Located
@@ -62,7 +62,7 @@ class _Course:
         """Chi-squared of what the gyros read at rest, with a bias of their own; rad, rad/s."""
         up = self.links[0].m.up
         assert up is not None
-        north = np.cos(heading) * mark + np.sin(heading) * cross(up, mark)
+        north = north_of(up, mark, heading)
         left = np.array([rate - level * _forward(north, by) for rate, _sigma, by in self.rests])
         weights = 1 / np.array([sigma for _rate, sigma, _by in self.rests]) ** 2
         known = np.isfinite(left) & np.isfinite(weights)
@@ -199,5 +199,4 @@ def _course(located: Located, course: Sequence[tuple[int, Manoeuvre]]) -> _Cours
 def _level(m: Manoeuvre) -> Array:
     """The horizontal direction of a mark, (3,), unit vector."""
     assert m.up is not None and m.mark is not None
-    mark = m.mark - m.up * (m.up @ m.mark)
-    return np.asarray(mark / np.linalg.norm(mark))
+    return horizontal(m.mark, m.up)

@@ -26,7 +26,7 @@ from inertial.estimation.time_angle import (
     ripple_window,
     time_angle,
 )
-from inertial.estimation.triad import linear_names
+from inertial.estimation.triad import linear_names, triad_of_errors
 from inertial.physics.forward import Site, Triad
 from inertial.physics.motion import cross
 from inertial.tables import AXES, GYRO
@@ -78,12 +78,7 @@ def gyros_of(parameters: pd.DataFrame, mount: str) -> Gyros:
     sigma = [determined[n]["sigma"] if n in determined else np.inf for n in names]
     unknown = np.array([n not in determined for n in names[:9]]).reshape(3, 3)
     unknown &= ~np.eye(3, dtype=bool)
-    matrix = np.eye(3) + np.array(values[:9], dtype=np.float64).reshape(3, 3)
-    return Gyros(
-        Triad(matrix, np.array(values[9:], dtype=np.float64)),
-        np.array(sigma[9:], dtype=np.float64),
-        unknown,
-    )
+    return Gyros(triad_of_errors(values), np.array(sigma[9:], dtype=np.float64), unknown)
 
 
 class Ringing(NamedTuple):

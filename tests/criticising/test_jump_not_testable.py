@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from inertial.estimation.effect_information import EffectInformation
-from stages.criticism.jump_not_testable import jumps_not_testable
+from stages.criticism.confounded_causes import jumps_not_testable
 
 JUMP = {"size_deg_h": [40.0, -30.0, 50.0], "at_s": 210.0}
 

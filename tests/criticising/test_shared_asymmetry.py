@@ -3,7 +3,7 @@
 import pytest
 
 from inertial.campaign.effect_sentences import Estimated
-from stages.criticism.shared_asymmetry import shared_asymmetry
+from stages.criticism.confounded_causes import shared_asymmetry
 
 PPM = 1e-6
 

@@ -14,8 +14,7 @@ from inertial.campaign.log_properties import ChannelStatistics
 from inertial.detectors.dead_axis import DeadAxis
 from inertial.detectors.oscillation import Oscillation
 from inertial.detectors.periodic_glitch import PeriodicGlitch
-from inertial.detectors.repeated_records import HeldRecord
-from inertial.detectors.slower_sensor import SlowerSensor
+from inertial.detectors.repeated_records import HeldRecord, SlowerSensor
 from inertial.detectors.table_moving import TableMoving
 from inertial.signal.phase_folding import Folded, glitches
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 import s0
 
-from inertial.estimation.accelerometers import StaticForce, six_position_formula
+from inertial.estimation.accelerometer_formulas import six_position_formula
+from inertial.estimation.accelerometers import StaticForce
 
 
 def even_and_odd(up: np.ndarray, down: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -4,12 +4,8 @@ import numpy as np
 import pytest
 import s0
 
-from inertial.estimation.accelerometers import (
-    Reference,
-    StaticForce,
-    six_position_formula,
-    weighted,
-)
+from inertial.estimation.accelerometer_formulas import six_position_formula
+from inertial.estimation.accelerometers import Reference, StaticForce, weighted
 
 # Noise of each sensor (rows) in each pair of positions, m/s² per sample: by six positions,
 # for single epochs var(M_rk) = σ_rk² / (2 g²), and the variance of the bias is Σ σ_rk² / 18.

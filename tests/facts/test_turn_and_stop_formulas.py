@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from inertial.estimation.accelerometer_formulas import pooled_positions
-from inertial.estimation.accelerometers import StaticForce, six_position_formula
+from inertial.estimation.accelerometer_formulas import pooled_positions, six_position_formula
+from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.gyroscope_formulas import pairs_of, turn_and_stop
 from inertial.estimation.gyroscope_observations import Earth, Gap, Position, RateSegment, StaticRate
-from inertial.estimation.turn_and_stop import pairs_of, turn_and_stop
 from inertial.physics.motion import Profile, level_axes, turned_all
 from inertial.physics.site import earth_rate
 

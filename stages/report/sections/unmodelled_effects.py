@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from inertial.campaign.effect_sizes import sizes_of_result
-from inertial.campaign.records import grouped
+from inertial.campaign.records import grouped, sizes_of_result
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from inertial.text.numbers import p_is, shortened, significant

@@ -1,11 +1,20 @@
-"""Whether the set positions scatter by more than is stated of the table.
+"""Whether set positions, or rests by hand, scatter by more than is stated of them.
 
+Set positions
+-------------
 The tilts of the positions are errors of the equations, with the sigma that the campaign states.
 Where that is too small, what is left goes with the attitude, and would be named as effects of the
 sensors or of single positions. So the effects that are named with the stated sigma are weighed
 against those with the sigma of largest likelihood, by evidence. A single position that is off costs
 less as an effect of its own: in a larger sigma of all it would be the only one. What few
 manoeuvres carry is no scatter: that is in all positions.
+
+Rests by hand
+-------------
+The fit takes what rests differ by as a scatter of all of them, which the sigmas hold. |f| = g in
+every attitude, so only an acceleration of the IMU adds to it, and that is small at rest. As far as
+a hand that sways can make it, the rests were not quite still; beyond that it is of the
+accelerometers, or of their record, and has no name.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -16,13 +25,14 @@ from scipy.optimize import minimize_scalar
 
 from inertial.campaign.effect_evidence import deviance, deviances
 from inertial.campaign.equations import Campaign
+from inertial.model_selection.cause import FOUND, UNKNOWN_STRUCTURE
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.enumeration import listed
 from inertial.text.messages import _
 from inertial.text.numbers import significant
-from inertial.text.units import ARC_SECOND
-from stages.criticism.finding_rows import TableRow, finding_id, member_rows
+from inertial.text.units import ARC_SECOND, STANDARD_GRAVITY
+from stages.criticism.finding_rows import TableRow, finding_id, finding_row, member_rows
 from stages.criticism.residual_structure import Tested, carrying
 from stages.criticism.rivals import MAX_LOG_ODDS, members_of
 from stages.criticism.selection import Selection
@@ -79,7 +89,6 @@ class PositionScatter:
         """The finding, of the sensor that shows it, or of both."""
         found = significant(self.value / ARC_SECOND, 2)
         sensors = [sensor for sensor, drop in self.drops.items() if drop > MIN_DROP]
-        identifier = finding_id(CAUSE, mount)
         sentence = SCATTER.format(
             found=found,
             sigma=significant(self.sigma / ARC_SECOND, 2),
@@ -90,24 +99,19 @@ class PositionScatter:
         if self.rivals:
             names = listed([in_words(rival) for rival in self.rivals], "or")
             sentence += INSTEAD.format(rivals=names)
-        yield (
-            "findings",
-            {
-                "id": identifier,
-                "mount": mount,
-                "cause": CAUSE,
-                "sensor": sensors[0] if len(sensors) == 1 else None,
-                "count": 1,
-                "size": self.value,
-                "unit": "rad",
-                "severity": 3,
-                "sentence": sentence,
-                "consequence": CONSEQUENCE,
-                "action": self._action.format(found=found),
-                "verdict": "one_of_class" if self.rivals else "found",
-            },
+        yield finding_row(
+            CAUSE,
+            mount,
+            sensor=sensors[0] if len(sensors) == 1 else None,
+            size=self.value,
+            unit="rad",
+            severity=3,
+            sentence=sentence,
+            consequence=CONSEQUENCE,
+            action=self._action.format(found=found),
+            verdict="one_of_class" if self.rivals else "found",
         )
-        yield from member_rows(identifier, mount, [CAUSE, *self.rivals])
+        yield from member_rows(finding_id(CAUSE, mount), mount, [CAUSE, *self.rivals])
 
 
 def select_beside_scatter(
@@ -174,3 +178,56 @@ def likely_scatter(campaign: Campaign, measured: Campaign) -> PositionScatter | 
         if drops.get("accel", 0.0) > MIN_DROP:
             found.append((least, PositionScatter(own, value, relative * value, stated, drops)))
     return min(found, key=lambda pair: pair[0])[1] if found else None
+
+
+# ---- Rests by hand whose specific force scatters about gravity by far more than its noise.
+
+
+REST_SCATTER = "rest_scatter"
+MIN_RATIO = 3.0  # to the noise of a rest: nine tenths of the variance of the rests
+OF_RESTS = _(
+    "The specific force of the rests scatters about gravity by {size} m/s² ({micro} µg), {ratio} "
+    "times the noise of a rest, beside all that is named."
+)
+WITHIN = _(" An IMU that a hand holds still sways by as much: up to {motion} m/s² here.")
+BEYOND = _(
+    " That is no motion at rest: an IMU that a hand holds still makes it scatter by {motion} m/s² "
+    "at the most."
+)
+CONSEQUENCE_OF_RESTS = _(
+    "The sigmas of the accelerometers hold it as if it were another error in each rest. If it is a "
+    "nonlinearity, an asymmetry, or a bias that changes, biases and scale factors are off by more."
+)
+ACTION_ON_RESTS = _(
+    "Record it again with at least 30 rests, in inclined attitudes too, each on a firm support: an "
+    "effect can then be told from a scatter. See whether the accelerometers warm up, are struck, "
+    "or vibrate between the rests."
+)
+
+
+def rest_scatter_rows(campaign: Campaign, mount: str) -> Iterator[TableRow]:
+    """The finding, of no known cause beyond motion at rest. `campaign`: given what is named."""
+    by_hand = campaign.by_hand
+    if by_hand is None or not by_hand.force_scatter:
+        return
+    size, beyond = by_hand.force_scatter, by_hand.beyond_motion
+    noise = float(np.median([rest.sigma for _, rest, _ in campaign.static_forces]))
+    if size < MIN_RATIO * noise:
+        return
+    sentence = OF_RESTS + (BEYOND if beyond else WITHIN)
+    yield finding_row(
+        REST_SCATTER,
+        mount,
+        sensor="accel",
+        size=size,
+        unit="m/s²",
+        sentence=sentence.format(
+            size=significant(size, 2),
+            micro=significant(size / STANDARD_GRAVITY * 1e6, 2),
+            ratio=significant(size / noise, 2),
+            motion=significant(by_hand.of_motion, 2),
+        ),
+        consequence=CONSEQUENCE_OF_RESTS,
+        action=ACTION_ON_RESTS,
+        verdict=UNKNOWN_STRUCTURE if beyond else FOUND,
+    )
