@@ -36,15 +36,12 @@ def with_turning_noise(
     odds = sum(_log_odds(group, best) for group in alike.values())
     if not odds > MIN_LOG_ODDS:
         return list(turns)
-    density = {
-        motion: np.sqrt(np.mean([np.square(turn.density) for turn in group], axis=0))
-        for motion, group in alike.items()
-    }
-    return [
-        replace(turn, density=own, quiet_density=np.fmax(own, turn.quiet_density))
-        for turn in turns
-        for own in (density[_motion(turn)],)
-    ]
+    found = []
+    for turn in turns:
+        density = np.sqrt(np.mean([one.density**2 for one in alike[_motion(turn)]], axis=0))
+        quiet = np.fmax(density, turn.quiet_density)
+        found.append(replace(turn, density=density, quiet_density=quiet))
+    return found
 
 
 def _motion(turn: RateSegment) -> tuple[int, ...]:
