@@ -58,11 +58,13 @@ def _log_odds(turns: Sequence[RateSegment], rests: Mapping[str, StaticRate]) -> 
         rest, about = rests.get(turn.position.name), turn.about
         if rest is None or turn.by_hand or np.isnan(turn.angle):
             continue
+        if not np.isfinite(rest.sigma[about != 0]).all():  # a gyro that was not recorded
+            continue
         seconds = float(turn.weights @ turn.seconds)
         along = np.sign(turn.angle) * about  # alike in all of them
         summed = float(np.nan_to_num(turn.weights @ turn.sums - rest.mean * seconds) @ along)
         white = np.array([turn.quiet_density, np.fmax(turn.density, turn.quiet_density)])
-        of_rest = np.nan_to_num(rest.sigma**2) @ about**2 * seconds**2
+        of_rest = rest.sigma[about != 0] ** 2 @ about[about != 0] ** 2 * seconds**2
         known = turn.angle_sigma**2 + turn.gap_sigma**2 + of_rest
         values.append(summed)
         variances.append(np.nan_to_num(white**2) @ about**2 * seconds + known)
