@@ -221,6 +221,8 @@ def _between_ramps(rate: Array, steady: Booleans) -> Booleans:
     even = float(np.median(rate[steady]))
     near = np.abs(rate - even) <= MAX_UNEVEN * abs(even) + 2 * EARTH_RATE
     inner = np.flatnonzero(near & steady)
+    if not len(inner):  # it turns unevenly
+        return steady
     places = np.arange(len(rate))
     return np.asarray((places >= inner[0]) & (places <= inner[-1]))
 
