@@ -17,7 +17,7 @@ from scipy.stats import chi2
 import laboratory
 from inertial.estimation.triad import linear_names
 
-SEED = 1_738_204_613  # of all draws; none was looked at while the pipeline was written
+SEED = 1_409_637_221  # of all draws; none was looked at while the pipeline was written
 CLEAR = ("found", "one_of_class")
 UNBIASED = (  # with these noises the sigmas should hold; an oscillation may move parameters
     "plain",
