@@ -19,6 +19,7 @@ from inertial.text.numbers import decimals_of, fixed
 from recordings.known import RECORDINGS, Known, Recording, told
 
 PAGE = chain.ROOT / "docs/recordings.md"
+VERDICTS = {"usable_within_limits": "usable, with departures"}
 HEAD = """# Real recordings
 
 Written by `make recordings`, which drafts a campaign of each recording's logs as `make draft` does,
@@ -75,7 +76,7 @@ def rows(recording: Recording, folder: Path) -> Iterator[str]:
         named = ", ".join(f"{cause} ({n})" if n > 1 else cause for cause, n in causes.items())
         verdicts = results["diagnosis/verdict"]
         said = [
-            f"{NAMES[sensor]} {verdict.replace('_', ' ')}"
+            f"{NAMES[sensor]} {VERDICTS.get(verdict, verdict.replace('_', ' '))}"
             for sensor, verdict in zip(verdicts["sensor"], verdicts["verdict"], strict=True)
         ]
         first = (recording.name, "; ".join(said), named or "none", seconds)
