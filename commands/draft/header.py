@@ -256,6 +256,7 @@ UP_IN_NAME = (
     re.compile(rf"(?<![a-z0-9]){SIGN}[ _-]?(?P<axis>[xyz])(?![a-z])", re.IGNORECASE),
     re.compile(rf"(?<![a-z])(?P<axis>[xyz])[ _-]?{SIGN}(?![a-z0-9])", re.IGNORECASE),
 )  # what the name of a log says points up
+READS_GRAVITY = "accelerometer: {reads: gravity}"  # the key of a campaign
 MIN_MEANS = 15  # whose residuals show their noise: twelve parameters, and three for the scatter
 GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
 
@@ -281,8 +282,10 @@ def questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -
         yield _("degrees: were the turns as large as the round angles in the plan?")
     if any(m.up for m in plan):
         yield _(
-            "up: is the axis named in the plan the one that pointed up? A log that reads −g there "
-            "has the other sign."
+            "up: is the axis named in the plan the one that pointed up? Where it pointed down, the "
+            "log tells gravity: then state `{key}`, and change the sign of `up` and of the degrees "
+            "of turns.",
+            key=READS_GRAVITY,
         )
 
 
@@ -317,7 +320,7 @@ def _named_otherwise(plan: Sequence[Manoeuvre]) -> Iterator[str]:
         yield _(
             "each log reads −g on the axis that its name says is up; do the accelerometers read "
             "gravity, `{key}`, or is it the axis that pointed down?",
-            key="accelerometer: {reads: gravity}",
+            key=READS_GRAVITY,
         )
         return
     for name, (said, up) in named.items():
