@@ -27,7 +27,7 @@ from inertial.estimation.scatter_and_random_walk import (
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 
-PRIOR_SIZE = 1e4  # prior sigma of an effect that was named, in its typical sizes
+NAMED_PRIOR_SIZE = 1e4  # prior sigma of an effect that was named, in its typical sizes
 
 
 def scattered(campaign: Campaign, effects: Sequence[Effect], noise_degrees: float) -> Campaign:
@@ -45,7 +45,7 @@ def scattered(campaign: Campaign, effects: Sequence[Effect], noise_degrees: floa
     if "gyro" in campaign.solution.free:
         campaign = _with_rates(campaign, effects, noise_degrees)
     gyro, accel = (
-        likely_walk(campaign, sensor, effects, PRIOR_SIZE)
+        likely_walk(campaign, sensor, effects, NAMED_PRIOR_SIZE)
         if sensor in campaign.solution.free
         else 0.0
         for sensor in SENSORS
@@ -133,19 +133,19 @@ def _with(campaign: Campaign, **changes: Any) -> Campaign:
 
 
 def _solved(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> Estimate:
-    system = campaign.system(sensor, effects, PRIOR_SIZE)
+    system = campaign.system(sensor, effects, NAMED_PRIOR_SIZE)
     assert system is not None  # the sensor is free
     return system.solve_shared()
 
 
 def _rates(campaign: Campaign, effects: Sequence[Effect]) -> Callable[[Scatter], Estimate]:
-    equations = campaign.by_scatter(effects, PRIOR_SIZE)
+    equations = campaign.by_scatter(effects, NAMED_PRIOR_SIZE)
     return lambda scatter: equations(scatter).system().solve_shared()
 
 
 def _residuals(campaign: Campaign, effects: Sequence[Effect], found: Estimate) -> dict[int, Array]:
     """The residuals of the gyros in stops and passages, in units of sigma, by number."""
-    equations, by_hand = campaign.equations("gyro", effects, PRIOR_SIZE), campaign.by_hand
+    equations, by_hand = campaign.equations("gyro", effects, NAMED_PRIOR_SIZE), campaign.by_hand
     assert equations is not None and by_hand is not None  # the gyros are free
     about = found.values - equations.prior
     place = {name: i for i, name in enumerate(by_hand.names)}

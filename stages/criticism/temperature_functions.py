@@ -19,7 +19,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
-from inertial.campaign.scatter_given_effects import PRIOR_SIZE, likely_walk
+from inertial.campaign.scatter_given_effects import NAMED_PRIOR_SIZE, likely_walk
 from inertial.effects import OF_TEMPERATURE_CYCLES
 from inertial.effects.temperature_model import (
     BEND,
@@ -86,7 +86,7 @@ def functions_of(
         return None
     search, found = search.with_lag()
     fitted = [*search.models({f: [at] for f, at in found.knots.items()}, (BEND, SHIFT)), *others]
-    if walk := likely_walk(campaign, sensor, fitted, PRIOR_SIZE):
+    if walk := likely_walk(campaign, sensor, fitted, NAMED_PRIOR_SIZE):
         walks = (walk, 0.0) if sensor == "gyro" else (0.0, walk)
         again = replace(search, campaign=campaign.with_random_walks(walks), lag=0.0)
         search, found = again.with_lag()

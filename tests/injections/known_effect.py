@@ -20,7 +20,7 @@ from scipy.optimize import minimize_scalar
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.observations import campaign_of
-from inertial.campaign.scatter_given_effects import PRIOR_SIZE, likely_walk, scattered
+from inertial.campaign.scatter_given_effects import NAMED_PRIOR_SIZE, likely_walk, scattered
 from inertial.estimation.probability import chi2_sf, f_isf, f_sf
 from inertial.estimation.scatter_and_random_walk import Scatter, likeliest
 from inertial.physics.effect import Effect
@@ -61,7 +61,7 @@ def _lost(given: Campaign, noise: float) -> float:
     """By how much the kind of scatter that goes with the effect is less likely without it."""
     by_hand = given.by_hand
     assert by_hand is not None  # else there is no scatter
-    equations = given.by_scatter([], PRIOR_SIZE)
+    equations = given.by_scatter([], NAMED_PRIOR_SIZE)
 
     def deviance(scatter: Scatter) -> float:
         return float(equations(scatter).system().solve_shared().deviance)
@@ -79,7 +79,7 @@ def _beside_walk(quiet: Campaign, effect: Effect, sensor: str, noise: float) -> 
     sizes = {one: _walk(quiet, one, [effect]) for one in SENSORS}
     lost = 0.0
     if sizes[sensor] or _walk(quiet, sensor, []):
-        deviance = quiet.deviance_of_random_walk(sensor, [], PRIOR_SIZE)
+        deviance = quiet.deviance_of_random_walk(sensor, [], NAMED_PRIOR_SIZE)
         lost = deviance(sizes[sensor]) - deviance(_walk(quiet, sensor, []))
     beside = quiet.with_random_walks((sizes["gyro"], sizes["accel"]))
     said, _searched = evidence_of(beside, {effect.name: (effect,)}, noise)
@@ -91,4 +91,4 @@ def _beside_walk(quiet: Campaign, effect: Effect, sensor: str, noise: float) -> 
 
 
 def _walk(campaign: Campaign, sensor: str, effects: Sequence[Effect]) -> float:
-    return likely_walk(campaign, sensor, effects, PRIOR_SIZE)
+    return likely_walk(campaign, sensor, effects, NAMED_PRIOR_SIZE)
