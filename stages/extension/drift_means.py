@@ -30,7 +30,7 @@ def drift_means(solution: Solved, motion: Motion, stretches: slice) -> Iterator[
             continue
         for parameter, unit in zip(effect.parameters, np.eye(len(effect.parameters)), strict=True):
             name = f"{effect.name}.{parameter.name}"
-            changes = _changes(effect, unit, motion, solution.sensor)[stretches]
+            changes = changes_of(effect, unit, motion, solution.sensor)[stretches]
             means = np.nan_to_num(weights @ changes)
             for of, mean in zip(linear_names(), means.tolist(), strict=True):
                 if name in there and mean:
@@ -44,7 +44,7 @@ def drift_means(solution: Solved, motion: Motion, stretches: slice) -> Iterator[
                     }
 
 
-def _changes(effect: Effect, values: Array, motion: Motion, sensor: str) -> Array:
+def changes_of(effect: Effect, values: Array, motion: Motion, sensor: str) -> Array:
     """By how much M, by rows, and bias differ in each stretch, (n, 12), to first order."""
 
     def read(sensed: Array) -> Array:
