@@ -18,6 +18,7 @@ from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 SIZES = {"gyro": ("rad/s", DEGREE_PER_HOUR), "accel": ("m/s²", 1e-5 * STANDARD_GRAVITY)}
 WIDE = 1e3  # of the usual size, which of a shape that is far from 1 says nothing
 ALL = "all"  # axes, each with a size of its own
+DRIFTING = ("time", "run_time", "temperature", "temperature_rate")  # states, however it moves
 
 
 class Law(Effect):
@@ -55,9 +56,9 @@ class Law(Effect):
         return AXES if self.axis == ALL else (self.axis,)
 
     @property
-    def of_time(self) -> bool:
-        """Whether it is a drift: a law of time, or of that since the power was switched on."""
-        return self.state in ("time", "run_time")
+    def is_drift(self) -> bool:
+        """Whether the bias has it whatever the IMU does: a law of time or of the temperature."""
+        return all(state in DRIFTING for state in self.state.split("*"))
 
     @property
     def _terms(self) -> Sequence[str]:

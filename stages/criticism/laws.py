@@ -116,7 +116,7 @@ ACTION = _(
     "Look for its physical cause: {file} proposes it as an effect, in the form of the catalogue. "
     "Readings are not compensated by it."
 )
-OF_TIME_ACTION = _(
+DRIFT_ACTION = _(
     "Look for its physical cause: {file} proposes it as an effect, in the form of the catalogue. "
     "Readings are not compensated by it: the bias is the mean over the recording, and its sigma "
     "contains how far the law goes about that."
@@ -155,7 +155,7 @@ def law_sentence(cause: Cause, law: Law, parameters: Sequence[Estimated]) -> str
 
 def law_action(law: Law, mount: str) -> str:
     """What to do about a law."""
-    action = OF_TIME_ACTION if law.of_time else ACTION
+    action = DRIFT_ACTION if law.is_drift else ACTION
     return action.format(file=f"extension/proposed/{law.name}{f'-{mount}' if mount else ''}.py")
 
 

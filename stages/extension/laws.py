@@ -93,7 +93,7 @@ def text_of(law: Law) -> str:
     )
 
 
-# ---- A law of time is a drift that nothing takes out of readings.
+# ---- A law of time or of the temperature is a drift that nothing takes out of readings.
 #
 # So the bias that holds for them is its mean over the recording, and how far the law goes about
 # this is part of its sigma (GUM F.2.4.5: a correction that is known to vary and is not applied).
@@ -102,7 +102,7 @@ def text_of(law: Law) -> str:
 def with_drift_in_the_bias(
     solution: Solved, effects: Sequence[Effect], motion: Motion, stretches: slice
 ) -> Solved:
-    """The fit with the mean of its laws of time in the biases, and their scatter in the sigmas.
+    """The fit with the mean of its drifts by a law in the biases, their scatter in the sigmas.
 
     `stretches`: those of `motion` that are of the sensor.
     """
@@ -110,7 +110,7 @@ def with_drift_in_the_bias(
     place = {row["parameter"]: i for i, row in enumerate(solution.rows)}
     transform, scatter = np.eye(len(place)), np.zeros(len(place))
     for law in effects:
-        if not (isinstance(law, Law) and law.of_time and law.sensor == solution.sensor):
+        if not (isinstance(law, Law) and law.is_drift and law.sensor == solution.sensor):
             continue
         for axis in law.axes:
             bias, i = place[f"bias_{axis}"], AXES.index(axis)

@@ -112,13 +112,21 @@ def test_a_clean_campaign_and_a_random_walk_have_no_law(walk):
     assert not set(results["criticism/findings"]["cause"]) & set(LAWS)
 
 
-def test_the_bias_beside_a_law_of_time_is_its_mean_over_the_recording():
-    """Of two levels, the higher one for a quarter of the time: b + k/4 ± √(σ² + 3 k²/16)."""
-    law = Law("gyro", "z", "telegraph", "time", (300 / HOUR,))
-    motion = stretches(
-        np.array([50.0, 200.0, 350.0]), np.array([100.0, 200.0, 100.0]), np.full(3, np.nan)
-    )
-    names = [*linear_names(), f"{law.name}.k_z"]
+@pytest.mark.parametrize(
+    ("law", "warmer"),
+    [
+        (Law("gyro", "z", "telegraph", "time", (300 / HOUR,)), np.full(3, np.nan)),
+        (Law("gyro", "z", "polynomial", "temperature", (1.0,)), np.array([0.0, 0.0, 1.0])),
+    ],
+)
+def test_the_bias_beside_a_drift_by_a_law_is_its_mean_over_the_recording(law, warmer):
+    """Of two levels, the higher one for a quarter of the time: b + k/4 ± √(σ² + 3 k²/16).
+
+    A temperature counts from its mean: b ± √(σ² + 3 k²/16).
+    """
+    motion = stretches(np.array([50.0, 200.0, 350.0]), np.array([100.0, 200.0, 100.0]), warmer)
+    share = 0.25 if law.state == "time" else 0.0
+    names = [*linear_names(), f"{law.name}.{law.parameters[0].name}"]
     rows = [{"parameter": name, "value": 1.0, "sigma": 0.1} for name in names]
     rows[-1] |= {"value": 8.0, "sigma": 0.2}
     sigmas = np.array([0.1] * 12 + [0.2])
@@ -126,10 +134,11 @@ def test_the_bias_beside_a_law_of_time_is_its_mean_over_the_recording():
     mean = with_drift_in_the_bias(own, [law], motion, slice(0, 3))
     values = {row["parameter"]: (row["value"], row["sigma"]) for row in mean.rows}
     scatter = np.sqrt(3 / 16) * 8.0
-    assert values.pop("bias_z") == pytest.approx((3.0, np.hypot(np.hypot(0.1, 0.2 / 4), scatter)))
+    sigma = np.sqrt(0.1**2 + (0.2 * share) ** 2 + scatter**2)
+    assert values.pop("bias_z") == pytest.approx((1.0 + 8 * share, sigma))
     assert values.pop(names[-1]) == (8.0, pytest.approx(0.2))
     assert all(value == pytest.approx((1.0, 0.1)) for value in values.values())
-    assert mean.covariance[-1, 11] == pytest.approx(0.2**2 / 4)
+    assert mean.covariance[-1, 11] == pytest.approx(0.2**2 * share, abs=1e-12)
 
 
 # ---- Functions, and their search.
