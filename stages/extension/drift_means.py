@@ -15,10 +15,10 @@ from inertial.estimation.triad import linear_names
 from inertial.physics.drift import Drift
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import Motion
-from inertial.physics.setting_in import SettingIn
+from inertial.physics.setting_in import ScaleJump
 from stages.extension.estimates import Solved
 
-DRIFTS = (Drift, SettingIn, TemperatureModel)  # what goes with time or temperature alone
+DRIFTS = (Drift, ScaleJump, TemperatureModel)  # of the sensor, with time or temperature alone
 
 
 def drift_means(solution: Solved, motion: Motion, stretches: slice) -> Iterator[Row]:

@@ -7,7 +7,7 @@ from inertial.effects import CATALOGUE
 from inertial.effects.temperature_model import Piece, TemperatureModel
 from inertial.estimation.triad import linear_names
 from inertial.physics.motion import stretches
-from stages.extension.drift_means import changes_of
+from stages.extension.drift_means import DRIFTS, changes_of
 
 TIME = np.array([10.0, 110.0, 410.0])
 KELVIN = np.array([290.0, 293.0, 299.0])
@@ -35,3 +35,9 @@ def test_a_drift_changes_one_parameter_by_its_course(effect, number, of, course)
         course = -200 * np.diff(np.exp(-ends / 200), axis=0)[0] / 20
     np.testing.assert_allclose(changes[:, place], course, rtol=1e-6, atol=1e-9)
     assert not np.delete(changes, place, axis=1).any()
+
+
+def test_what_turns_the_case_is_no_drift_of_the_sensor():
+    """Models with it and without differ in M, which is that of the case before it."""
+    assert not isinstance(CATALOGUE["mounting_shift"], DRIFTS)
+    assert not isinstance(CATALOGUE["mounting_slip"], DRIFTS)
