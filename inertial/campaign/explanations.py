@@ -154,11 +154,11 @@ EXPLANATIONS = (
     ),
     Explanation(("spike", "periodic_glitch"), PERFORMANCE, by_single_readings),
     Explanation(
-        ("dead_axis", "saturation"),
+        ("dead_axis", "saturation", "zero_below_threshold"),
         (*PERFORMANCE, "oscillation", "quantisation", *MISFITS),
         same_axis,
     ),
-    Explanation(("dead_axis",), ("bias_jump",), same_axis),
+    Explanation(("dead_axis", "zero_below_threshold"), ("bias_jump",), same_axis),
     # A motion beyond the range does not explain findings of a rest before or after it.
     Explanation(("saturation",), ("bias_jump",), same_readings),
     # Once in every period a reading is off: those that were not masked look like spikes.

@@ -23,6 +23,11 @@ HELD_WINDOW = 256  # records
 MIN_HELD_SHARE = 0.1  # of the records of nine in ten windows
 MAX_HELD_TIMES = 20.0  # the median of how long a reading is held: what stands still is longer
 MAX_EQUAL_ALONE = 0.3  # share of an axis of other records: its counts are not coarse
+# Readings that are less than twice a threshold while none is below it but 0: of a density that
+# does not change about zero they would have the chance 2^-32
+MIN_BESIDE_THRESHOLD = 32
+MIN_THRESHOLD_STEPS = 20.0  # smallest steps of the channel; of one that is coarse 0 is a count
+MIN_BEYOND_THRESHOLD = 10.0  # times the threshold, that the channel reads elsewhere
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +158,7 @@ class ChannelStatistics:
                     "held_share": np.repeat(channels.held_share(), 3),
                     "smallest": channels.smallest,
                     "largest": channels.largest,
+                    "threshold": channels.thresholds(),
                 }
             )
             for log, channels in self._by_log.items()
@@ -167,6 +173,9 @@ class _Channels:
         self.pairs, self.unchanged = np.zeros(6), np.zeros(6)
         self.smallest, self.largest = np.full(6, np.nan), np.full(6, np.nan)
         self.resolution = np.full(6, np.nan)
+        self.zeros = np.zeros(6)
+        # Of either sign, the magnitudes nearest to zero beside 0, ascending
+        self.nearest = [[np.empty(0), np.empty(0)] for _ in range(6)]
         self.noise: list[Array] = []
         self.noise_of_new: list[Array] = []  # without the records that hold a sensor's readings
         self.held = np.zeros(2)  # records, by sensor
@@ -208,11 +217,39 @@ class _Channels:
         self.largest[i] = np.fmax(self.largest[i], largest)
         self.pairs[i] += len(change)
         self.unchanged[i] += len(change) - np.count_nonzero(change)
+        self._add_near_zero(i, read)
         change = change[:MAX_READINGS]
         # Equal steps of counts times their size differ in their last digits.
         steps = change[change > MIN_RELATIVE_STEP * max(abs(smallest), abs(largest))]
         if len(steps):
             self.resolution[i] = np.fmin(self.resolution[i], steps.min())
+
+    def _add_near_zero(self, i: int, read: Array) -> None:
+        zeros = len(read) - np.count_nonzero(read)
+        self.zeros[i] += zeros
+        for k, own in enumerate((read[read > 0], -read[read < 0])):
+            kept = MIN_BESIDE_THRESHOLD if zeros else 1
+            least = np.partition(own, kept)[:kept] if len(own) > kept else own
+            nearest = np.sort(np.append(self.nearest[i][k], least))
+            self.nearest[i][k] = nearest[:MIN_BESIDE_THRESHOLD]
+
+    def thresholds(self) -> Array:
+        """Below which each channel reads 0, (6,), NaN where it reads what is small.
+
+        A channel that goes through zero either way, for which 0 is no value of a lost reading.
+        """
+        found = np.full(6, np.nan)
+        for i, (above, below) in enumerate(self.nearest):
+            if self.zeros[i] < MIN_BESIDE_THRESHOLD or not len(above) or not len(below):
+                continue
+            least = min(above[0], below[0])
+            beside = sum(np.count_nonzero(own < 2 * least) for own in (above, below))
+            beyond = max(-self.smallest[i], self.largest[i]) > MIN_BEYOND_THRESHOLD * least
+            either = max(above[0], below[0]) < 2 * least
+            fine = least > MIN_THRESHOLD_STEPS * self.resolution[i]
+            if beside >= MIN_BESIDE_THRESHOLD and beyond and either and fine:
+                found[i] = least
+        return found
 
     def _add_held(self, sensor: int, steps: Sequence[Array]) -> Booleans | None:
         """The records in which a sensor's readings are new; None where they are all the time."""
@@ -332,6 +369,7 @@ def logs(
             least=own["smallest"].to_numpy(np.float64),
             most=own["largest"].to_numpy(np.float64),
             limit=np.array([_number(row.get("limit"), np.inf) for row in channels]),
+            threshold=own["threshold"].to_numpy(np.float64),
             count=np.array([_count(row, clock[log].step) for row in channels]),
             windows=windows.get(log, Windows.none()),
             records=rows[log]["records"],

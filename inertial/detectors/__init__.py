@@ -77,6 +77,7 @@ from inertial.detectors.wrong_scale_factor import (
     WrongScaleFactor,
     WrongScaleOfTurns,
 )
+from inertial.detectors.zero_below_threshold import ZeroBelowThreshold
 from inertial.signal.detector import Detector
 from inertial.signal.plan_detector import PlanDetector
 
@@ -107,6 +108,7 @@ OF_RECORDS: tuple[Detector, ...] = (
     # readings: a blow, a channel at its limit, one that repeats, or a glitch would resemble spikes
     Impact(),
     Saturation(),
+    ZeroBelowThreshold(),
     DeadAxis(),
     PeriodicGlitch(),
     Spikes(),

@@ -88,6 +88,7 @@ class Log:
     reach, usual_noise: (6,), its largest reading of either sign in any log, and the median of its
     noise in all logs.
     limit: (6,), how far the channel reaches, infinite where not stated.
+    threshold: (6,), below which the channel reads 0, NaN where it does not.
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
     records: how many. increments: readings are increments over `step`, and what a count leaves
     over goes into the next. imu: the types of IMU in its messages, by NovAtel's list.
@@ -114,6 +115,7 @@ class Log:
     usual_noise: Array = field(default_factory=lambda: np.full(6, np.nan))
     increments: bool = False
     imu: tuple[int, ...] = ()
+    threshold: Array = field(default_factory=lambda: np.full(6, np.nan))
     held: Array = field(default_factory=lambda: np.zeros(2))
     stamp_scatter: float = np.nan
     interval_sigma: float = np.nan

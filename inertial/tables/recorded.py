@@ -122,7 +122,7 @@ IMU_TYPES = Table(
 )
 CHANNEL_STATISTICS = Table(
     "channel_statistics",
-    2,
+    3,
     (
         LOG,
         SENSOR,
@@ -143,6 +143,7 @@ CHANNEL_STATISTICS = Table(
         ),
         optional("smallest", DOUBLE, AS_CHANNEL, "smallest reading", BODY),
         optional("largest", DOUBLE, AS_CHANNEL, "largest reading", BODY),
+        optional("threshold", DOUBLE, AS_CHANNEL, "smaller readings are exactly 0, if they are"),
     ),
 )
 

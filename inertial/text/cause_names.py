@@ -26,6 +26,7 @@ NAMES = {
     "copied_channel": _("axis that is a copy of another"),
     "copied_log": _("log that is a copy of another"),
     "dead_axis": _("dead axis"),
+    "zero_below_threshold": _("readings of zero below a threshold"),
     "gap": _("gap"),
     "gravity_removed": _("gravity subtracted from the readings"),
     "normalised_force": _("accelerometers of constant magnitude"),
