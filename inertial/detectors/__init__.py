@@ -42,6 +42,7 @@ from inertial.detectors.quantisation import Quantisation
 from inertial.detectors.receiver_statements import StatusInvalid, WrongImuType
 from inertial.detectors.repeated_records import Duplicate, HeldRecord, SlowerSensor
 from inertial.detectors.saturation import Saturation
+from inertial.detectors.saturation_of_turns import SaturationOfTurns
 from inertial.detectors.spike import Spikes
 from inertial.detectors.stamp_faults import (
     ArrivalStamps,
@@ -139,6 +140,7 @@ OF_PLAN: tuple[PlanDetector, ...] = (
     ManoeuvreSwapped(),
     ManoeuvreMissing(),
     WrongDirection(),
+    SaturationOfTurns(),
     IncompleteTurn(),
     TurnTooFar(),
     LostSamplesOfTurns(),

@@ -113,16 +113,21 @@ MAX_LEAP_CHANCE = 1e-6  # chance that they do so by themselves
 MIN_ROUGH_TURNS = 1.5  # counts: readings that alternate between two counts have 1.05
 SMOOTH = 6  # order of the differences that are left of a smooth motion
 SIDE_READINGS = 8  # readings before a run and after it
+MIN_FAR = 0.8  # of the largest reading of the log: a filter overshoots what is cut off before it
 MIN_COMMON_RUN = 1000  # equal readings of all axes, where nothing is known of their noise
 
 
 @dataclass(frozen=True)
 class Stillness:
-    """A constant channel: its reading, whether throughout the log, and for how many s."""
+    """A constant channel: its reading, whether throughout the log, and for how many s.
+
+    far: whether no reading of the log is much larger.
+    """
 
     level: float
     always: bool
     seconds: float
+    far: bool
 
 
 class DeadAxis(Detector):
@@ -166,6 +171,7 @@ class DeadAxis(Detector):
                         float(own.values[own.start[k]]),
                         bool(log.least[i] == log.most[i]),
                         number * log.step,
+                        abs(own.values[own.start[k]]) > MIN_FAR * max(-log.least[i], log.most[i]),
                     ),
                 )
 
@@ -247,6 +253,11 @@ def _other_cause(facts: Stillness) -> str:
         return _(
             " It may also be the limit of the range, exceeded throughout the log: then record it "
             "within the range."
+        )
+    if facts.far:
+        return _(
+            " It may also be the end of the range, before a filter: then turn more slowly, or "
+            "choose a wider range."
         )
     return ""
 
