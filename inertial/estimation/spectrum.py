@@ -217,6 +217,7 @@ def rate_deviation(
 
 CELL_BINS = 8.0  # of each record in a cell of the spectrum; a line fills three or four
 CELL_RATIO = 1.1  # of the ends of a cell, at least
+MAX_WIDER = 1.5  # of the bins of records that tell the shape, times those of the usual one
 MAX_CHANCE = 1e-4  # that white noise counts as coloured
 MEDIAN_VARIANCE = 1 / np.log(2) ** 2  # relative, times n, of the median of n exponential bins
 
@@ -241,9 +242,14 @@ def noise_shape(records: Sequence[Array], rate: float, lowest: float) -> NoiseSh
 
 
 def shape_of(frequencies: Sequence[Array], levels: Sequence[Array]) -> NoiseShape:
-    """The same by the periodogram of each record: frequencies, Hz, and levels, (bins,) each."""
+    """The same by the periodogram of each record: frequencies, Hz, and levels, (bins,) each.
+
+    By the longer records, which have half of the bins at least: the bins of a short one are wide.
+    """
     there = [(f, level) for f, level in zip(frequencies, levels, strict=True) if level.any()]
-    edges = _cells([frequency for frequency, _level in there])
+    bin_width = _usual_bin_width([frequency for frequency, _level in there])
+    there = [one for one in there if _bin_width(one[0]) <= MAX_WIDER * bin_width]
+    edges = _cells([frequency for frequency, _level in there], bin_width)
     if len(edges) < 3:
         return WHITE
     frequency = np.concatenate([frequency for frequency, _level in there])
@@ -264,14 +270,24 @@ def shape_of(frequencies: Sequence[Array], levels: Sequence[Array]) -> NoiseShap
     return NoiseShape(middle[: len(known)][known], np.exp(smooth / 2))
 
 
-def _cells(frequencies: Sequence[Array]) -> Array:
-    """The ends of the cells, Hz, in each of which the usual record has bins enough."""
-    longest = [frequency for frequency in frequencies if len(frequency) > 1]
-    if not longest:
+def _usual_bin_width(frequencies: Sequence[Array]) -> float:
+    """Of the records that, from the longest on, have half of the bins, Hz; 0 without any."""
+    longest = sorted((one for one in frequencies if len(one) > 1), key=_bin_width)
+    bins = np.cumsum([len(one) for one in longest])
+    return _bin_width(longest[int(np.searchsorted(bins, bins[-1] / 2))]) if longest else 0.0
+
+
+def _bin_width(frequency: Array) -> float:
+    """Of a record, Hz; infinite of one that has a single bin."""
+    return float(frequency[1] - frequency[0]) if len(frequency) > 1 else np.inf
+
+
+def _cells(frequencies: Sequence[Array], bin_width: float) -> Array:
+    """The ends of the cells, Hz, in each of which a record of this bin width has bins enough."""
+    if not frequencies:
         return np.zeros(0)
-    bin_width = float(np.median([frequency[1] - frequency[0] for frequency in longest]))
-    edges = [float(min(frequency[0] for frequency in longest))]
-    highest = float(max(frequency[-1] for frequency in longest))
+    edges = [float(min(frequency[0] for frequency in frequencies))]
+    highest = float(max(frequency[-1] for frequency in frequencies))
     while True:
         following = max(edges[-1] * CELL_RATIO, edges[-1] + CELL_BINS * bin_width)
         if following + CELL_BINS * bin_width / 2 > highest:

@@ -287,8 +287,9 @@ def _alone(drop: float, count: int, equations: ScoreEquations) -> float:
     remaining = max(equations.degrees - count, 0)
     degrees = remaining + equations.noise_degrees
     rest = max(equations.chi_squared - drop, 0.0)
-    # Residuals that uniformly exceed the noise are no structure.
+    # Residuals that uniformly exceed the noise are no structure. Where they lie below it a filter
+    # makes neighbouring blocks alike, which means of many do not gain by.
     variance = max(
-        (rest + equations.noise_degrees) / degrees, rest / remaining if remaining else 0.0
+        (rest + equations.noise_degrees) / degrees, rest / remaining if remaining else 0.0, 1.0
     )
     return float(f_sf(drop / count / variance, count, degrees))

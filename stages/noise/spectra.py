@@ -52,20 +52,26 @@ class Spectra:
         for sensor, levels in self.levels.items():
             frequencies = self.frequencies[sensor]
             slowest = min(frequency.min() for frequency in frequencies)
-            slow = np.array([shape.at(slowest) for shape in shapes[sensor]])
-            at = [np.array([one.at(f) for one in shapes[sensor]]).T for f in frequencies]
-            pieces = [level / one**2 for level, one in zip(levels, at, strict=True)]
-            flat, flat_sigma = level_of_pieces(pieces, self.seconds[sensor])
-            white, sigma = flat * slow, flat_sigma * slow
-            for i, axis in enumerate(tables.AXES):
-                if white[i] > 0:
+            for i, (axis, shape) in enumerate(zip(tables.AXES, shapes[sensor], strict=True)):
+                pieces, seconds = [], []
+                for frequency, level, duration in zip(
+                    frequencies, levels, self.seconds[sensor], strict=True
+                ):
+                    loud = shape.loud(frequency)
+                    if loud.any():
+                        flat = level[loud, i] / shape.at(frequency[loud]) ** 2
+                        pieces.append(flat[:, None])
+                        seconds.append(duration)
+                white, sigma = level_of_pieces(pieces, seconds) if pieces else np.zeros((2, 1))
+                if white[0] > 0:
+                    slow = float(shape.at(slowest))
                     square = self.squares[COLUMNS[sensor]][i]
                     yield {
                         "manoeuvre": manoeuvre,
                         "phase": phase,
                         "channel": f"{sensor}_{axis}",
-                        "white_noise": float(white[i]),
-                        "sigma": float(sigma[i]),
+                        "white_noise": slow * float(white[0]),
+                        "sigma": slow * float(sigma[0]),
                         "per_sample": float(np.sqrt(square / self.samples[sensor])),
                         "samples": self.samples[sensor],
                     }
