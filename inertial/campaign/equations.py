@@ -30,6 +30,7 @@ from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_and_random_walk import Scatter, SwitchOns
+from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined
@@ -177,6 +178,28 @@ class Campaign:
     def with_random_walks(self, random_walks: tuple[float, float]) -> "Campaign":
         """The same with random walks of the gyro and accelerometer biases, rad/s/√s, m/s²/√s."""
         return replace(self, solution=replace(self.solution, random_walks=random_walks))
+
+    def about_leans(self, effects: Sequence[Effect], prior_sigma: float) -> "Campaign":
+        """The same, its accelerometers linear about their result with those effects of a table.
+
+        The tilt that a reading shows is by M and bias. A lean of all positions that is not among
+        the unknowns bends both, and a part of it is not seen. `prior_sigma`: as in `systems`.
+        """
+        leans = [effect for effect in effects if of_a_table(effect)]
+        before = self.solution.accelerometer
+        if not leans or before is None or self.by_hand:
+            return self
+        system = self.system("accel", leans, prior_sigma)
+        estimate = system.solve_shared() if system else None
+        if estimate is None or not estimate.determined[:UNKNOWNS].all():
+            return self
+        after = accelerometers.triad_of(estimate)
+        bent = np.abs(after.matrix - before.matrix).max()
+        bent = max(bent, np.abs(after.bias - before.bias).max() / self.gravity.number)
+        if bent <= accelerometers.MIN_BENT:
+            return self
+        solution = replace(self.solution, accelerometer=after)
+        return replace(self, solution=solution, _known={}, _linear={})
 
     def without_random_walks(self) -> "Campaign":
         """The same with constant biases."""

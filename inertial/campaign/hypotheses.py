@@ -25,6 +25,18 @@ PLANNED = "plan"  # the stage that repairs what the campaign file states
 TABLE_MOVING = "table_moving"
 SLIP = "mounting_slip"  # shown by one turn, it turns the axes of all that follows
 MOUNTINGS = ("mounting_shift", SLIP)  # effects that turn the axes of both sensors from then on
+# Effects by which the case is not in the attitude that is stated.
+OF_ATTITUDES = frozenset(
+    {
+        *MOUNTINGS,
+        "table_position_error",
+        "table_axis_error",
+        "table_axis_non_orthogonality",
+        "table_tilt",
+        "turn_angle_error",
+        "table_angle_scale",
+    }
+)
 TIME = "t0"  # the parameter of effects that set in at a moment
 CLEAR_SIGMAS = 3.0  # of an angle
 MAX_CARRYING = 3  # manoeuvres that carry a structure of the residuals; it is elsewhere with more

@@ -1,7 +1,5 @@
 """A table that is not level."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from inertial.arrays import Array
@@ -13,6 +11,9 @@ from inertial.text.units import ARC_SECOND
 
 class TableTilt(Effect):
     """f −= g (n north + e east): the table's vertical leans by n towards north and e towards east.
+
+    The gyros feel the earth's rate as at a latitude that is n higher, its level part e further
+    east: it counts where the lean is some tenths of a degree.
 
     Told from the tilt of a position by the turn: it stays fixed to the laboratory and so goes
     round in body axes. Without the azimuth of the positions there is no telling.
@@ -31,7 +32,13 @@ class TableTilt(Effect):
         north = np.nan_to_num(motion.north)
         leant = values[0] * north + values[1] * cross(north, motion.up)
         lean = cross(motion.up, leant)
-        return replace(truth, force=truth.force - cross(lean, truth.force))
+        earth = -cross(lean, truth.rate - motion.omega)
+        upward = np.sum(earth * motion.up, axis=1, keepdims=True) * motion.up
+        seen = np.where(motion.surveyed[:, None], earth, upward)  # else the gyros tell the level
+        return Truth(rate=truth.rate + seen, force=truth.force - cross(lean, truth.force))
+
+    def level_rate_changes(self, up: float, level: float) -> Array:
+        return np.array([-up, 0.0])
 
     def blind(self, motion: Motion) -> str:
         return without_north(motion)

@@ -45,6 +45,7 @@ BIAS = 9  # column of the first of the three biases
 MAX_RANDOM_WALK = 2e-3  # m/s²/√s, 10 mg/√h: a hundred times that of the poorest sensors
 MAX_SHOWN = 5.0  # sigma of a position that a tilt may be to be its own
 MIN_SHOWN = 1e-4  # rad; of a smaller tilt what is not linear is less than 0.005 µg
+MIN_BENT = 5e-4  # rad; of a smaller error of M and bias the cosines of tilts are off by 0.1 µg
 MIN_SPANNED = 0.05  # rms component along a direction of planned attitudes that have it
 FREE_TILT = 0.2  # rad, sigma of the tilt of a position of which nothing is known
 OF_ANGLE = "angle"  # the kind of the errors of turns

@@ -16,7 +16,8 @@ from laboratory.units import PPM
 class TableAngleScale(ScalarEffect):
     """An angle of 360° on its scale is 360° (1 + ε): of turns, and of the steps of a tumble.
 
-    value: ε, 1. The next manoeuvre starts from its set position again.
+    So is all that is set by this scale, rate and acceleration, and a turn takes its time. value: ε,
+    1. The next manoeuvre starts from its set position again.
     """
 
     KEY = "scale_ppm"
@@ -26,7 +27,12 @@ class TableAngleScale(ScalarEffect):
         if isinstance(profile, Steady):
             return replace(profile, rate=profile.rate * (1 + self.value))
         if isinstance(profile, Trapezoid):
-            return replace(profile, angle=profile.angle * (1 + self.value))
+            return replace(
+                profile,
+                angle=profile.angle * (1 + self.value),
+                set_rate=profile.set_rate * (1 + self.value),
+                set_acceleration=profile.set_acceleration * (1 + self.value),
+            )
         return profile
 
     def position_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:

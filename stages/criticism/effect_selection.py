@@ -12,7 +12,7 @@ import numpy as np
 
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
-from inertial.campaign.scatter_given_effects import scattered
+from inertial.campaign.scatter_given_effects import NAMED_PRIOR_SIZE, scattered
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, NamedCauses
 from inertial.model_selection.detection_limits import visible
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
@@ -186,7 +186,10 @@ def _select(
             break
         min_snr = MIN_THIRD_SEARCH_SNR
     for _round in range(MAX_ROUNDS):
-        if not (found := _about_what_was_found(named, families)):
+        found = _about_what_was_found(named, families)
+        there = [families[c.effect][c.value] for c in named.causes if c.effect in families]
+        about, campaign = campaign, campaign.about_leans(there, NAMED_PRIOR_SIZE)
+        if not found and campaign is about:
             break
         families |= found
         equations, rest, searched = _evidence_given(campaign, families, noise_degrees, given)

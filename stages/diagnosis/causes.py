@@ -16,6 +16,7 @@ from inertial.campaign.hypotheses import (
     MIN_SPOILING,
     MODEL,
     MOUNTINGS,
+    OF_ATTITUDES,
     ONE_OF_CLASS,
     RECORDING,
     SENSE_OF_TURNS,
@@ -89,6 +90,10 @@ ONE_CHANGE = _(
 )
 ALONE = _("What disturbs {manoeuvre}, which is left out, is in this manoeuvre alone.")
 OF_GYROS = _("The asymmetry is that of the gyros, and not of the table.")
+NO_ATTITUDE = _(
+    "What the residuals of the accelerometers show is in their readings, and no error of "
+    "attitudes, which the cross-axis terms of the gyros would contain."
+)
 STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
 HARMLESS = _("Nothing need be done about it for this result.")
 
@@ -112,8 +117,8 @@ class Cause:
     `modelled`: those of them whose result has it in its model; `freed`: the manoeuvre whose own
     error it is there, or that is left out for it; `turns`: by how many sigma one of its class turns
     a sensor's axes; `spoilt`: by how many sigma it moves the result of a sensor; `restored`: on
-    which condition the gravity is right to which that result is referred, so that it is moved no
-    more.
+    which condition it does not: that the gravity to which that result is referred is right, or that
+    attitudes are; `doubted`: the sensors that attitudes would move if they were what is wrong.
     """
 
     members: tuple[ExplainedFindings, ...]
@@ -129,6 +134,7 @@ class Cause:
     spoilt: Mapping[str, float] = field(default_factory=dict)
     restored: str | None = None
     most_moved: str = ""
+    doubted: frozenset[str] = frozenset()
 
     def of(self, sensor: str) -> Cause:
         """What it is for the result of one sensor, with its consequences there."""
@@ -139,6 +145,8 @@ class Cause:
         if sensor in self.spoilt:
             cure = REPAIRED if self.restored else NONE
             return replace(self, members=members, cure=cure, moves=self.spoilt[sensor])
+        if sensor in self.doubted:
+            return replace(self, members=members, restored=NO_ATTITUDE)
         cure = MODELLED if sensor in self.modelled else self.cure
         moves = max(filter(None, (self.moves, self.turns.get(sensor))), default=self.moves)
         return replace(self, members=members, cure=cure, moves=moves, restored=None)
@@ -322,12 +330,29 @@ class Evidence:
         elif cure == NONE and modelled:
             done = ONLY_MODELLED.format(sensors=_(" and ").join(PLURAL[s] for s in modelled))
         spoilt = self._by_gravity_of_wrong_place(members)
-        sensors = tuple(dict.fromkeys([*(result.sensor for result in own), *spoilt]))
+        doubted = self._doubted(main, moves)
+        sensors = tuple(dict.fromkeys([*(result.sensor for result in own), *spoilt, *doubted]))
         gain, turns = _gain(main, drop, own), {} if freed else _turns(main, own)
         given = (members, sensors, cure, done, moves, drop, gain, modelled, freed, turns, spoilt)
         gravity = self.gravity.get(main.id)
         condition = None if gravity is None else gravity.condition
-        return Cause(*given, condition, _most_moved(main, moves, own))
+        return Cause(*given, condition, _most_moved(main, moves, own), doubted)
+
+    def _doubted(self, cause: Hypothesis, moves: float | None) -> frozenset[str]:
+        """The gyros, where a structure of the accelerometers may be of attitudes that are wrong.
+
+        `moves`: by how many sigma it shifts the accelerometers. Their cross-axis terms tell how
+        large an angle that is.
+        """
+        if cause.verdict != UNKNOWN_STRUCTURE or cause.sensor != "accel":
+            return frozenset()
+        own = {s: r for (s, mount), r in self.results.items() if mount == cause.mount}
+        if cause.causes.isdisjoint(OF_ATTITUDES) or not {"gyro", "accel"} <= own.keys():
+            return frozenset()
+        accel, gyro = (own[sensor].cross_sigma for sensor in ("accel", "gyro"))
+        if not gyro or (moves is not None and accel and moves * accel <= MAX_MOVE * gyro):
+            return frozenset()
+        return frozenset({"gyro"})
 
     def _by_gravity_of_wrong_place(self, members: Sequence[ExplainedFindings]) -> dict[str, float]:
         """By how many sigma the gravity of a latitude that is wrong moves the accelerometers."""

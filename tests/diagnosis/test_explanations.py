@@ -1,14 +1,15 @@
 """Which finding is the cause of which: a few findings at a time, as the stages write them."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from inertial.campaign.competition import compete
+from inertial.campaign.competition import ExplainedFindings, compete
 from inertial.campaign.hypotheses import Hypothesis
-from stages.diagnosis.causes import _may_be_shift
+from stages.diagnosis.causes import Cause, Evidence, _may_be_shift
 
 APPLIED = {"state": "applied", "axis": None}
 RIVAL = {"state": "rival", "axis": None}
@@ -360,3 +361,25 @@ def test_a_count_size_by_axes_that_nobody_knows_is_no_cause(rivals, explained):
     if not explained:  # set right, so that the size is by the right axes
         named = {"axis_swap": set(), "gyro_count_size": set()}
     assert causes(swap, size) == named
+
+
+@pytest.mark.parametrize(
+    ("sensor", "member", "moves", "doubted"),
+    [
+        ("accel", "table_axis_non_orthogonality", 130.0, {"gyro"}),  # 1.3 mrad
+        ("accel", "mounting_shift", None, {"gyro"}),
+        ("accel", "table_axis_non_orthogonality", 1.5, set()),  # 15 µrad of 20
+        ("accel", "accel_bias_jump", 130.0, set()),
+        ("gyro", "mounting_shift", 130.0, set()),
+    ],
+)
+def test_gyros_hold_on_condition_where_attitudes_may_be_wrong(sensor, member, moves, doubted):
+    """The cross-axis terms of the gyros take up a wrong attitude, which their residuals lack."""
+    accel, gyro = (SimpleNamespace(cross_sigma=sigma) for sigma in (10e-6, 20e-6))
+    evidence = Evidence({("accel", ""): accel, ("gyro", ""): gyro}, frozenset(), {})
+    structure = effect("unknown_structure", sensor, "unknown_structure", member)
+    assert evidence._doubted(structure, moves) == doubted
+    each = ExplainedFindings(structure, (structure,))
+    cause = Cause((each,), ("accel", "gyro"), "none", "", moves, doubted=frozenset(doubted))
+    assert cause.of("accel").condition is None and cause.of("accel").spoils
+    assert (cause.of("gyro").condition is not None) == bool(doubted) != cause.of("gyro").spoils

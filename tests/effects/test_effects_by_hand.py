@@ -95,6 +95,50 @@ def test_leans_of_the_table_by_exact_rotations(name, attitudes, north, east):
     np.testing.assert_allclose(gyro[1:-1], leaning[0] - level[0], atol=5e-8)  # 2 δ² ω
 
 
+@pytest.mark.parametrize("north, east", [(1e-3, 0.0), (0.0, 1e-3)])
+def test_a_table_that_leans_feels_another_part_of_the_earth_rate(north, east):
+    attitudes = about_the_vertical(ANGLES) * AT_START
+    leaning = Rotation.from_rotvec(lean(north, east)) * attitudes
+    earth = np.array([0.0, SITE.earth_level, SITE.earth_up])
+    motion = on_a_turn(ANGLES)
+    gyro = acted("table_tilt", [north, east], motion, SITE)[0]
+    gyro -= acted("table_tilt", [north, east], motion, STILL)[0]
+    assert np.abs(gyro).max() > 3e-8
+    exact = leaning.inv().apply(earth) - attitudes.inv().apply(earth)
+    np.testing.assert_allclose(gyro, exact, atol=1e-10)  # δ² Ω
+    # Where the azimuth is not known the gyros tell the level part, which absorbs all but its size.
+    unknown = replace(motion, surveyed=np.zeros(len(ANGLES), bool))
+    upward = acted("table_tilt", [north, east], unknown, SITE)[0]
+    upward -= acted("table_tilt", [north, east], unknown, STILL)[0]
+    seen = np.sum(exact * motion.up, axis=1, keepdims=True) * motion.up
+    np.testing.assert_allclose(upward, seen, atol=1e-10)
+    level = np.hypot(*Rotation.from_rotvec(lean(north, east)).inv().apply(earth)[:2])
+    change = CATALOGUE["table_tilt"].level_rate_changes(SITE.earth_up, SITE.earth_level)
+    assert np.array([north, east]) @ change == pytest.approx(level - SITE.earth_level, abs=1e-10)
+
+
+def test_a_scale_of_the_angle_leaves_the_case_off_until_a_position_is_set():
+    """A turn about north, one about east from where that ends, and one about east set anew."""
+    scale, whole, n = 1e-5, ANGLES[-1], len(ANGLES)
+    rate, still = np.gradient(ANGLES, STEP), np.full(n, STEP)
+    motions, exact = [], []
+    for place, (axis, before) in enumerate([(NORTH, 0.0), (EAST, whole), (EAST, 0.0)]):
+        start = Rotation.from_rotvec(before * NORTH).inv()
+        at_start = start.apply(UP), start.apply(NORTH)
+        turn = turning(axis, *at_start, ANGLES, rate, np.gradient(rate, STEP), still, still)
+        at = {"visit": np.full(n, float(place)), "position": np.full(n, place // 2)}
+        motions.append(replace(turn, surveyed=np.ones(n, bool), **at))
+        felt = [
+            (Rotation.from_rotvec(k * before * NORTH) * Rotation.from_rotvec(turned)).inv()
+            for k in (1 + scale, 1.0)
+            for turned in [np.outer(k * ANGLES, axis)]
+        ]
+        exact.append(felt[0].apply(GRAVITY * UP) - felt[1].apply(GRAVITY * UP))
+    accel = acted("table_angle_scale", [scale], joined(motions), SITE)[1]
+    np.testing.assert_allclose(accel, np.concatenate(exact), atol=3e-8)  # 2 (δ ϑ)² g
+    assert np.abs(accel[n]).max() > 100 * max(np.abs(accel[0]).max(), np.abs(accel[2 * n]).max())
+
+
 @pytest.mark.parametrize("lean, quarter", [(1e-4, 0.0), (0.0, 1e-4)])
 def test_a_middle_axis_that_leans_by_exact_rotations(lean, quarter):
     """From where z was up it has turned the case about the south, so that x came up."""

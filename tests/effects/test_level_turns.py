@@ -1,4 +1,4 @@
-"""Turns about a level axis in the laboratory: clean, one 200″ too far, a sensor late."""
+"""Turns about a level axis in the laboratory: clean, one or all too far, a sensor late."""
 
 from typing import Any
 
@@ -6,6 +6,7 @@ import chain
 import pytest
 
 FURTHER = 200.0  # arc seconds
+SCALE = 1e-3
 
 
 def document(**effects: Any) -> dict[str, Any]:
@@ -56,3 +57,18 @@ def test_a_sensor_that_is_late_against_the_other_is_named_alone(effect, lag, beh
     (tau,) = effects[effects["parameter"] == "tau"].to_dict("records")
     assert abs(tau["value"] - behind) < 4 * tau["sigma"] < 2e-4
     assert not results["diagnosis/verdict"]["verdict"].eq("not_usable").any()
+
+
+@pytest.mark.slow
+def test_a_table_whose_turns_all_go_too_far_is_named_alone_and_the_gyros_are_rid_of_it():
+    """The level turns tell; by those about the vertical the scale factors were 1000 ppm off."""
+    made = document(table_angle_scale={"scale_ppm": SCALE * 1e6})
+    results = chain.in_memory_of(made, "diagnosis", chain.BESIDE)
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert cause["cause"] == "table_angle_scale"
+    assert abs(cause["size"] - SCALE) < 4 * cause["sigma"] < SCALE / 50
+    assert not results["diagnosis/verdict"]["verdict"].eq("not_usable").any()
+    result = results["diagnosis/result"].set_index(["sensor", "parameter"]).loc["gyro"]
+    for i, axis in enumerate("xyz"):
+        own = result.loc[f"scale_{axis}"]
+        assert abs(own["value"] - (made["truth"]["gyro"]["matrix"][i][i] - 1)) < 4 * own["sigma"]

@@ -75,9 +75,11 @@ def test_a_turn_that_takes_longer_than_there_is_rest_behind_it_is_refused(
 
 
 def test_degrees_that_are_too_large(performed: Performed) -> None:
-    """400 ppm: 360.144°; and a tumble's rest at 300° stands at 300.12°."""
+    """400 ppm: 360.144°, in the same time; and a tumble's rest at 300° stands at 300.12°."""
     effects = {"table_angle_scale": {"scale_ppm": 400}}
-    assert turned(truth_of(performed, TURN, effects))[-1] == pytest.approx(radians(360.144))
+    right, wrong = (turned(truth_of(performed, TURN, own)) for own in ({}, effects))
+    assert wrong[-1] == pytest.approx(radians(360.144))
+    assert wrong == pytest.approx(1.0004 * right, rel=1e-9)
     for degrees, force in rests(truth_of(performed, TUMBLE, effects)):
         assert force == pytest.approx(on_edge(degrees * 1.0004), abs=1e-9)
 
