@@ -89,7 +89,7 @@ def code(stage):
 def command(stage):
     """How a stage is called, with the folder of the campaign's tables."""
     return (
-        f"python -m stages.{stage} data/derived/{{wildcards.campaign:q}}"
+        f"python -m stages {stage} data/derived/{{wildcards.campaign:q}}"
         " --settings {params.settings:q} {params.files:q} 2> {log:q}"
     )
 

@@ -116,7 +116,7 @@ def _bare(logs: list[str]) -> str:
             reads = [f"reports/{{campaign}}.{e}" for e in ("html", "calibration.json", "dcc.xml")]
         rules.append(
             f"rule {stage}:\n    input: {reads}\n    output: {writes}\n"
-            f'    shell: "python -m stages.{stage} data/derived/{{wildcards.campaign}}"'
+            f'    shell: "python -m stages {stage} data/derived/{{wildcards.campaign}}"'
         )
     return "\n".join(rules) + "\n"
 

@@ -246,7 +246,7 @@ class _Crate:
     def _step(self, one: Done, place: int, agent: Any) -> tuple[Any, Any, Any]:
         """The stage as a step of the workflow, as an action, and the order to do it."""
         about = import_module(f"stages.{one.stage}").__doc__ or one.stage
-        tool = self._software(f"stages.{one.stage}", f"python -m stages.{one.stage}", one.code)
+        tool = self._software(f"stages.{one.stage}", f"python -m stages {one.stage}", one.code)
         about = about.strip().splitlines()[0]
         tool["description"] = about
         step = self._entity(

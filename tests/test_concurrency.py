@@ -160,7 +160,7 @@ def test_two_campaigns_of_one_imu_that_end_at_once_are_both_in_its_history(
     history = tmp_path / "data/history"
 
     def end(*ending: str) -> None:
-        command = [sys.executable, "-m", "stages.history", "--archive", str(history)]
+        command = [sys.executable, "-m", "stages", "history", "--archive", str(history)]
         command += ["--settings", json.dumps(chain.SETTINGS["history"])]
         at_once = [
             subprocess.Popen([*command, str(tmp_path / "data/derived" / name)], cwd=chain.ROOT)

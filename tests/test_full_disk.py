@@ -11,7 +11,7 @@ import pytest
 from inertial.tables.errors import Refusal
 from inertial.tables.whole_files import write_whole
 
-DECODE = [sys.executable, "-m", "stages.decode"]
+DECODE = [sys.executable, "-m", "stages", "decode"]
 
 
 def limited(size: int):

@@ -116,7 +116,7 @@ def test_the_rules_are_the_stages_with_what_they_declare(workflow: Workflow) -> 
         row = dict(zip(names, line.split("\t"), strict=True))
         outputs.setdefault(row["rule"], set()).add(row["output_file"])
         if row["rule"] in set(ORDER) - {"pdf"}:
-            assert f"python -m stages.{row['rule']} data/derived/demo" in row["shellcmd"]
+            assert f"python -m stages {row['rule']} data/derived/demo" in row["shellcmd"]
     assert set(outputs) - {"pdf"} == {*ORDER, "laboratory_demo"} - {"pdf"}
     for stage in set(ORDER) - {"pdf"}:
         declared: Declared = import_module(f"stages.{stage}.declared").DECLARED
@@ -196,7 +196,7 @@ def test_the_language_is_a_setting_of_the_report_alone(workflow: Workflow) -> No
 
 @pytest.mark.slow
 def test_the_report_in_chinese_has_no_english(workflow: Workflow, tmp_path: Path) -> None:
-    said = [sys.executable, "-m", "stages.report", str(workflow.data / "data/derived/demo")]
+    said = [sys.executable, "-m", "stages", "report", str(workflow.data / "data/derived/demo")]
     said += ["--settings", '{"language": "zh"}', "--documents", str(tmp_path / "demo")]
     subprocess.run(said, cwd=workflow.home, check=True)
     page = (tmp_path / "demo.html").read_text(encoding="utf-8")

@@ -18,7 +18,6 @@ from benchmarks.answering import answer
 
 ROOT = Path(__file__).parents[2]
 EVERY = 0.2  # s between two samples
-MODULE = "stages."  # how the module of a stage begins on its command line
 
 
 @dataclass
@@ -87,9 +86,7 @@ def _watched(targets: list[str], folder: Path) -> Watch:
 def _stage(process: psutil.Process) -> str:
     """The stage that a process is, by its command line; none: empty."""
     words = process.cmdline()
-    if words[1:2] == ["-m"] and words[2:3] and words[2].startswith(MODULE):
-        return words[2].removeprefix(MODULE)
-    return ""
+    return words[3] if words[1:3] == ["-m", "stages"] else ""
 
 
 def _spent() -> float:

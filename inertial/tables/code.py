@@ -17,11 +17,11 @@ OF_TYPES = re.compile(r"^if TYPE_CHECKING:\n(?:[ \t]+.*\n|\n)+", re.MULTILINE)
 # Schemas and templates lie beside the module that reads them.
 DATA = {".yaml", ".json", ".html", ".css", ".js"}
 TRANSLATIONS = "inertial/text/*.po"
-SPEAKS = "speak_as_set("  # stands in __main__.py of what speaks other languages
+SPEAKS = 'documents=("html"'  # stands in declared.py of a stage that speaks other languages
 
 
 def code_of(stage: str, package: str = "stages") -> list[Path]:
-    """Every file that `python -m stages.<stage>` can reach by its imports, and the lock file.
+    """Every file that `python -m stages <stage>` can reach by its imports, and the lock file.
 
     `package`: where it lies, which for a page of several campaigns is `overviews`.
 
@@ -29,7 +29,8 @@ def code_of(stage: str, package: str = "stages") -> list[Path]:
     schemas and templates that lie in its folder.
     """
     reached: set[Path] = set()
-    waiting = [f"{package}.{stage}.__main__", package, f"{package}.{stage}"]
+    own = f"{package}.{stage}"
+    waiting = [package, own, f"{package}.__main__", f"{own}.__main__", f"{own}.stage"]
     seen: set[str] = set()
     while waiting:
         if (module := waiting.pop()) not in seen:
@@ -39,10 +40,8 @@ def code_of(stage: str, package: str = "stages") -> list[Path]:
                 waiting += _imports(file)
     folders = {file.parent for file in reached} - {ROOT / "stages", ROOT / "inertial"}
     beside = {file for folder in folders for file in _data(folder)}
-    if any(
-        SPEAKS in file.read_text(encoding="utf-8")
-        for file in _files(ROOT, f"{package}.{stage}.__main__")
-    ):
+    declared = _files(ROOT, f"{own}.declared")
+    if package != "stages" or any(SPEAKS in f.read_text(encoding="utf-8") for f in declared):
         beside |= set(ROOT.glob(TRANSLATIONS))
     return sorted(reached | beside | {ROOT / "requirements.lock"})
 

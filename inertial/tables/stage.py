@@ -1,6 +1,6 @@
 """How a stage meets the outside: one function from tables to tables, and its command line.
 
-    python -m stages.<stage> data/derived/<campaign> --settings '{"level": 0.005}'
+    python -m stages <stage> data/derived/<campaign> --settings '{"level": 0.005}'
 
 It reads the tables that it declares from the folders of earlier stages in the folder of the
 campaign, and writes its own into the folder of its name there; or documents, into `reports/`.

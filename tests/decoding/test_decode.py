@@ -45,12 +45,12 @@ def test_the_stage_runs_without_pandas(tmp_path):
         writer.write("logs", pa.RecordBatch.from_pylist(rows, LOGS.schema))
     program = (
         "import runpy, sys\n"
-        "runpy.run_module('stages.decode', run_name='__main__')\n"
+        "runpy.run_module('stages', run_name='__main__')\n"
         "assert 'pandas' not in sys.modules, 'pandas was imported'\n"
     )
     output = tmp_path / "decode"
     subprocess.run(
-        [sys.executable, "-c", program, tmp_path, "--raw", *logs],
+        [sys.executable, "-c", program, "decode", tmp_path, "--raw", *logs],
         check=True,
         cwd=Path(__file__).parents[2],
     )
