@@ -8,8 +8,7 @@ import numpy as np
 
 from commands.draft.raw_log import Name, RawLog, finite
 from inertial.arrays import Array
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import significant, whole
 
 MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back

@@ -35,8 +35,7 @@ from inertial.estimation.multi_position import (
 )
 from inertial.estimation.scatter_and_random_walk import ScatterFit, with_scatter
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
-from inertial.text.enumeration import listed
-from inertial.text.messages import _, plural
+from inertial.text.messages import _, listed, plural
 from inertial.text.numbers import significant
 from inertial.text.parameters import CROSS, FREE, MOUNTING, PARTS, SYMMETRIC
 

@@ -7,8 +7,8 @@ and the tests take it from these lists. A detector masks what it detects for tho
 from inertial.detectors.bias_jump import BiasJump
 from inertial.detectors.clock_jitter import ClockJitter
 from inertial.detectors.clock_scale import ClockScale
-from inertial.detectors.copied_readings import CopiedChannel, CopiedLog
 from inertial.detectors.dead_axis import DeadAxis
+from inertial.detectors.disturbances import Impact, PeriodicGlitch
 from inertial.detectors.encoder_against_plan import (
     EncoderAngles,
     EncoderJump,
@@ -16,7 +16,6 @@ from inertial.detectors.encoder_against_plan import (
     EncoderScaleOrEccentricity,
 )
 from inertial.detectors.gap import Gap
-from inertial.detectors.impact import Impact
 from inertial.detectors.manoeuvres_against_plan import (
     ManoeuvreMissing,
     ManoeuvreSwapped,
@@ -33,11 +32,14 @@ from inertial.detectors.misread_axes_and_signs import (
     SignFlipAgainstPlan,
     SignFlipOfGyros,
 )
-from inertial.detectors.motion_after_turns import MotionAfterTurns
 from inertial.detectors.oscillation import Oscillation
-from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.position_not_kept import FixtureCreep, PositionNotKept
-from inertial.detectors.processed_readings import BiasRemoved, NormalisedForce
+from inertial.detectors.processed_readings import (
+    BiasRemoved,
+    CopiedChannel,
+    CopiedLog,
+    NormalisedForce,
+)
 from inertial.detectors.quantisation import Quantisation
 from inertial.detectors.receiver_statements import StatusInvalid, WrongImuType
 from inertial.detectors.repeated_records import Duplicate, HeldRecord, SlowerSensor
@@ -54,7 +56,7 @@ from inertial.detectors.stamp_faults import (
     WrongTimeUnit,
 )
 from inertial.detectors.stated_against_gravity import GravityError, TableRateByGravity
-from inertial.detectors.table_moving import TableMoving
+from inertial.detectors.table_moving import MotionAfterTurns, TableMoving
 from inertial.detectors.temperatures import (
     TemperatureDrift,
     TemperatureMisstated,

@@ -30,8 +30,7 @@ from inertial.signal.scatter import (
     roughness,
     smallest_step,
 )
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import significant, whole
 
 # ---- Rotation about a changing axis, seen by two gyros: whether the third may stand still in it.

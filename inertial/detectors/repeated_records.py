@@ -10,8 +10,7 @@ from inertial.sensors import COLUMNS, PLURAL
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import records_of_a_reading, runs
 from inertial.signal.stamps import kinds
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import counted, fixed, p_is, significant
 
 # Share of stamps that stand still while the readings change: above it the stamps are so coarse

@@ -16,8 +16,7 @@ from inertial.signal.plan_detector import (
     Reversed,
 )
 from inertial.signal.scale_factor import MAX_RATIO_SPREAD, common_turn_ratio, turn_ratios
-from inertial.text.enumeration import listed
-from inertial.text.messages import _, plural
+from inertial.text.messages import _, listed, plural
 from inertial.text.numbers import counted, fixed, significant, whole
 
 

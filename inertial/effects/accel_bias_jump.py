@@ -1,7 +1,7 @@
 """A bias of the accelerometers that jumps once."""
 
+from inertial.physics.drift import Jump
 from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
-from inertial.physics.setting_in import Jump
 from inertial.text.messages import _
 from inertial.text.units import STANDARD_GRAVITY
 

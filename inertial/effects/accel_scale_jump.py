@@ -1,7 +1,7 @@
 """Scale factors of the accelerometers that jump once."""
 
+from inertial.physics.drift import ScaleJump
 from inertial.physics.effect import by_grade, on_each_axis, parameters_by_axis
-from inertial.physics.setting_in import ScaleJump
 from inertial.text.messages import _
 
 

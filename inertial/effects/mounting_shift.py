@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.physics.drift import SettingIn
 from inertial.physics.effect import (
     Scan,
     Truth,
@@ -13,7 +14,6 @@ from inertial.physics.effect import (
     parameters_by_axis,
 )
 from inertial.physics.motion import Motion, cross
-from inertial.physics.setting_in import SettingIn
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 

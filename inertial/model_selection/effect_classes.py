@@ -7,8 +7,7 @@ import numpy as np
 from scipy.special import gammaln, ive
 
 from inertial.arrays import Array, Booleans, Integers
-from inertial.model_selection.scan import Candidates
-from inertial.model_selection.search import Set
+from inertial.model_selection.search import Candidates, Set
 
 MIN_CLASS_PROBABILITY = 0.95  # posterior, of all members together
 MIN_CAPTURED = 0.90  # share of the signal of an effect that a member can mimic

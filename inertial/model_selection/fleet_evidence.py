@@ -19,7 +19,7 @@ import numpy as np
 from inertial.arrays import Array, Booleans, Integers
 from inertial.estimation.effect_information import whitening
 from inertial.estimation.fleet_components import LEVELS, Sharing
-from inertial.model_selection.scan import MIN_EIGENVALUE
+from inertial.model_selection.search import MIN_EIGENVALUE
 
 EVERY = -1  # for the group of a hypothesis: each group of its level has a size of its own
 

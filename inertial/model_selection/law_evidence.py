@@ -28,7 +28,7 @@ from inertial.model_selection.effect_classes import (
 )
 from inertial.model_selection.evidence import SearchedEffect
 from inertial.model_selection.null_simulation import noise
-from inertial.model_selection.scan import MIN_EIGENVALUE, Candidates
+from inertial.model_selection.search import MIN_EIGENVALUE, Candidates
 from inertial.model_selection.walk_odds import LOG_RANGE, Equations
 
 DRAWS = 1000

@@ -18,8 +18,7 @@ from inertial.model_selection.cause import (
 from inertial.model_selection.effect_classes import EffectClass, effect_class, with_rivals
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.null_simulation import Chance
-from inertial.model_selection.scan import Candidates
-from inertial.model_selection.search import Search
+from inertial.model_selection.search import Candidates, Search
 
 MIN_FREE_ADVANTAGE = 12.0  # of chi-squared, of a drift without a law over the catalogue
 MAX_ROUNDS = 3  # of the excess of the residuals and the selection in turn

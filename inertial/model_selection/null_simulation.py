@@ -17,7 +17,7 @@ from inertial.estimation.probability import (
     ncx2_sf,
 )
 from inertial.model_selection.evidence import SearchedEffect
-from inertial.model_selection.scan import Candidates
+from inertial.model_selection.search import Candidates
 
 # ---- The distribution of the statistics under noise alone in this campaign, by simulation.
 #

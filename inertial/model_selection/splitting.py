@@ -11,7 +11,7 @@ from inertial.arrays import Array
 from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.cause import Cause
 from inertial.model_selection.evidence import SearchedEffect
-from inertial.model_selection.scan import Candidates
+from inertial.model_selection.search import Candidates
 
 MIN_SEPARATION = 3.3  # at which the likelier of two members is right in 95 of 100 campaigns
 

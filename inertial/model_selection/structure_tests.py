@@ -9,7 +9,7 @@ from inertial.arrays import Array, Integers
 from inertial.estimation.probability import chi2_isf, chi2_sf, f_sf
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.null_simulation import chance
-from inertial.model_selection.scan import MIN_EIGENVALUE, Candidates
+from inertial.model_selection.search import MIN_EIGENVALUE, Candidates
 from inertial.physics.motion import without_leans
 
 # ---- The functions of the tests.

@@ -19,7 +19,7 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.model_selection.effect_classes import MAX_PRIOR_SNR, MIN_PRIOR_SNR, log_evidence
 from inertial.model_selection.evidence import searched_effect
-from inertial.model_selection.scan import Candidates
+from inertial.model_selection.search import Candidates
 
 MIN_INFORMATION = 1e-6  # of a column, left of it once others are explained: less is rounding
 LARGEST_SNR = 1e3  # of a walk that is tried; beyond MAX_PRIOR_SNR the prior goes on as before

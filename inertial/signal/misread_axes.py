@@ -15,8 +15,7 @@ from inertial.signal.plan_detector import (
     confirming,
     rivals_in_words,
 )
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import counted, significant
 from inertial.text.parameters import AXES
 

@@ -291,3 +291,13 @@ def _alone(known: str) -> re.Pattern[str]:
     before = rf"(?<![{BESIDE}])" if re.match(r"\w", known) else ""
     after = rf"(?![{BESIDE}])" if re.search(r"\w$", known) else ""
     return re.compile(before + re.escape(known) + after)
+
+
+# ---- Enumerations in a sentence.
+
+
+def listed(names: Sequence[str], last: str = "and") -> str:
+    """Names as part of a sentence: a, b and c."""
+    if len(names) < 2:
+        return "".join(names)
+    return _(", ").join(names[:-1]) + (_(" and ") if last == "and" else _(" or ")) + names[-1]

@@ -15,7 +15,7 @@ from inertial.model_selection.common_scale import (
 )
 from inertial.model_selection.fleet_search import FleetLaw
 from inertial.sensors import SENSORS
-from inertial.text.enumeration import listed
+from inertial.text.messages import listed
 from overviews.fleet.members import Member, scale_factors_of
 
 # What is a scale factor of all gyros alike, by how their turns were recorded.

@@ -10,8 +10,7 @@ from inertial.campaign.records import Row
 from inertial.sensors import PLURAL, SENSORS, SINGULAR
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _, plural
+from inertial.text.messages import _, listed, plural
 from inertial.text.typography import capital
 from overviews.fleet.differences import compared, difference_sentences
 from overviews.tables_of import made_from

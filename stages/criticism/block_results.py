@@ -19,9 +19,8 @@ from inertial.model_selection.cause import (
 )
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
-from inertial.physics.drift import WarmUp, without_clock
+from inertial.physics.drift import SettingIn, WarmUp, without_clock
 from inertial.physics.effect import Effect
-from inertial.physics.setting_in import SettingIn
 from inertial.physics.site import EARTH_RATE
 from inertial.sensors import PLURAL, UNITS
 from inertial.text.messages import _
@@ -38,9 +37,9 @@ from stages.criticism.finding_rows import (
     parameter_row,
 )
 from stages.criticism.laws import WithoutLaw, law_action
-from stages.criticism.one_manoeuvre import carrier_of_excess
 from stages.criticism.residual_structure import ACTION_IF_CARRIED, moved_by
 from stages.criticism.restarts import first_after
+from stages.criticism.rivals import carrier_of_excess
 from stages.criticism.selection import Selection
 
 NAMED = (FOUND, ONE_OF_CLASS, LAW)

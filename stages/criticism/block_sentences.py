@@ -14,11 +14,10 @@ from inertial.model_selection.detection_limits import (
     VISIBLE,
     Visible,
 )
+from inertial.physics.drift import Jump
 from inertial.physics.effect import Effect
-from inertial.physics.setting_in import Jump
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import fixed, p_is, plus_minus, significant
 from inertial.text.parameters import sign_of
 from inertial.text.typography import capital

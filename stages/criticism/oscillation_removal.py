@@ -17,10 +17,10 @@ from inertial.estimation.least_squares import Estimate
 from inertial.estimation.periodic_in_time import MIN_SAMPLES, phasor
 from inertial.estimation.probability import chi2_sf
 from inertial.tables import ACCEL, GYRO
+from stages.criticism.angle_steps import StepInTurn
 from stages.criticism.oscillation_fits import direction
 from stages.criticism.oscillation_hypotheses import IN_TIME
 from stages.criticism.oscillation_search import Oscillation
-from stages.criticism.step_in_turn import StepInTurn
 
 MIN_BLOCKS = 8  # of a rest, in which a line is fitted
 MAX_CHANCE = 1e-3  # of noise that looks like a line at rest

@@ -11,6 +11,13 @@ from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Orders, Ripple, detection_limit, search
 from inertial.estimation.periodic_in_time import Taken, line_at, without_line
 from inertial.tables import AXES
+from stages.criticism.angle_steps import (
+    MIN_ORDERS,
+    StepInTurn,
+    StepPerTurn,
+    step_per_turn,
+    without_steps,
+)
 from stages.criticism.oscillation_fits import (
     Coupled,
     Detection,
@@ -37,8 +44,6 @@ from stages.criticism.oscillation_hypotheses import (
     folded,
     hypotheses_of,
 )
-from stages.criticism.step_in_turn import StepInTurn, without_steps
-from stages.criticism.step_per_turn import MIN_ORDERS, StepPerTurn, step_per_turn
 
 MAX_MULTIPLE = 10  # of a frequency or an order, that is still the same cause
 MAX_ALIAS_MULTIPLE = 3  # the same beyond half the sample rate

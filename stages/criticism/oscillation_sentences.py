@@ -9,15 +9,14 @@ from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Ripple
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import counted, fixed, plus_minus, significant
 from inertial.text.typography import capital
 from inertial.text.units import ARC_SECOND
+from stages.criticism.angle_steps import StepPerTurn
 from stages.criticism.oscillation_fits import MIN_EXCESS_SIGMA, TABLE, Coupled
 from stages.criticism.oscillation_hypotheses import ANGLE, IN_TIME
 from stages.criticism.oscillation_search import Oscillation
-from stages.criticism.step_per_turn import StepPerTurn
 
 MAX_ALIKE_LOG_ODDS = 0.7  # a factor of two
 MAX_LOG_ODDS = 40.0  # beyond which the number of the odds is not informative

@@ -28,8 +28,7 @@ from inertial.campaign.equations import Campaign
 from inertial.model_selection.cause import FOUND, UNKNOWN_STRUCTURE
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import significant
 from inertial.text.units import ARC_SECOND, STANDARD_GRAVITY
 from stages.criticism.finding_rows import TableRow, finding_id, finding_row, member_rows

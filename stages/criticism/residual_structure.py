@@ -26,8 +26,7 @@ from inertial.physics.effect import Effect, Parameter, Reading
 from inertial.physics.motion import Motion
 from inertial.sensors import FILE_KEYS, PLURAL, UNITS
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import p_is, significant
 from inertial.text.parameters import AXES
 from stages.criticism.finding_rows import (

@@ -14,6 +14,7 @@ from inertial.effects import CATALOGUE
 from inertial.sensors import SENSORS
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
+from stages.criticism.angle_steps import step_rows
 from stages.criticism.bias_drift import random_walks_with_sigmas
 from stages.criticism.block_results import NAMED, BlockResults, unexplained_rows
 from stages.criticism.class_splitting import ExtendedCampaigns, ExtendedPlan, extended_plans
@@ -21,7 +22,6 @@ from stages.criticism.declared import DECLARED
 from stages.criticism.drift_at_rest import select_beside_drift, unsteady_rests
 from stages.criticism.finding_rows import Row, TableRow
 from stages.criticism.laws import with_laws, without_law
-from stages.criticism.one_manoeuvre import off_rows, select_beside_one_manoeuvre
 from stages.criticism.oscillation_removal import (
     shifts,
     shifts_by_steps,
@@ -45,8 +45,8 @@ from stages.criticism.restarts import (
     restarts_at,
     times_of_gaps,
 )
+from stages.criticism.rivals import off_rows, select_beside_one_manoeuvre
 from stages.criticism.selection import Selection, pooled_evidence_rows
-from stages.criticism.step_in_turn import step_rows
 from stages.criticism.temperature_findings import temperature_rows
 from stages.criticism.temperature_functions import select_with_temperature
 

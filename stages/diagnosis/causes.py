@@ -26,8 +26,7 @@ from inertial.campaign.hypotheses import (
 from inertial.campaign.records import Performed, Row
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _, plural
+from inertial.text.messages import _, listed, plural
 from inertial.text.numbers import significant
 from inertial.text.parameters import MIXTURE, sign_of
 from inertial.text.units import quantity

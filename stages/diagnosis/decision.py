@@ -16,8 +16,7 @@ from inertial.campaign.hypotheses import SLIP
 from inertial.campaign.records import Row
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import significant
 from inertial.text.parameters import JOINT, WITHOUT_ONE
 

@@ -16,10 +16,9 @@ from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
 from stages.diagnosis.gravity_by_latitude import referred
 from stages.diagnosis.one_event import mountings_of, rotations, with_consequences
-from stages.diagnosis.result import covariance_by_ids
+from stages.diagnosis.result import covariance_by_ids, curve_rows
 from stages.diagnosis.sensor_results import Estimated, SensorResult
 from stages.diagnosis.sizes_of_causes import by_result, sentences, sizes
-from stages.diagnosis.temperature_curves import curve_rows
 from stages.diagnosis.verdict import NOT_USABLE, Verdict, not_recorded, verdict
 
 

@@ -27,10 +27,16 @@ from math import sqrt
 from inertial.text.messages import _
 from stages.export.axis_correction import (
     AxisCorrection,
+    Cubic,
+    ardupilot_values,
     axis_correction,
     cross_terms,
+    cubic_of,
+    notes_on,
+    px4_values,
     remaining_errors,
     scale_errors,
+    whole,
 )
 from stages.export.calibration import Calibration, Triad
 from stages.export.filter_noise import FilterNoise, filter_noise
@@ -43,14 +49,6 @@ from stages.export.header import (
     numbers,
     origin,
     verdicts,
-)
-from stages.export.temperature import (
-    Cubic,
-    ardupilot_values,
-    cubic_of,
-    notes_on,
-    px4_values,
-    whole,
 )
 
 

@@ -5,8 +5,7 @@ from dataclasses import dataclass, field, replace
 
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.parameters import EXTENDED, JOINT
 from stages.extension.cross_validation import CrossValidation, Trainings, carrier
 from stages.extension.named_effects import Combination

@@ -12,10 +12,12 @@ from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.records import with_mount
+from inertial.effects.temperature_model import TemperatureModel
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.scatter_and_random_walk import covering
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
-from inertial.physics.effect import Effect
+from inertial.physics.drift import Drift, ScaleJump
+from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.tables import BODY, OF_TRIAD
 from inertial.text.messages import _
@@ -252,3 +254,48 @@ def moved(solution: Solved, joint: Sequence[Row], scatter: bool, mount: str) -> 
             "difference_sigma": float(np.sqrt(added)) if added > 0 else None,
             "in_sigmas": difference / old["sigma"] if both and old["sigma"] else None,
         }
+
+
+# ---- By how much the drifts of a model change the parameters, on average over a recording.
+#
+# The bias of a ramp is that of its beginning, of a warm-up that of its end, beside a temperature
+# that of the mean temperature. Models that drift otherwise are compared, and mixed, by the means.
+
+DRIFTS = (Drift, ScaleJump, TemperatureModel)  # of the sensor, with time or temperature alone
+
+
+def drift_means(solution: Solved, motion: Motion, stretches: slice) -> Iterator[Row]:
+    """The rows of a fit; `stretches`: those of `motion` that are of its sensor."""
+    there = {row["parameter"] for row in solution.of_effects}
+    weights = motion.seconds[stretches] / motion.seconds[stretches].sum()
+    for effect in solution.fitted:
+        if not isinstance(effect, DRIFTS):
+            continue
+        for parameter, unit in zip(effect.parameters, np.eye(len(effect.parameters)), strict=True):
+            name = f"{effect.name}.{parameter.name}"
+            changes = changes_of(effect, unit, motion, solution.sensor)[stretches]
+            means = np.nan_to_num(weights @ changes)
+            for of, mean in zip(linear_names(), means.tolist(), strict=True):
+                if name in there and mean:
+                    yield {
+                        "mount": solution.mount,
+                        "sensor": solution.sensor,
+                        "method": solution.method,
+                        "parameter": name,
+                        "of": of,
+                        "mean": mean,
+                    }
+
+
+def changes_of(effect: Effect, values: Array, motion: Motion, sensor: str) -> Array:
+    """By how much M, by rows, and bias differ in each stretch, (n, 12), to first order."""
+
+    def read(sensed: Array) -> Array:
+        every = np.broadcast_to(sensed, (len(motion.time), 3))
+        nothing = Reading(np.zeros_like(every), np.zeros_like(every))
+        reading = effect.reads(nothing, Truth(every, every), motion, values)
+        return reading.gyro if sensor == "gyro" else reading.accel
+
+    bias = read(np.zeros(3))
+    matrix = np.stack([read(axis) - bias for axis in np.eye(3)], axis=2)
+    return np.hstack([matrix.reshape(len(bias), 9), bias])

@@ -23,6 +23,7 @@ from inertial.sensors import SENSORS
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Stage, Tables
 from inertial.text.parameters import EXTENDED, FREE, JOINT
+from stages.extension.after_switch_on import warm_up_rows, with_spreads
 from stages.extension.candidates import (
     Candidate,
     candidates_of,
@@ -32,8 +33,7 @@ from stages.extension.candidates import (
 )
 from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
 from stages.extension.declared import DECLARED
-from stages.extension.drift_means import drift_means
-from stages.extension.estimates import Solved, moved, solved, unseen_components
+from stages.extension.estimates import Solved, drift_means, moved, solved, unseen_components
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.laws import form_is_open, proposed_rows, with_drift_in_the_bias
 from stages.extension.models import (
@@ -47,10 +47,8 @@ from stages.extension.models import (
 )
 from stages.extension.named_effects import NamedEffects, combinations_of, compared, named_of
 from stages.extension.navigation_error import change_of, worth
-from stages.extension.restarts import with_spreads
 from stages.extension.scanned_values import over_moments, with_scanned_values
 from stages.extension.temperature_shapes import with_shapes
-from stages.extension.warm_up import warm_up_rows
 from stages.extension.without_one import LEFT_OUT, carried_alone, fit_without
 
 Row = Mapping[str, Any]

@@ -45,7 +45,7 @@ from stages.segment.repair_readings import (
     step_of,
 )
 from stages.segment.reversed_parts import reversals, sign_changes
-from stages.segment.stated_marks import marks_off, with_marks
+from stages.segment.stated_spans import marks_off, with_marks
 from stages.segment.steps import (
     APPLIED,
     BY_GRAVITY,

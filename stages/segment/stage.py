@@ -38,7 +38,7 @@ from stages.segment.plan_and_recording import ExaminationOfRests, Recording, com
 from stages.segment.repair import SetRight, set_right
 from stages.segment.repair_readings import log_as_read, plan_as_taken
 from stages.segment.rests_that_tilt import masked_tilts
-from stages.segment.span_offsets import logs_in_doubt, moved_back, spans_off, whole_logs
+from stages.segment.stated_spans import logs_in_doubt, moved_back, spans_off, whole_logs
 from stages.segment.windows import Binned, Bins, Selection, Window, windows
 
 

@@ -11,8 +11,7 @@ from inertial.signal.axis_permutations import Permutation
 from inertial.signal.misread_axes import reads_in_words
 from inertial.signal.plan_detector import MarksOff, Misread, SpansOff, Swapped
 from inertial.tables import AXES
-from inertial.text.enumeration import listed
-from inertial.text.messages import _, plural
+from inertial.text.messages import _, listed, plural
 from inertial.text.numbers import fixed
 from inertial.text.typography import capital
 

@@ -9,8 +9,8 @@ from test_lines_of_turns import RINGING
 from test_step_per_turn import jumping
 from test_time_or_angle import found
 
+from stages.criticism.angle_steps import without_steps
 from stages.criticism.oscillation_search import find_oscillations
-from stages.criticism.step_in_turn import without_steps
 
 LEVEL, LOWEST = 1e-3, 2.0  # of false alarm; Hz
 SLIPPED = 4  # which of the turns

@@ -7,9 +7,9 @@ import pytest
 from residuals_of_turns import ARC_SECOND, STEP, rippling, turns
 from test_time_or_angle import LEVEL, LOWEST, SNR_15, found
 
+from stages.criticism.angle_steps import step_per_turn
 from stages.criticism.oscillation_results import OscillationResults
 from stages.criticism.oscillation_search import find_oscillations
-from stages.criticism.step_per_turn import step_per_turn
 from stages.diagnosis.sizes_of_causes import sizes
 
 

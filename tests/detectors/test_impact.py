@@ -5,7 +5,7 @@ import pytest
 from on_a_table import recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, INTERVAL, NOISE, assert_told
 
-from inertial.detectors.impact import Impact
+from inertial.detectors.disturbances import Impact
 
 
 def found(values):

@@ -9,7 +9,7 @@ from on_a_table import carried, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, GRAVITY, INTERVAL, NOISE, assert_told, piece, stamps
 from recorded_by_hand import log as recorded_log
 
-from inertial.detectors.periodic_glitch import PeriodicGlitch
+from inertial.detectors.disturbances import PeriodicGlitch
 from inertial.detectors.spike import Spikes
 from inertial.signal.phase_folding import Folded, glitches
 

@@ -12,8 +12,8 @@ from recorded_by_hand import INTERVAL, NOISE, piece, rest, seen, stamps
 import laboratory
 from inertial.campaign.log_properties import ChannelStatistics
 from inertial.detectors.dead_axis import DeadAxis
+from inertial.detectors.disturbances import PeriodicGlitch
 from inertial.detectors.oscillation import Oscillation
-from inertial.detectors.periodic_glitch import PeriodicGlitch
 from inertial.detectors.repeated_records import HeldRecord, SlowerSensor
 from inertial.detectors.table_moving import TableMoving
 from inertial.signal.phase_folding import Folded, glitches

@@ -12,7 +12,7 @@ from hidden import hidden_plans
 from recorded_by_hand import piece, rest, seen, stamps
 
 import laboratory
-from inertial.detectors.copied_readings import CopiedChannel
+from inertial.detectors.processed_readings import CopiedChannel
 from inertial.detectors.saturation import Saturation
 from inertial.detectors.wrong_scale_factor import GravityRemoved
 

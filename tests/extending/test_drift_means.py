@@ -7,7 +7,7 @@ from inertial.effects import CATALOGUE
 from inertial.effects.temperature_model import Piece, TemperatureModel
 from inertial.estimation.triad import linear_names
 from inertial.physics.motion import stretches
-from stages.extension.drift_means import DRIFTS, changes_of
+from stages.extension.estimates import DRIFTS, changes_of
 
 TIME = np.array([10.0, 110.0, 410.0])
 KELVIN = np.array([290.0, 293.0, 299.0])

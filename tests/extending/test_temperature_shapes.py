@@ -7,8 +7,7 @@ from inertial.effects.temperature_model import BEND, SHIFT, Piece, TemperatureMo
 from inertial.estimation.least_squares import System
 from inertial.estimation.triad import linear_names
 from inertial.physics.motion import stretches
-from stages.diagnosis.result import Result
-from stages.diagnosis.temperature_curves import curve_rows
+from stages.diagnosis.result import Result, curve_rows
 from stages.extension.estimates import Solved
 from stages.extension.models import PRIOR_SIGMA
 from stages.extension.stage import told_of_equals

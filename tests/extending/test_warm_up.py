@@ -11,8 +11,8 @@ from inertial.effects import CATALOGUE
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.motion import Motion, stretches
+from stages.extension.after_switch_on import warm_up_rows
 from stages.extension.estimates import Solved
-from stages.extension.warm_up import warm_up_rows
 
 AMPLITUDE, SIGMA, CONSTANT, BAND = 5e-3, 1e-4, 900.0, 1e-4  # m/s², m/s², s, m/s²
 

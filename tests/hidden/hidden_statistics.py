@@ -20,7 +20,7 @@ from hidden_ways import POSITIVE, WAYS, Array
 from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.evidence import Evidence
 from inertial.model_selection.naming import causes
-from inertial.model_selection.scan import MIN_EIGENVALUE
+from inertial.model_selection.search import MIN_EIGENVALUE
 
 TRIALS = {0.0: 2000, 5.0: 300, 6.0: 200, 8.0: 200}  # how often at each ratio; 0: clean
 PARTS = 4  # of the clean draws, so that both cores have work to the end

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inertial.arrays import Array
 from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.evidence import Evidence, SearchedEffect, searched_effect
-from inertial.model_selection.scan import Candidates
+from inertial.model_selection.search import Candidates
 from inertial.model_selection.structure_tests import TESTS, Conditions, ScoreEquations
 from tests.inference.naming_plans import (
     GRAVITY,

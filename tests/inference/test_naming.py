@@ -13,8 +13,7 @@ from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTUR
 from inertial.model_selection.evidence import Evidence, searched_effect
 from inertial.model_selection.naming import causes
 from inertial.model_selection.null_simulation import Chance, chance, noise
-from inertial.model_selection.scan import Candidates
-from inertial.model_selection.search import finer, to_refine
+from inertial.model_selection.search import Candidates, finer, to_refine
 from tests.inference.naming_evidence import Plan, plan_of, whitened
 from tests.inference.naming_plans import catalogue, times_of_jumps
 

@@ -20,7 +20,7 @@ from inertial.effects.law import Law
 from inertial.model_selection.effect_classes import log_evidence
 from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.law_evidence import best_paths, log_paths
-from inertial.model_selection.scan import Candidates
+from inertial.model_selection.search import Candidates
 from inertial.model_selection.walk_odds import Equations
 from inertial.physics.effect import Effect
 from inertial.physics.laws import STEPS, after, steps

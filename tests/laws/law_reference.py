@@ -18,7 +18,7 @@ from inertial.campaign.observations import campaign_of
 from inertial.effects import CATALOGUE
 from inertial.estimation.random_walk import NO_DRIFT
 from inertial.model_selection.evidence import searched_effect
-from inertial.model_selection.scan import Candidates
+from inertial.model_selection.search import Candidates
 from inertial.physics.effect import Effect
 from laboratory import Recording
 

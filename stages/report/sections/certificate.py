@@ -12,8 +12,7 @@ from inertial.sensors import PLURAL
 from inertial.tables import AXES, BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.parameters import STAGES
 from inertial.text.statements import (
     IN_FULL_ONLY,

@@ -6,8 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from inertial.sensors import SINGULAR
 from inertial.text import numbers
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, PPM, Unit
 from stages.report.outline import Column, Part, Row, Section, Sentences, Table, head, table_row
 from stages.report.tables import Record, Tables

@@ -12,8 +12,7 @@ from inertial.sensors import PLURAL, SINGULAR, UNITS
 from inertial.tables import AXES
 from inertial.text import numbers, units
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.parameters import SENSOR_OF, sign_of
 from inertial.text.typography import capital
 from inertial.text.units import quantity

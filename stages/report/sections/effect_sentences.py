@@ -11,8 +11,7 @@ from inertial.campaign.records import grouped
 from inertial.sensors import PLURAL, SENSORS
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import fixed, plus_minus, shortened, significant, whole
 from inertial.text.units import DEGREES_PER_SECOND, PER_CENT, STANDARD_GRAVITY, Unit
 from stages.report.results import Shift, quantity_of

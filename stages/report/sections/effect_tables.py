@@ -9,8 +9,7 @@ from inertial.campaign.records import grouped
 from inertial.sensors import SINGULAR
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.typography import capital
 from stages.report import outline
 from stages.report.results import (

@@ -13,8 +13,7 @@ from inertial.campaign.competition import circumstances
 from inertial.sensors import SINGULAR
 from inertial.tables import AXES
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import fixed, probability, shortened, significant, whole
 from inertial.text.typography import capital
 from inertial.text.units import DEGREES, DEGREES_PER_SECOND, METRES

@@ -12,8 +12,7 @@ from inertial.campaign.records import grouped
 from inertial.sensors import SENSORS, SINGULAR
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.units import DEGREES, Unit
 from stages.report import drawing, outline
 from stages.report.tables import Record, Tables

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from inertial.sensors import PLURAL
 from inertial.tables import AXES
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import common_decimals, shortened, significant, with_sigma
 from inertial.text.typography import capital
 from inertial.text.units import RANDOM_WALK, Unit, quantity

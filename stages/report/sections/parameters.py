@@ -14,8 +14,7 @@ from inertial.campaign.records import grouped, labels, omissions
 from inertial.tables import AXES
 from inertial.text import units
 from inertial.text.cause_names import in_words
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import aligned, counted, fixed, plus_minus, shortened, significant, whole
 from inertial.text.typography import capital
 from stages.report.outline import (

@@ -11,8 +11,7 @@ from matplotlib.figure import Figure as Drawn
 
 from inertial.campaign.records import grouped
 from inertial.sensors import SINGULAR
-from inertial.text.enumeration import listed
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import significant
 from inertial.text.parameters import MIXTURE
 from inertial.text.typography import capital
