@@ -1,12 +1,12 @@
 """The motion of the table in each static position and rate segment."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 
-from inertial.arrays import Array, Booleans
+from inertial.arrays import Array, Booleans, nearest_axis
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.rate_segments import position_of
 from inertial.campaign.recorded_turns import Rotation
@@ -14,8 +14,8 @@ from inertial.campaign.records import Manoeuvre, runs_of
 from inertial.campaign.static_positions import Blocks, StaticPosition, by_manoeuvre
 from inertial.effects.gyro_hysteresis import BREAK_AWAY
 from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate
-from inertial.physics.forward import Site, Triad
-from inertial.physics.motion import Motion, Profile, turned_all, turning
+from inertial.physics.forward import measured_angles
+from inertial.physics.motion import Motion, Profile, turning
 from inertial.signal.rests_and_motions import bridged
 from inertial.signal.stamps import samples_passed
 from inertial.tables import ACCEL
@@ -24,7 +24,6 @@ from inertial.text.messages import _
 # --- One static position, a rotation block by block, a rotation sample by sample ---
 
 
-EQUAL = np.ones(3)
 MAX_ANGLE_OFF = 1e-3  # relative, of a turn by the gyros, to which first-order effects are exact
 MIN_BEND = 0.002  # rad/s, off a straight line in a block; less is a ramp without a corner
 
@@ -58,10 +57,10 @@ def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) 
     """
     solution, set_position = data.result.since(m.switch_on), position_of(m, data.heading)
     up, north = solution.upright(m), solution.north(set_position)
-    gyro, site = solution.gyro, solution.site
-    assert gyro is not None  # else nothing is simulated
+    assert solution.gyro is not None  # else nothing is simulated
+    earth = solution.site.earth_rate(up, north)
     angle = measured_angles(
-        turn.sums, turn.seconds, m.axis, up, north, gyro, site, turn.turned, 1 / turn.density
+        turn.sums, turn.seconds, m.axis, earth, solution.gyro, turn.turned, 1 / turn.density
     )
     known = turn.angle / float(turn.weights @ angle) if not turn.by_hand else np.nan
     if abs(known - 1) > MAX_ANGLE_OFF and turn.course is None:
@@ -99,44 +98,6 @@ def at_rate(data: CampaignData, m: Manoeuvre, steady: SteadyRate, time: Array) -
     zero = np.zeros(len(time))
     blocks = turning(m.axis, *directions, angle, rate, zero, time, steady.seconds)
     return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
-
-
-def measured_angles(
-    sums: Array,
-    seconds: Array,
-    about: Array,
-    up: Array,
-    north: Array,
-    gyro: Triad,
-    site: Site,
-    at_middle: Callable[[Array], Array],
-    weight: Array = EQUAL,
-) -> Array:
-    """The angle of the table in each stretch as measured by the gyros, (k,), rad.
-
-    With these weights as in the equations of a turn: else an effect that every calibration takes
-    up, such as gyros that are mounted askew, would differ from the parameters that take it up by
-    the noise of the angles. The earth's rate is subtracted in the direction that follows from the
-    angle so far.
-
-    Parameters
-    ----------
-    sums : (k, 3), rad, NaN where a channel is not recorded
-    at_middle : converts the angles of the stretches to that of the table at the middle of each
-    weight : (3,), 1 over the white noise of each channel; not finite where it is not known
-    """
-    known = np.isfinite(weight) & np.isfinite(sums).all(axis=0)
-    weight = np.where(known, weight, 0.0)
-    along = weight * (gyro.matrix @ about)
-    read = np.where(known, sums, 0.0) - np.outer(seconds, gyro.bias)
-    level = site.earth_level * np.nan_to_num(north)
-    angle = np.zeros(len(sums))
-    for _unused in range(3):
-        middle = at_middle(angle)
-        earth = site.earth_up * turned_all(up, about, middle) + turned_all(level, about, middle)
-        sensed = read - earth * seconds[:, None] @ gyro.matrix.T
-        angle = (sensed * weight) @ along / (along @ along)
-    return np.asarray(angle)
 
 
 def in_samples(
@@ -178,10 +139,8 @@ def in_samples(
         increments,
         step * counts,
         m.axis,
-        up,
-        north,
+        solution.site.earth_rate(up, north),
         solution.gyro,
-        solution.site,
         lambda angle: so_far(angle) - angle / 2,
     )
     if m.rate is not None and m.acceleration is not None and steady.any():
@@ -405,7 +364,7 @@ def turn_in(blocks: Blocks) -> _Turn | None:
     if not len(moving):
         return None
     first, last = int(moving[0]), int(moving[-1])
-    axis = int(np.argmax(np.abs(rates[last])))
+    axis = nearest_axis(rates[last])
     rate, seconds = np.abs(rates[:, axis]), blocks.seconds
     lasting = float(seconds[last])
     if last >= first + 2:

@@ -66,6 +66,21 @@ def up_and_down(
     )
 
 
+def six_position_weights(ups: Array, gravity: float) -> Array | None:
+    """The twelve unknowns (M by rows, bias) per reading of n rests by S0 (3-6), (12, n, 3).
+
+        M̂ = L Aᵀ (A Aᵀ)⁻¹,   L the means of the rests,   A = [g u; 1]
+
+    None where the attitudes u, (n, 3), do not span the four columns.
+    """
+    truth = np.vstack([gravity * ups.T, np.ones(len(ups))])
+    if np.linalg.matrix_rank(truth) < 4:
+        return None
+    inverse = truth.T @ np.linalg.inv(truth @ truth.T)  # (n, 4)
+    each = np.einsum("nk,rc->rknc", inverse, np.eye(3))  # of row r by the readings of channel c
+    return np.concatenate([each[:, :3].reshape(9, -1, 3), each[:, 3]])
+
+
 def six_position_formula(
     statics: Sequence[StaticForce],
     gravity: float,
@@ -73,37 +88,29 @@ def six_position_formula(
     position_sigma: float,
     scatter: float = 0.0,
 ) -> tuple[Array, Array] | None:
-    """M̂ = L Aᵀ (A Aᵀ)⁻¹ of S0 (3-6), without weights, and its covariance.
+    """M and bias by S0 (3-6), the rests without weights, and their covariance.
 
-    L holds the means, A = [g u; 1]. None where the attitudes do not span the four columns.
+    None where the attitudes do not span the four columns of `six_position_weights`.
 
     Returns
     -------
     the twelve unknowns (M by rows, bias) and their covariance
     """
-    n = len(statics)
-    truth = np.vstack([np.column_stack([gravity * s.up for s in statics]), np.ones(n)])
-    means = np.column_stack([static.mean for static in statics])
-    if np.linalg.matrix_rank(truth) < 4 or not np.isfinite(means).all():
+    ups, means = (np.array([getattr(s, name) for s in statics]) for name in ("up", "mean"))
+    weights = six_position_weights(ups, gravity)
+    if weights is None or not np.isfinite(means).all():
         return None
-    inverse = truth.T @ np.linalg.inv(truth @ truth.T)  # (n, 4)
-    solution = means @ inverse  # (3, 4)
-    # The solution is linear in the means, channel by channel: weights (12, n, 3).
-    weights = np.concatenate(
-        [np.einsum("nk,rc->rknc", inverse[:, :3], np.eye(3)).reshape(9, n, 3),
-         np.einsum("n,rc->rnc", inverse[:, 3], np.eye(3))]
-    )  # fmt: skip
     noise = np.array([static.sigma for static in statics]) ** 2 + scatter**2
     covariance = np.einsum("anc,nc,bnc->ab", weights, noise, weights)
     # An error of gravity is upward; that of a tilt horizontal, and the same for one position.
-    up = np.einsum("anc,nc->an", weights, np.array([static.up for static in statics]))
+    up = np.einsum("anc,nc->an", weights, ups)
     covariance += gravity_sigma**2 * np.outer(up.sum(axis=1), up.sum(axis=1))
     names = np.array([static.position for static in statics])
     for position in dict.fromkeys(names):
         every, upward = weights[:, names == position].sum(axis=1), up[:, names == position]
         horizontal = every @ every.T - np.outer(upward.sum(axis=1), upward.sum(axis=1))
         covariance += (position_sigma * gravity) ** 2 * horizontal
-    return np.append(solution[:, :3].ravel(), solution[:, 3]), covariance
+    return np.einsum("anc,nc->a", weights, means), covariance
 
 
 def pooled_positions(

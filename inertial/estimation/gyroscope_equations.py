@@ -62,6 +62,7 @@ from inertial.estimation.gyroscope_observations import (
 from inertial.estimation.noise_model import wave, waves_within
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.triad import UNKNOWNS, design_of
+from inertial.physics.forward import Triad, measured_angles
 from inertial.physics.motion import all_level_axes, cross, is_vertical, level_axes, turned_all
 
 SQRT2 = float(np.sqrt(2))
@@ -262,7 +263,7 @@ def segment_equations(
     own, course = _own_errors(segment, name, earth, position_sigma, instability * recorded)
     sigma |= own
     sums = np.where(recorded, segment.sums, 0.0)
-    angle = _block_angles(segment, sums, weight, point, earth)
+    angle = _block_angles(segment, weight, point, earth)
     middle = segment.turned(angle)
 
     # Two combinations of every block that do not depend on its angle.
@@ -327,23 +328,21 @@ def _own_errors(
     return own | dict(zip(names, waves[waves > 0].tolist(), strict=True)), course
 
 
-def _block_angles(
-    segment: RateSegment, sums: Array, weight: Array, point: Linearisation, earth: Earth
-) -> Array:
+def _block_angles(segment: RateSegment, weight: Array, point: Linearisation, earth: Earth) -> Array:
     """The angle of each block, (k,), rad, from the channels along the axis."""
-    matrix, position = point.matrix, segment.position
-    along = weight * (matrix @ segment.about)
+    position = segment.position
     level = np.zeros(3) if position.north is None else earth.level * position.north
     for key, axis in zip(horizontal_names(position), horizontal_axes(position), strict=False):
         level = level + point.levels.get(key, 0.0) * axis
-    angle = np.zeros(len(sums))
-    for _ in range(2):  # the direction of the earth's rate depends on the angle
-        earth_rate = earth.up * position.up + level
-        rate = turned_all(earth_rate, segment.about, segment.turned(angle))
-        residual = sums - rate * segment.seconds[:, None] @ matrix.T
-        residual -= np.outer(segment.seconds, point.bias)
-        angle = (residual * weight) @ along / (along @ along)
-    return angle
+    return measured_angles(
+        segment.sums,
+        segment.seconds,
+        segment.about,
+        earth.up * position.up + level,
+        Triad(point.matrix, point.bias),
+        segment.turned,
+        weight,
+    )
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.physics.effect import Effect, Reading, Truth
-from inertial.physics.motion import Motion, cross
+from inertial.physics.motion import Motion, cross, turned_all
 from inertial.physics.site import EARTH_RATE, normal_gravity, radii
 
 Values = Mapping[str, Array]  # label of an effect → values of its parameters
@@ -26,6 +26,10 @@ class Site:
     gravity: float
     earth_up: float
     earth_level: float
+
+    def earth_rate(self, up: Array, north: Array) -> Array:
+        """The earth's rate in body axes, (…, 3), rad/s; an unknown north, NaN, leaves it out."""
+        return np.asarray(self.earth_up * up + self.earth_level * np.nan_to_num(north))
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ UNKNOWN_TRIAD = Triad(np.full((3, 3), np.nan), np.full(3, np.nan))  # that is no
 
 def truth_of(motion: Motion, site: Site) -> Truth:
     """Truth from the motion of the table, gravity and the earth's rate; (n, 3) each."""
-    earth = site.earth_up * motion.up + site.earth_level * np.nan_to_num(motion.north)
+    earth = site.earth_rate(motion.up, motion.north)
     return Truth(rate=motion.omega + earth, force=site.gravity * motion.up)
 
 
@@ -170,6 +174,45 @@ def _truth(
             break
     truth[unsettled] = np.nan  # an effect as large as the reading
     return truth
+
+
+# ---- The angle of the table by the gyros.
+
+
+def measured_angles(
+    sums: Array,
+    seconds: Array,
+    about: Array,
+    earth: Array,
+    gyro: Triad,
+    at_middle: Callable[[Array], Array],
+    weight: Array | None = None,
+) -> Array:
+    """The angle of the table in each stretch as measured by the gyros, (k,), rad.
+
+    The earth's rate is subtracted in the direction that follows from the angle so far. Whoever
+    weights as the equations of a turn do has the same angles: else an effect that every calibration
+    takes up, such as gyros that are mounted askew, would differ from the parameters that take it up
+    by the noise of the angles.
+
+    Parameters
+    ----------
+    sums : (k, 3), rad, NaN where a channel is not recorded
+    about, earth : (3,), axis of the turn, and the earth's rate as it begins, rad/s, body axes
+    at_middle : converts the angles of the stretches to that of the table at the middle of each
+    weight : (3,), 1 over the white noise of each channel, NaN where it is unknown; none: equal
+    """
+    weight = np.ones(3) if weight is None else weight
+    known = np.isfinite(weight) & np.isfinite(sums).all(axis=0)
+    weight = np.where(known, weight, 0.0)
+    along = weight * (gyro.matrix @ about)
+    read = np.where(known, sums, 0.0) - np.outer(seconds, gyro.bias)
+    angle = np.zeros(len(sums))
+    for _unused in range(3):
+        rate = turned_all(earth, about, at_middle(angle))
+        sensed = read - rate * seconds[:, None] @ gyro.matrix.T
+        angle = (sensed * weight) @ along / (along @ along)
+    return np.asarray(angle)
 
 
 # ---- What ideal sensors read on the earth: at rest, in free fall, under way.

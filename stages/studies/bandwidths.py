@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from inertial.arrays import nearest_axis
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Row, with_mount
@@ -46,7 +47,7 @@ def of_ramps(data: CampaignData, rotation: Rotation, samples: Samples) -> Valued
 
 def axis_of(about: Any) -> int | None:
     """The gyro along an axis of rotation; none where there is none."""
-    axis = int(np.argmax(np.abs(about)))
+    axis = nearest_axis(about)
     return axis if abs(float(about[axis])) > MIN_COSINE else None
 
 

@@ -12,6 +12,7 @@ from inertial.campaign.estimates import UNIT, described
 from inertial.campaign.log_lines import RecordRange
 from inertial.campaign.records import Manoeuvre, Performed, Row, rows_of, with_mount
 from inertial.campaign.sample_stretches import Samples
+from inertial.estimation.accelerometer_formulas import six_position_weights
 from inertial.estimation.triad import errors_of, linear_names
 from inertial.sensors import COLUMNS
 from inertial.tables import AXES, CHANNELS
@@ -138,13 +139,7 @@ def rests_of(
 def formulas(ups: Array, gravity: float) -> list[FormulaParameters]:
     """What the upward directions (n, 3) of the rests let the formulas solve."""
     found = []
-    truth = np.vstack([gravity * ups.T, np.ones(len(ups))])
-    if np.linalg.matrix_rank(truth) == 4:
-        inverse = truth.T @ np.linalg.inv(truth @ truth.T)  # (n, 4), as S0 (3-6) has it
-        weights = np.zeros((12, len(ups), 3))
-        for sensor in range(3):
-            weights[3 * sensor : 3 * sensor + 3, :, sensor] = inverse[:, :3].T
-            weights[9 + sensor, :, sensor] = inverse[:, 3]
+    if (weights := six_position_weights(ups, gravity)) is not None:
         formula = Formula(weights.reshape(12, -1), errors_of(np.zeros(12)))
         found.append(FormulaParameters("accelerometer", linear_names(), formula))
     names, rows = [], []

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from inertial.arrays import Array, Booleans
+from inertial.arrays import Array, Booleans, nearest_axis
 from inertial.campaign.campaign_data import CampaignData
-from inertial.campaign.motions import measured_angles
 from inertial.campaign.rate_segments import position_of
 from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Manoeuvre
@@ -27,7 +26,7 @@ from inertial.estimation.time_angle import (
     time_angle,
 )
 from inertial.estimation.triad import linear_names, triad_of_errors
-from inertial.physics.forward import Site, Triad
+from inertial.physics.forward import Triad, measured_angles
 from inertial.physics.motion import cross
 from inertial.tables import AXES, GYRO
 from inertial.text.messages import _
@@ -191,16 +190,14 @@ def motion_of(
         increments,
         np.full(len(time), step),
         about,
-        m.up,
-        np.full(3, np.nan) if north is None else north,
+        earth.up * m.up + (0.0 if north is None else earth.level * north),
         gyros.triad,
-        Site(0.0, earth.up, earth.level),
         lambda angle: np.asarray(np.cumsum(angle) - angle / 2),
     )
     lines = [_line(increments[first:after, i], step) for i in range(3)]
     unknown_level = 0.0 if north is not None else earth.level * horizontal / np.sqrt(2)
     density = (about * data.noise.of(m.name, "steady", GYRO))[about != 0]
-    ringing = lines[int(np.argmax(np.abs(about)))]
+    ringing = lines[nearest_axis(about)]
     offset = [gyros.along(about), scatter, earth.up_sigma * float(about @ m.up), unknown_level]
     if not np.isfinite(density).all():
         return _("its white noise is not known")
