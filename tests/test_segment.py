@@ -107,17 +107,22 @@ def test_the_bins_of_a_long_campaign_are_longer_and_find_the_same(clean, monkeyp
     assert coarse["findings"].empty
 
 
-@pytest.mark.slow
-def test_a_turn_the_wrong_way_is_found_and_refused(tmp_path):
+def rest_and_turn(folder, stated, read):
+    """A rest and a turn of 360° recorded by the laboratory; `read` in place of what it states."""
     document = chain.demo()
     document["campaign"]["plan"] = [
         {"id": "still", "do": "rest", "up": "+z", "seconds": 20, "log": "still.asc"},
         {"id": "turn", "do": "turn", "up": "+z", "degrees": 360, "rate_deg_s": 10,
          "accel_deg_s2": 5, "log": "turn.asc"},
     ]  # fmt: skip
-    folder = chain.simulate(document, tmp_path / "campaign")
-    campaign = folder / "campaign.yaml"
-    campaign.write_text(campaign.read_text().replace("degrees: 360", "degrees: -360"))
+    campaign = chain.simulate(document, folder) / "campaign.yaml"
+    campaign.write_text(campaign.read_text().replace(stated, read))
+    return folder
+
+
+@pytest.mark.slow
+def test_a_turn_the_wrong_way_is_found_and_refused(tmp_path):
+    folder = rest_and_turn(tmp_path / "campaign", "degrees: 360", "degrees: -360")
     results = chain.run(folder, tmp_path / "derived")
     assert "wrong_direction" in set(results["segment/findings"]["cause"])
     scale = results.parameters("gyroscope").loc["scale_z"]
@@ -195,15 +200,7 @@ def test_one_turn_of_a_long_log_the_wrong_way_is_the_only_finding(tmp_path):
 
 
 def test_a_count_of_the_wrong_unit_is_named(tmp_path):  # T3, what S0's own log says of its IMU
-    document = chain.demo()
-    document["campaign"]["plan"] = [
-        {"id": "still", "do": "rest", "up": "+z", "seconds": 20, "log": "still.asc"},
-        {"id": "turn", "do": "turn", "up": "+z", "degrees": 360, "rate_deg_s": 10,
-         "accel_deg_s2": 5, "log": "turn.asc"},
-    ]  # fmt: skip
-    folder = chain.simulate(document, tmp_path / "campaign")
-    campaign = folder / "campaign.yaml"
-    campaign.write_text(campaign.read_text().replace("span-cpt", "imar-fsas"))
+    folder = rest_and_turn(tmp_path / "campaign", "span-cpt", "imar-fsas")
     results = chain.run(folder, tmp_path / "derived", "segment")
     wrong = results["segment/findings"].set_index("cause").loc["wrong_scale_factor"]
     assert 1 / wrong["size"] == pytest.approx(57.29578, rel=2e-3)

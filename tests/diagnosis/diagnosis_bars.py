@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from diagnosis_draws import BETWEEN, CLEAN, PAIRS, RATIOS, SIGMAS
 from diagnosis_outcomes import Outcome
-from hidden_bars import Bar
+from hidden_bars import Bar, no_errors
 
 RIGHT = 0.97
 BOTH = 54  # of PAIRS
@@ -16,13 +16,7 @@ PULLS = (0.9, 1.1)
 
 def bars(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
     """Every demand."""
-    errors = [one for one in outcomes if "error" in one]
-    yield Bar(
-        "campaigns that end with an error",
-        "none",
-        f"{len(errors)} of {len(outcomes)}",
-        not errors if outcomes else None,
-    )
+    yield no_errors(outcomes)
     every = [*of(outcomes, "effect"), *of(outcomes, "fault")]
     right = sum(map(good, every))
     yield Bar(

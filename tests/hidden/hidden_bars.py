@@ -1,6 +1,6 @@
 """What is demanded, what was measured, and whether it is met: by the figures, never by hand."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -109,14 +109,17 @@ def bars(outcomes: Sequence[Outcome], statistics: Sequence[dict[str, Any]]) -> I
     )
 
 
-def _of_clean(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
-    errors = [one for one in outcomes if "error" in one]
-    yield Bar(
-        "campaigns that end with an error",
-        "none",
-        f"{len(errors)} of {len(outcomes)}",
-        not errors if outcomes else None,
+def no_errors(outcomes: Sequence[Mapping[str, Any]]) -> Bar:
+    """Every campaign is analysed to its end."""
+    errors = sum("error" in one for one in outcomes)
+    measured = f"{errors} of {len(outcomes)}"
+    return Bar(
+        "campaigns that end with an error", "none", measured, not errors if outcomes else None
     )
+
+
+def _of_clean(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
+    yield no_errors(outcomes)
     clean = of(outcomes, "clean")
     count, number = tally(clean, lambda one: bool(false_names(one)))
     allowed = FALSE_NAMES if number >= CLEAN else FALSE_NAMES * number / CLEAN

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from hidden_bars import Bar
+from hidden_bars import Bar, no_errors
 from temperature_draws import REPORTED
 
 MIN_RATIO = 8.0  # signal-to-noise ratio of the highest coefficient, from which shapes are judged
@@ -79,13 +79,7 @@ def straight(curves: Sequence[Curve]) -> list[Curve]:
 
 def bars(outcomes: Sequence[Outcome]) -> Iterator[Bar]:
     """Every demand."""
-    errors = [one for one in outcomes if "error" in one]
-    yield Bar(
-        "campaigns that end with an error",
-        "none",
-        f"{len(errors)} of {len(outcomes)}",
-        not errors if outcomes else None,
-    )
+    yield no_errors(outcomes)
     judged = demanded(outcomes)
     value = rms(judged)
     yield Bar(
