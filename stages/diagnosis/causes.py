@@ -32,24 +32,18 @@ from inertial.text.parameters import MIXTURE, sign_of
 from inertial.text.units import quantity
 from stages.diagnosis.decision import MAX_MOVE, UNEXPLAINED
 from stages.diagnosis.gravity_by_latitude import Gravity
-from stages.diagnosis.moved_parameters import (
+from stages.diagnosis.sensor_results import SensorResult
+from stages.diagnosis.sizes_of_causes import (
     CLOCK,
+    Size,
     moved_by,
     moved_by_measure,
     moved_by_runs,
     moved_by_turning,
 )
-from stages.diagnosis.sensor_results import SensorResult
 
-REPAIRED, MODELLED, CURVE, MASKED, INTERPOLATED, LEFT_OUT, NONE = (
-    "repaired",
-    "modelled",
-    "curve",
-    "masked",
-    "interpolated",
-    "left_out",
-    "none",
-)
+REPAIRED, MODELLED, CURVE, MASKED = "repaired", "modelled", "curve", "masked"
+INTERPOLATED, LEFT_OUT, NONE = "interpolated", "left_out", "none"
 APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were made with
 MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
@@ -95,16 +89,6 @@ NO_ATTITUDE = _(
 )
 STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
 HARMLESS = _("Nothing need be done about it for this result.")
-
-
-@dataclass(frozen=True)
-class Size:
-    """How large an effect is by its clearest parameter, and its axis where it is one alone."""
-
-    value: float | None
-    sigma: float | None
-    unit: str
-    axis: str | None = None
 
 
 @dataclass(frozen=True)

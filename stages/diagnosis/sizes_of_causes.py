@@ -1,19 +1,30 @@
-"""How large the effects are: by the result where its model has them, else by criticism."""
+"""How large causes are, by the result where its model has them, and by how much they move it."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
 from inertial.campaign.competition import ExplainedFindings
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
-from inertial.campaign.hypotheses import Findings
+from inertial.campaign.hypotheses import MOUNTINGS, PLAN, Findings, Hypothesis
 from inertial.campaign.records import Row, rows_of, sizes_of_result
 from inertial.effects import KNOWN, TEMPERATURE_MODELS
 from inertial.effects.restarts import Restarts
 from inertial.text.parameters import AXES
-from stages.diagnosis.causes import Size
+from inertial.text.units import STANDARD_GRAVITY
 from stages.diagnosis.sensor_results import SensorResult
 
 PLACES = ("frequency", "n", "phase")  # parameters of lines: where they are, not how large
 MIN_CLEAR_SIGMA = 4.0  # of a parameter: the effect is in its axis
+
+
+@dataclass(frozen=True)
+class Size:
+    """How large an effect is by its clearest parameter, and its axis where it is one alone."""
+
+    value: float | None
+    sigma: float | None
+    unit: str
+    axis: str | None = None
 
 
 def by_result(effects: Iterable[Row], results: Sequence[SensorResult]) -> list[Row]:
@@ -92,3 +103,65 @@ def _size(rows: Sequence[Row]) -> Size:
 
 def _sigmas(row: Row) -> float:
     return abs(float(row["value"]) / float(row["sigma"]))
+
+
+# ---- By how many of its sigma a cause moves a parameter, where no model of the readings says it.
+
+CLOCK = "clock_scale"
+OF_ENCODER = ("encoder_scale", "encoder_scale_or_eccentricity", "encoder_angles")
+RATE_OFF, TABLE_RATE_OFF = "rate_off", "table_rate_off"
+
+
+def moved_by(repair: Row, own: Sequence[SensorResult]) -> float | None:
+    """By how many sigma a stated value would have moved the scale factors."""
+    if repair["value"] is None or repair["stated"] is None or not repair["value"]:
+        return None
+    relative = abs(repair["stated"] / repair["value"] - 1)
+    sigmas = [sigma for result in own if (sigma := result.scale_sigma) is not None]
+    return relative / min(sigmas) if sigmas else None
+
+
+def moved_by_turning(
+    showing: Sequence[SensorResult], others: Sequence[SensorResult]
+) -> list[float]:
+    """Upper bound, in sigma, of the change of cross-axis terms of the other sensor.
+
+    All its rotations may be before or all after the shift: then its terms hold for one of the two
+    mountings, and its residuals show nothing.
+    """
+    angles = (result.angle(effect) for result in showing for effect in MOUNTINGS)
+    angle = max(angles, default=0.0)
+    sigmas = [result.cross_sigma for result in others]
+    return [angle / sigma for sigma in sigmas if sigma and angle]
+
+
+def moved_by_runs(difference: float, own: Sequence[SensorResult]) -> float | None:
+    """By how many sigma the bias is that of no run, where that of two runs differs."""
+    sigmas = [sigma for result in own if (sigma := result.bias_sigma) is not None]
+    return difference / 2 / min(sigmas) if sigmas else None
+
+
+def moved_by_measure(cause: Hypothesis, own: Sequence[SensorResult]) -> float | None:
+    """By how many sigma a clock or an encoder that is off by a share moves the parameters.
+
+    Angles move the scale factors of the gyros. Of a clock by which increments are specific forces,
+    one of two opposite rests reads g (1 + error): half of that goes into the scale factor, half of
+    g times it into the bias. This is the difference between the results for wrong stamps and
+    for a wrong sampling interval.
+    """
+    size = abs(cause.row["size"] or 0.0)
+    if cause.cause in (RATE_OFF, TABLE_RATE_OFF) and cause.stage == PLAN:
+        shares = [(abs(size - 1), result.scale_sigma) for result in own]
+    elif cause.cause in OF_ENCODER:
+        shares = [(size, result.scale_sigma) for result in own]
+    elif cause.cause == CLOCK and cause.sensor == "gyro":
+        shares = [(1e-6 * size, result.scale_sigma) for result in own]
+    elif cause.cause == CLOCK and cause.sensor == "accel":
+        shares = [
+            (1e-6 * size / 2 * unit, sigma)
+            for result in own
+            for unit, sigma in ((1.0, result.scale_sigma), (STANDARD_GRAVITY, result.bias_sigma))
+        ]
+    else:
+        return None
+    return max((share / sigma for share, sigma in shares if sigma), default=None)
