@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from commands.design.turntable import Turntable, direction
-from inertial.arrays import Array
+from inertial.arrays import Array, nearest_axis
 from inertial.campaign.foreseen import Pace, session_seconds
 from inertial.campaign.records import Manoeuvre
 from inertial.physics.motion import Profile, level_axes
@@ -55,7 +55,7 @@ class Visit:
 
 def written(vector: Array) -> str | list[float]:
     """A direction as a campaign file has it: a body axis with its sign, or three numbers."""
-    axis = int(np.argmax(np.abs(vector)))
+    axis = nearest_axis(vector)
     if abs(vector[axis]) > 1 - CLOSE:
         return f"{'-' if vector[axis] < 0 else '+'}{'xyz'[axis]}"
     return [round(float(each), 9) + 0.0 for each in vector]  # no −0

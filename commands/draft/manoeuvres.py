@@ -7,7 +7,7 @@ import numpy as np
 
 from commands.draft.sensors import Kind, Part, are_means
 from commands.draft.series import MIN_REST_S, Divided, Still
-from inertial.arrays import Array
+from inertial.arrays import Array, nearest_axis
 
 # ---- Rotations about one body axis in a recording, and the angle and rate that were meant.
 
@@ -23,7 +23,7 @@ def face(vector: Array, most: float = MAX_FACE_ANGLE) -> str | None:
     """The signed axis along a vector, (3,), such as a specific force; None where there is none."""
     if not np.isfinite(vector).all() or not np.linalg.norm(vector):
         return None
-    i = int(np.argmax(np.abs(vector)))
+    i = nearest_axis(vector)
     if abs(vector[i]) < np.cos(most) * np.linalg.norm(vector):
         return None
     return f"{'+' if vector[i] > 0 else '-'}{'xyz'[i]}"

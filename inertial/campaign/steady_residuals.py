@@ -9,7 +9,7 @@ from math import ceil
 import numpy as np
 import pandas as pd
 
-from inertial.arrays import Array, Booleans
+from inertial.arrays import Array, Booleans, nearest_axis
 from inertial.campaign.campaign_data import CampaignData
 from inertial.estimation.periodic_in_angle import Course
 from inertial.estimation.periodic_in_time import Line
@@ -89,7 +89,7 @@ class SteadyTurn:
 
     def shape(self, direction: Array) -> NoiseShape:
         """The shape of the noise about an axis of the case, of a unit vector the nearest one."""
-        return self.shapes[int(np.argmax(np.abs(direction)))]
+        return self.shapes[nearest_axis(direction)]
 
     def sigma(self, direction: Array, frequency: Array | float) -> Array:
         """Noise of a sample about an axis of the case, were it white as at a frequency, rad/s."""

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from inertial.arrays import Array
+from inertial.arrays import Array, nearest_axis
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import (
     Deviation,
@@ -304,7 +304,7 @@ def _instead(recorded: Recorded, i: int) -> str:
 
 
 def _axis(direction: Array) -> str:
-    k = int(np.argmax(np.abs(direction)))
+    k = nearest_axis(direction)
     if abs(direction[k]) > MIN_SAME_COSINE:
         return f"{'+' if direction[k] > 0 else '−'}{AXES[k]}"
     return "(" + ", ".join(fixed(float(part), 2) for part in direction) + ")"
@@ -421,7 +421,7 @@ def _or_a_sign(recorded: Recorded, own: list[int]) -> str:
     unit = directions / np.linalg.norm(directions, axis=1)[:, None]
     if float(unit[0] @ unit[1]) > -0.9:
         return ""
-    axis = "xyz"[int(np.argmax(np.abs(unit[0])))]
+    axis = "xyz"[nearest_axis(unit[0])]
     if rests:
         return _(
             " A wrong sign of the {axis} accelerometer cannot be distinguished from it, if "

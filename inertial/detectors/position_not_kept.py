@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import fdtrc
 
-from inertial.arrays import Array, Integers
+from inertial.arrays import Array, Integers, nearest_axis
 from inertial.physics.motion import cross
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import Deviation, PlanDetector, Recorded
@@ -40,7 +40,7 @@ class PositionNotKept(PlanDetector):
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
         pairs = list(_pairs(recorded))
-        vertical = {int(np.argmax(np.abs(recorded.up[i]))) for i, _after in pairs}
+        vertical = {nearest_axis(recorded.up[i]) for i, _after in pairs}
         if len(pairs) < MIN_PAIRS or len(vertical) < 3:
             return
         along, across = np.array([_change(recorded, *pair) for pair in pairs]).T

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inertial.arrays import Array, Integers
+from inertial.arrays import Array, Integers, nearest_axis
 from inertial.estimation.gyroscope_equations import TABLE_RATE
 from inertial.estimation.gyroscope_formulas import Readings, Solution
 from inertial.estimation.gyroscope_observations import Earth, SteadyRate
@@ -180,7 +180,7 @@ def own_axis(runs: Sequence[SteadyRate], earth: Earth, scatter: float = 0.0) -> 
     """
     rows = []
     for number, run in enumerate(runs):
-        gyro = int(np.argmax(np.abs(run.about)))
+        gyro = nearest_axis(run.about)
         recorded = np.isfinite(run.mean[gyro]) and np.isfinite(run.sigma[gyro])
         if abs(run.about[gyro]) < MIN_AXIS_COSINE or not recorded:
             continue

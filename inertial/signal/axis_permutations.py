@@ -8,7 +8,7 @@ from itertools import permutations, product
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from inertial.arrays import Array, Integers
+from inertial.arrays import Array, Integers, nearest_axis
 from inertial.physics.motion import cross
 from inertial.sensors import COLUMNS, SINGULAR
 from inertial.signal.detector import Description, Event, Log, Piece, Windows, read_in
@@ -404,7 +404,7 @@ def read_as_other_axes(force: Array, up: Array, forces: Array, ups: Array) -> Pe
             misfit[permutation] = float(np.linalg.norm(straight - predicted))
     if not misfit:
         return None
-    axis = int(np.argmax(np.abs(force)))
+    axis = nearest_axis(force)
     actual_up = np.sign(force[axis]) * np.eye(3)[axis]
     attitude_misfit = float(np.linalg.norm(force - response @ np.append(actual_up, 1.0)))
     best = min(misfit, key=lambda permutation: misfit[permutation])

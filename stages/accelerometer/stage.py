@@ -6,7 +6,7 @@ from math import degrees
 
 import numpy as np
 
-from inertial.arrays import Array
+from inertial.arrays import Array, nearest_axis
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.estimates import NAMES, Estimates, Wanted, reasons, stops_between_turns
 from inertial.campaign.findings import Finding, table_of
@@ -145,7 +145,7 @@ def _far_off(off: FarOff, mount: str) -> Finding:
             "others agree.",
             name=off.position,
             size=plus_minus(degrees(size), degrees(off.sigma)),
-            axis=AXES[int(np.argmax(np.abs(off.tilt)))],
+            axis=AXES[nearest_axis(off.tilt)],
         ),
         consequence=_("As it was planned it would move every parameter of the accelerometers."),
         action=_("Set this position again and record it; or state its attitude as it was."),
@@ -156,7 +156,7 @@ def _finding(off: OffPosition, sigma: Array, mount: str) -> Finding:
     """With the affected parameters; `sigma`: (12,), of the parameters without the scatter."""
     several = len(off.positions) > 1
     names = _(" or ").join(off.positions)
-    axis = int(np.argmax(np.abs(off.about)))
+    axis = nearest_axis(off.about)
     affected = [
         _change(name, float(off.moved[i]))
         for i, name in enumerate(NAMES)

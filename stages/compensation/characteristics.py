@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from inertial import tables
-from inertial.arrays import Array
+from inertial.arrays import Array, nearest_axis
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
 from inertial.campaign.rate_segments import position_of
@@ -287,7 +287,7 @@ def _since(measurement: Measurement, m: Manoeuvre, data: CampaignData) -> Measur
 
 def _axis(direction: Array) -> tuple[int, float] | None:
     """The axis of the case along a direction and its sign."""
-    axis = int(np.argmax(np.abs(direction)))
+    axis = nearest_axis(direction)
     along = float(direction[axis])
     return (axis, float(np.sign(along))) if abs(along) > MIN_COSINE else None
 

@@ -11,7 +11,7 @@ from math import degrees, erfc, sqrt
 
 import numpy as np
 
-from inertial.arrays import Array, Booleans
+from inertial.arrays import Array, Booleans, nearest_axis
 from inertial.campaign.hypotheses import STEP_IN_TURN
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.periodic_in_angle import Course
@@ -61,7 +61,7 @@ class StepInTurn:
     @property
     def axis(self) -> str:
         """The axis of the case about which most of it is."""
-        return AXES[int(np.argmax(np.abs(self.angle)))]
+        return AXES[nearest_axis(self.angle)]
 
     @property
     def size(self) -> float:

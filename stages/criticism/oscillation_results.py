@@ -7,7 +7,7 @@ from math import sqrt
 import numpy as np
 from scipy.special import expit
 
-from inertial.arrays import Array
+from inertial.arrays import Array, nearest_axis
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.effects import CATALOGUE
@@ -295,7 +295,7 @@ def _is(line: TurnLine, oscillation: Oscillation, turn: SteadyTurn) -> bool:
 
 def _axis(line: TurnLine, turn: SteadyTurn) -> str:
     """The axis of the case that is nearest to that of the line."""
-    return line.axis if line.axis != TABLE else AXES[int(np.argmax(np.abs(turn.about)))]
+    return line.axis if line.axis != TABLE else AXES[nearest_axis(turn.about)]
 
 
 def _estimates(name: str, oscillation: Oscillation) -> dict[str, tuple[float, float]]:

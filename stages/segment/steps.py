@@ -3,8 +3,7 @@
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
+from inertial.arrays import nearest_axis
 from inertial.campaign.records import Manoeuvre, Row
 from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import Permutation
@@ -96,7 +95,7 @@ def senses_by_axis(turns: Sequence[Manoeuvre]) -> Iterator[OtherSense]:
     for m in turns:
         assert m.about is not None  # of a turn it is known
         groups[""].append(m.name)
-        i = int(np.argmax(np.abs(m.about)))
+        i = nearest_axis(m.about)
         if abs(m.about[i]) > OWN_AXIS_SHARE:
             groups[AXES[i]].append(m.name)
             if m.about[i] < 0:

@@ -11,6 +11,7 @@ import pandas as pd
 import pyarrow as pa
 from matplotlib.axes import Axes
 
+from inertial.arrays import nearest_axis
 from inertial.tables import AXES, GYRO
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, shortened, significant
@@ -46,7 +47,7 @@ def axis_of_turn(row: Record) -> str:
     parts = [row[f"about_{axis}"] for axis in AXES]
     if row["do"] != "turn" or None in parts:
         return ""
-    return AXES[int(np.argmax(np.abs(parts)))]
+    return AXES[nearest_axis(parts)]
 
 
 def _steady(tables: Tables, turns: Collection[str]) -> Iterator[tuple[str, pd.DataFrame]]:
