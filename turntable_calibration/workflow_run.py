@@ -18,7 +18,7 @@ WORKFLOW = HERE / "workflow" if (HERE / "workflow").is_dir() else HERE.parent
 LOCK = ".snakemake/turntable-calibration.lock"
 
 
-def snakemake(folder: Path, cores: int, targets: Sequence[str], more: Sequence[str] = ()) -> int:
+def snakemake(folder: Path, cores: int, targets: Sequence[str]) -> int:
     """Make the targets on a folder that holds data/; its exit status.
 
     Two runs on one folder wait for each other; in a checkout those of `make`, too, which lock the
@@ -34,7 +34,7 @@ def snakemake(folder: Path, cores: int, targets: Sequence[str], more: Sequence[s
         command = [
             *(sys.executable, "-m", "snakemake", "--nolock"),
             *("--snakefile", str(WORKFLOW / "Snakefile"), "--directory", str(folder)),
-            *("--cores", str(cores), "--quiet", "host", "reason", *more, "--", *targets),
+            *("--cores", str(cores), "--quiet", "host", "reason", "--", *targets),
         ]
         return subprocess.run(command, pass_fds=[file.fileno()], check=False).returncode
 

@@ -37,7 +37,7 @@ class WrongSpans(PlanDetector):
     severity = 3
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for each in recorded.spans_off:
+        for each in recorded.undone.spans_off:
             number = len(each.names)
             yield Deviation(None, each.log, each.late, count=number, facts=each, repair=each.repair)
 

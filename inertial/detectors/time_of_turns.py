@@ -91,7 +91,9 @@ def slight_time_ratio(recorded: Recorded) -> float | None:
     rate, angle = turn_ratios(recorded)
     known = np.isfinite(rate) & np.isfinite(angle)
     longer = angle[known] / rate[known]
-    as_recorded = bool(recorded.restated)  # rates in place of the plan's: by the gyros themselves
+    as_recorded = bool(
+        recorded.undone.restated
+    )  # rates in place of the plan's: by the gyros themselves
     if len(longer) < MIN_ALIKE_TURNS or as_recorded or not np.isfinite(recorded.rate_sigma):
         return None
     ratio = float(np.median(longer))
@@ -206,7 +208,7 @@ def short_turns(recorded: Recorded) -> Booleans:
     rate, angle = turn_ratios(recorded)
     known = np.isfinite(rate) & np.isfinite(angle) & recorded.complete & (rate > 0)
     short = np.zeros(len(known), bool)
-    if not known.any() or recorded.restated:
+    if not known.any() or recorded.undone.restated:
         return short
     longer = np.where(known, angle, 1.0) / np.where(known, rate, np.nan)
     lacking = 1 - longer / np.nanmedian(longer)

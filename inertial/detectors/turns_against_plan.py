@@ -139,7 +139,7 @@ class WrongDirection(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for each in recorded.reversed:
+        for each in recorded.undone.reversed:
             axis = each.about if len(each.about) == 1 else None
             yield Deviation(
                 None,
@@ -256,7 +256,7 @@ class WrongRate(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for each in recorded.restated:
+        for each in recorded.undone.restated:
             yield Deviation(
                 None,
                 "",
@@ -432,7 +432,7 @@ class WrongMark(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for off in recorded.marks_off:
+        for off in recorded.undone.marks_off:
             number, repair = len(off.names), off.repair
             yield Deviation(None, "", off.off, self.sensor, count=number, facts=off, repair=repair)
 

@@ -149,7 +149,7 @@ class WrongScaleOfTurns(PlanDetector):
     sensor = "gyro"
 
     def detect(self, recorded: Recorded) -> Iterator[Deviation]:
-        for each in recorded.rescaled:
+        for each in recorded.undone.rescaled:
             yield Deviation(
                 None,
                 each.log,

@@ -97,9 +97,9 @@ def _fitted(campaigns: Campaigns) -> tuple[Population | None, ...]:
     return tuple(of(number) for number in range(campaigns.values.shape[1]))
 
 
-def spread_of(found: Population, levels: Sequence[str]) -> float:
-    """The standard deviation between groups of some levels, each component once."""
-    return float(np.sqrt(sum(s.value**2 for s in found.spreads if set(s.levels) & set(levels))))
+def spread_of(found: Population) -> float:
+    """The standard deviation between IMUs."""
+    return float(np.sqrt(sum(s.value**2 for s in found.spreads if "imu" in s.levels)))
 
 
 def of_new_imu(found: Population) -> tuple[float, float] | None:
@@ -176,7 +176,7 @@ def _tests(campaigns: Campaigns, found: Sequence[Population | None]) -> Iterator
         # Of each IMU alone, other parameters as its own covariance has them.
         inverse = _inverse(information[shown])
         values = np.einsum("inm,im->in", inverse, score[shown])[:, number]
-        between = spread_of(fitted, ("imu",))
+        between = spread_of(fitted)
         sizes, chances = _studentised(values, inverse[:, number, number], between)
         for place, size, chance in zip(shown, sizes, chances, strict=True):
             p_value = min(float(chance) * count, 1.0)
@@ -207,7 +207,7 @@ def _correlation(campaigns: Campaigns, found: Sequence[Population | None]) -> Ar
     n = len(found)
     correlation = np.full((n, n), np.nan)
     names, information, score = _imu_means(campaigns, found)
-    spreads = np.array([spread_of(f, ("imu",)) if f is not None else 0.0 for f in found])
+    spreads = np.array([spread_of(f) if f is not None else 0.0 for f in found])
     median = np.median(np.diagonal(information, axis1=1, axis2=2), axis=0)
     shown = np.flatnonzero((spreads > 0) & (spreads**2 * median > 1))
     if len(names) < MIN_IMUS or not len(shown):

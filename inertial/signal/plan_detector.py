@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from inertial.arrays import Array, Booleans, Integers, finite_or_none
@@ -177,6 +177,28 @@ class MarksOff:
 
 
 @dataclass(frozen=True)
+class Undone:
+    """What was set right, for the findings that tell of it.
+
+    rescaled: count sizes of the gyros; restated: rates of the plan; reversed: turns that are taken
+    the other way; spans_off: stated spans that are off by one time; marks_off: marks that turns
+    contradict.
+    rivals: for the id of a repair that is not applied those of others that explain as much.
+    changes: for that of one of signs, which is not applied, where these change.
+    """
+
+    misread: list[Misread] = field(default_factory=list)
+    swapped: list[Swapped] = field(default_factory=list)
+    rescaled: list[Rescaled] = field(default_factory=list)
+    restated: list[Rescaled] = field(default_factory=list)
+    reversed: list[Reversed] = field(default_factory=list)
+    spans_off: list[SpansOff] = field(default_factory=list)
+    rivals: dict[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
+    changes: dict[str, SignChange] = field(default_factory=dict)
+    marks_off: list[MarksOff] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
 class StaticMeans:
     """The n rests of the manoeuvres of a plan, one after the other, those of turns too.
 
@@ -223,10 +245,8 @@ class Recorded:
     temperature: (m,), K, recorded, NaN where it mostly is not; stated_temperature and its
     temperature_sigma: those of the plan, NaN where not stated.
     gyro_signs: (3,), +1 right and −1 wrong, by the earth rate, 0 where it does not show.
-    misread, swapped: what explains that the plan is not found as it is. rescaled: count sizes of
-    the gyros that were undone, restated: rates of the plan. reversed: turns that are taken the
-    other way. divided: the rests of each still stretch that only the plan divides.
-    spans_off: stated spans that are off by one time. marks_off: marks that turns contradict.
+    misread, swapped: what explains that the plan is not found as it is; undone: what was set right.
+    divided: the rests of each still stretch that only the plan divides.
     tolerance: accepted difference of an angle or a rate from the plan's, 1.
     """
 
@@ -278,12 +298,8 @@ class Recorded:
     gyro_signs: Sequence[int]
     misread: Sequence[Misread]
     swapped: Sequence[Swapped]
-    rescaled: Sequence[Rescaled] = ()
-    restated: Sequence[Rescaled] = ()
-    reversed: Sequence[Reversed] = ()
-    divided: Sequence[Sequence[str]] = ()
-    spans_off: Sequence[SpansOff] = ()
-    marks_off: Sequence[MarksOff] = ()
+    undone: Undone
+    divided: Sequence[Sequence[str]]
 
     @property
     def explained(self) -> set[str]:

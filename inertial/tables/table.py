@@ -119,11 +119,8 @@ BODY = "body"  # axes x, y, z of the IMU's case, right-handed
 OF_TRIAD = "accelerometer triad"
 
 
-def vector(stem: str, unit: str, meaning: str, *, nullable: bool = True) -> list[Column]:
-    return [
-        Column(f"{stem}_{axis}", DOUBLE, unit, f"{meaning}, {axis}", BODY, nullable)
-        for axis in AXES
-    ]
+def vector(stem: str, unit: str, meaning: str) -> list[Column]:
+    return [optional(f"{stem}_{axis}", DOUBLE, unit, f"{meaning}, {axis}", BODY) for axis in AXES]
 
 
 def channels(meaning: str, *, prefix: str = "") -> list[Column]:

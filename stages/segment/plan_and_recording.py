@@ -1,7 +1,7 @@
 """Plan and recording of each manoeuvre, as the detectors that know the plan compare them."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
@@ -19,16 +19,13 @@ from inertial.signal.detector import Detector, Event, Given, Log
 from inertial.signal.gravity_turned import rate_of_gravity
 from inertial.signal.plan_detector import (
     Deviation,
-    MarksOff,
     Misread,
     PlanDetector,
     Recorded,
-    Rescaled,
     Reversed,
-    SignChange,
-    SpansOff,
     StaticMeans,
     Swapped,
+    Undone,
 )
 from inertial.tables import ACCEL, GYRO, STATIC_PHASES
 from stages.segment.located import Located
@@ -41,25 +38,6 @@ MAX_OF_ROUND = 0.01  # by which a whole number of rounds may be off
 QUARTERS = 4  # of the steady part of a turn
 Place = tuple[int, int, float, float]  # records [first, after), from and to, s
 NOWHERE: Place = (-1, -1, np.nan, np.nan)
-
-
-@dataclass(frozen=True)
-class Undone:
-    """What was set right, for the findings that tell of it; as in Recorded.
-
-    rivals : for the id of a repair that is not applied those of others that explain as much.
-    changes : for that of one of signs, which is not applied, where these change.
-    """
-
-    misread: list[Misread] = field(default_factory=list)
-    swapped: list[Swapped] = field(default_factory=list)
-    rescaled: list[Rescaled] = field(default_factory=list)
-    restated: list[Rescaled] = field(default_factory=list)
-    reversed: list[Reversed] = field(default_factory=list)
-    spans_off: list[SpansOff] = field(default_factory=list)
-    rivals: dict[str, Sequence[tuple[str, str]]] = field(default_factory=dict)
-    changes: dict[str, SignChange] = field(default_factory=dict)
-    marks_off: list[MarksOff] = field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,11 +143,7 @@ def recorded_of(
         gyro_signs=explained.gyro_signs,
         misread=[*undone.misread, *misread],
         swapped=[*undone.swapped, *(_beside(each, undone) for each in swapped)],
-        rescaled=undone.rescaled,
-        restated=undone.restated,
-        reversed=undone.reversed,
-        spans_off=undone.spans_off,
-        marks_off=undone.marks_off,
+        undone=undone,
         divided=[names for located in explained.located for names in located.divided],
     )
 

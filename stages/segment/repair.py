@@ -24,11 +24,11 @@ from inertial.signal.plan_detector import (
     Rescaled,
     Reversed,
     SpansOff,
+    Undone,
 )
 from inertial.text.messages import _
 from inertial.text.numbers import counted, significant
 from stages.segment.located import AS_PLANNED
-from stages.segment.plan_and_recording import Undone
 from stages.segment.recording_explanations import (
     ExplainedRecording,
     by_mounting,
