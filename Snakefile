@@ -1,4 +1,4 @@
-# The whole pipeline on one page, in the order of the data: each rule runs the stage of its name,
+# The whole pipeline, in the order of the data: each rule runs the stage of its name,
 # which writes its tables into data/derived/<campaign>/<stage>/. What a stage reads and writes is
 # declared in stages/<stage>/declared.py, and taken from there.
 
@@ -84,14 +84,6 @@ def shown(document, category="{campaign}"):
 def code(stage):
     """One hash of all files of the project that a stage rests on: it runs again when one changes."""
     return hash_of(code_of(stage))
-
-
-def command(stage):
-    """How a stage is called, with the folder of the campaign's tables."""
-    return (
-        f"python -m stages {stage} data/derived/{{wildcards.campaign:q}}"
-        " --settings {params.settings:q} {params.files:q} 2> {log:q}"
-    )
 
 
 def settings(stage):
@@ -250,494 +242,76 @@ for simulated in SIMULATED:
             "python -m laboratory {input:q} {params.output:q} 2> {log:q}"
 
 
-rule plan:
-    input:
-        **reads("plan"),
-        campaign=f"{RAW}/campaign.yaml",
-        raw=logs,
-        instruments=HOME / "data/instruments.yaml",
-        published=published,
-        laboratory=laboratory(),
-    output:
-        writes("plan"),
-    log:
-        f"{DERIVED}/plan/stage.log",
-    benchmark:
-        f"{DERIVED}/plan/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("plan"),
-    params:
-        settings=settings("plan"),
-        files=files("plan"),
-        code=code("plan"),
-    message:
-        "{wildcards.campaign}: the campaign file, checked and made explicit"
-    shell:
-        command("plan")
+STAGES = {  # in the order of the data, each with what it makes
+    "plan": "the campaign file, checked and made explicit",
+    "decode": "logs to samples",
+    "quality": "faults of the recording",
+    "segment": "the manoeuvres of the plan in the logs",
+    "noise": "white noise of every channel",
+    "accelerometer": "the accelerometers from static positions",
+    "gyroscope": "the gyros from rate segments and static positions",
+    "studies": "averaging time, epochs, windows, time and angle",
+    "comparison": "static against rotation, method against method",
+    "simulation": "what the IMU should have read",
+    "criticism": "unmodelled effects by name",
+    "extension": "the model with these effects, and its gain on held-out manoeuvres",
+    "diagnosis": "causes, the one result that counts, and the verdict",
+    "compensation": "the samples with the errors taken out",
+    "navigation": "free inertial navigation before and after calibration",
+    "alignment": "alignment at rest, and the attitude error with and without rotation",
+    "history": "into the archive of its IMU, and against published values",
+    "export": "the calibration for other programs",
+    "report": "the report",
+    "pdf": "the report as PDF",
+}
+FILES = {  # that stages read beside the tables
+    "plan": {
+        "campaign": f"{RAW}/campaign.yaml",
+        "raw": logs,
+        "instruments": HOME / "data/instruments.yaml",
+        "published": published,
+        "laboratory": laboratory(),
+    },
+    "decode": {"raw": logs},
+    "pdf": {
+        "html": "reports/{campaign}.html",
+        "attached": ["reports/{campaign}.calibration.json", "reports/{campaign}.dcc.xml"],
+    },
+}
+PATHS = {"history": {"archive": "data/history"}}  # that are no input, for a stage changes them
+LONGEST = {"simulation", "criticism", "extension"}  # the longest way to the report has these
 
 
-rule decode:
-    input:
-        **reads("decode"),
-        raw=logs,
-    output:
-        writes("decode"),
-    log:
-        f"{DERIVED}/decode/stage.log",
-    benchmark:
-        f"{DERIVED}/decode/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("decode"),
-    params:
-        settings=settings("decode"),
-        files=files("decode"),
-        code=code("decode"),
-    message:
-        "{wildcards.campaign}: logs to samples"
-    shell:
-        command("decode")
+for stage, makes in STAGES.items():
 
-
-rule quality:
-    input:
-        **reads("quality"),
-    output:
-        writes("quality"),
-    log:
-        f"{DERIVED}/quality/stage.log",
-    benchmark:
-        f"{DERIVED}/quality/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("quality"),
-    params:
-        settings=settings("quality"),
-        files=files("quality"),
-        code=code("quality"),
-    message:
-        "{wildcards.campaign}: faults of the recording"
-    shell:
-        command("quality")
-
-
-rule segment:
-    input:
-        **reads("segment"),
-    output:
-        writes("segment"),
-    log:
-        f"{DERIVED}/segment/stage.log",
-    benchmark:
-        f"{DERIVED}/segment/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("segment"),
-    params:
-        settings=settings("segment"),
-        files=files("segment"),
-        code=code("segment"),
-    message:
-        "{wildcards.campaign}: the manoeuvres of the plan in the logs"
-    shell:
-        command("segment")
-
-
-rule noise:
-    input:
-        **reads("noise"),
-    output:
-        writes("noise"),
-    log:
-        f"{DERIVED}/noise/stage.log",
-    benchmark:
-        f"{DERIVED}/noise/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("noise"),
-    params:
-        settings=settings("noise"),
-        files=files("noise"),
-        code=code("noise"),
-    message:
-        "{wildcards.campaign}: white noise of every channel"
-    shell:
-        command("noise")
-
-
-rule accelerometer:
-    input:
-        **reads("accelerometer"),
-    output:
-        writes("accelerometer"),
-    log:
-        f"{DERIVED}/accelerometer/stage.log",
-    benchmark:
-        f"{DERIVED}/accelerometer/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("accelerometer"),
-    params:
-        settings=settings("accelerometer"),
-        files=files("accelerometer"),
-        code=code("accelerometer"),
-    message:
-        "{wildcards.campaign}: the accelerometers from static positions"
-    shell:
-        command("accelerometer")
-
-
-rule gyroscope:
-    input:
-        **reads("gyroscope"),
-    output:
-        writes("gyroscope"),
-    log:
-        f"{DERIVED}/gyroscope/stage.log",
-    benchmark:
-        f"{DERIVED}/gyroscope/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("gyroscope"),
-    params:
-        settings=settings("gyroscope"),
-        files=files("gyroscope"),
-        code=code("gyroscope"),
-    message:
-        "{wildcards.campaign}: the gyros from rate segments and static positions"
-    shell:
-        command("gyroscope")
-
-
-rule studies:
-    input:
-        **reads("studies"),
-    output:
-        writes("studies"),
-    log:
-        f"{DERIVED}/studies/stage.log",
-    benchmark:
-        f"{DERIVED}/studies/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("studies"),
-    params:
-        settings=settings("studies"),
-        files=files("studies"),
-        code=code("studies"),
-    message:
-        "{wildcards.campaign}: averaging time, epochs, windows, time and angle"
-    shell:
-        command("studies")
-
-
-rule comparison:
-    input:
-        **reads("comparison"),
-    output:
-        writes("comparison"),
-    log:
-        f"{DERIVED}/comparison/stage.log",
-    benchmark:
-        f"{DERIVED}/comparison/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("comparison"),
-    params:
-        settings=settings("comparison"),
-        files=files("comparison"),
-        code=code("comparison"),
-    message:
-        "{wildcards.campaign}: static against rotation, method against method"
-    shell:
-        command("comparison")
-
-
-rule simulation:
-    input:
-        **reads("simulation"),
-    output:
-        writes("simulation"),
-    log:
-        f"{DERIVED}/simulation/stage.log",
-    benchmark:
-        f"{DERIVED}/simulation/benchmark.tsv"
-    priority: 1  # the longest way to the report leads here
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("simulation"),
-    params:
-        settings=settings("simulation"),
-        files=files("simulation"),
-        code=code("simulation"),
-    message:
-        "{wildcards.campaign}: what the IMU should have read"
-    shell:
-        command("simulation")
-
-
-rule criticism:
-    input:
-        **reads("criticism"),
-    output:
-        writes("criticism"),
-    log:
-        f"{DERIVED}/criticism/stage.log",
-    benchmark:
-        f"{DERIVED}/criticism/benchmark.tsv"
-    priority: 1  # the longest way to the report leads here
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("criticism"),
-    params:
-        settings=settings("criticism"),
-        files=files("criticism"),
-        code=code("criticism"),
-    message:
-        "{wildcards.campaign}: unmodelled effects by name"
-    shell:
-        command("criticism")
-
-
-rule extension:
-    input:
-        **reads("extension"),
-    output:
-        writes("extension"),
-    log:
-        f"{DERIVED}/extension/stage.log",
-    benchmark:
-        f"{DERIVED}/extension/benchmark.tsv"
-    priority: 1  # the longest way to the report leads here
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("extension"),
-    params:
-        settings=settings("extension"),
-        files=files("extension"),
-        code=code("extension"),
-    message:
-        "{wildcards.campaign}: the model with these effects, and its gain on held-out manoeuvres"
-    shell:
-        command("extension")
-
-
-rule diagnosis:
-    input:
-        **reads("diagnosis"),
-    output:
-        writes("diagnosis"),
-    log:
-        f"{DERIVED}/diagnosis/stage.log",
-    benchmark:
-        f"{DERIVED}/diagnosis/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("diagnosis"),
-    params:
-        settings=settings("diagnosis"),
-        files=files("diagnosis"),
-        code=code("diagnosis"),
-    message:
-        "{wildcards.campaign}: causes, the one result that counts, and the verdict"
-    shell:
-        command("diagnosis")
-
-
-rule compensation:
-    input:
-        **reads("compensation"),
-    output:
-        writes("compensation"),
-    log:
-        f"{DERIVED}/compensation/stage.log",
-    benchmark:
-        f"{DERIVED}/compensation/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("compensation"),
-    params:
-        settings=settings("compensation"),
-        files=files("compensation"),
-        code=code("compensation"),
-    message:
-        "{wildcards.campaign}: the samples with the errors taken out"
-    shell:
-        command("compensation")
-
-
-rule navigation:
-    input:
-        **reads("navigation"),
-    output:
-        writes("navigation"),
-    log:
-        f"{DERIVED}/navigation/stage.log",
-    benchmark:
-        f"{DERIVED}/navigation/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("navigation"),
-    params:
-        settings=settings("navigation"),
-        files=files("navigation"),
-        code=code("navigation"),
-    message:
-        "{wildcards.campaign}: free inertial navigation before and after calibration"
-    shell:
-        command("navigation")
-
-
-rule alignment:
-    input:
-        **reads("alignment"),
-    output:
-        writes("alignment"),
-    log:
-        f"{DERIVED}/alignment/stage.log",
-    benchmark:
-        f"{DERIVED}/alignment/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("alignment"),
-    params:
-        settings=settings("alignment"),
-        files=files("alignment"),
-        code=code("alignment"),
-    message:
-        "{wildcards.campaign}: alignment at rest, and the attitude error with and without rotation"
-    shell:
-        command("alignment")
-
-
-rule history:
-    input:
-        **reads("history"),
-    output:
-        writes("history"),
-    log:
-        f"{DERIVED}/history/stage.log",
-    benchmark:
-        f"{DERIVED}/history/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("history"),
-    params:
-        settings=settings("history"),
-        files=files("history", archive="data/history"),
-        code=code("history"),
-    message:
-        "{wildcards.campaign}: into the archive of its IMU, and against published values"
-    shell:
-        command("history")
-
-
-rule export:
-    input:
-        **reads("export"),
-    output:
-        writes("export"),
-    log:
-        f"{DERIVED}/export/stage.log",
-    benchmark:
-        f"{DERIVED}/export/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("export"),
-    params:
-        settings=settings("export"),
-        files=files("export"),
-        code=code("export"),
-    message:
-        "{wildcards.campaign}: the calibration for other programs"
-    shell:
-        command("export")
-
-
-rule report:
-    input:
-        **reads("report"),
-    output:
-        writes("report"),
-    log:
-        f"{DERIVED}/report/stage.log",
-    benchmark:
-        f"{DERIVED}/report/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("report"),
-    params:
-        settings=settings("report"),
-        files=files("report"),
-        code=code("report"),
-    message:
-        "{wildcards.campaign}: the report"
-    shell:
-        command("report")
-
-
-rule pdf:
-    input:
-        html="reports/{campaign}.html",
-        attached=["reports/{campaign}.calibration.json", "reports/{campaign}.dcc.xml"],
-    output:
-        writes("pdf"),
-    log:
-        f"{DERIVED}/pdf/stage.log",
-    benchmark:
-        f"{DERIVED}/pdf/benchmark.tsv"
-    group:
-        "campaign"
-    threads: 1
-    resources:
-        **needs("pdf"),
-    params:
-        settings=settings("pdf"),
-        files=files("pdf"),
-        code=code("pdf"),
-    message:
-        "{wildcards.campaign}: the report as PDF"
-    shell:
-        command("pdf")
+    rule:
+        name:
+            stage
+        input:
+            **reads(stage),
+            **FILES.get(stage, {}),
+        output:
+            writes(stage),
+        log:
+            f"{DERIVED}/{stage}/stage.log",
+        benchmark:
+            f"{DERIVED}/{stage}/benchmark.tsv"
+        priority: int(stage in LONGEST)
+        group:
+            "campaign"
+        threads: 1
+        resources:
+            **needs(stage),
+        params:
+            stage=stage,
+            settings=settings(stage),
+            files=files(stage, **PATHS.get(stage, {})),
+            code=code(stage),
+        message:
+            f"{{wildcards.campaign}}: {makes}"
+        shell:  # by params, for it is read when the job runs, and the loop is over
+            "python -m stages {params.stage} data/derived/{wildcards.campaign:q}"
+            " --settings {params.settings:q} {params.files:q} 2> {log:q}"
 
 
 # ---- Pages of several campaigns: of those whose result is there when a run begins; a change of it
