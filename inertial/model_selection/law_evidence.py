@@ -138,7 +138,7 @@ def law_class(equations: Equations, odds: LawOdds) -> LawClass:
 Path = tuple[int, ...]  # at which of the times it changes
 
 
-def best_paths(equations: Equations, steps: Sequence[int], fewest: int = 2) -> dict[Path, float]:
+def best_paths(equations: Equations, steps: Sequence[int], fewest: int) -> dict[Path, float]:
     """The best paths of `fewest`, … changes of one axis, and their drops.
 
     `steps`: the columns of a step at each of n times. One change is a jump, an effect of the

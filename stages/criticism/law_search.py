@@ -214,7 +214,7 @@ class Searched:
     odds: LawOdds
 
 
-def searched(columns: Columns, equations: Equations, fewest: int = 2) -> Searched:
+def searched(columns: Columns, equations: Equations, fewest: int) -> Searched:
     """The odds of all laws in these equations.
 
     Two levels in all axes have the path of one of them; `fewest`: the changes of a path at least.

@@ -115,7 +115,7 @@ def _telegraph(campaign: Campaign) -> tuple[float, Effect, Array]:
     found = []
     for axis in range(3):
         own = range(axis * STEPS, (axis + 1) * STEPS)
-        for path, drop in best_paths(Equations(total.information, total.right), own).items():
+        for path, drop in best_paths(Equations(total.information, total.right), own, 2).items():
             odds = float(log_evidence(np.array([drop]), np.array([1]))[0])
             found.append((odds + np.log(ALONE) - log_paths(STEPS, len(path)), axis, path))
     odds, axis, path = max(found)
