@@ -43,9 +43,9 @@ class GyroDeadBand(Effect):
 
     def __init__(self, axis: str) -> None:
         self.axis = "xyz".index(axis)
-        self.name = f"gyro_dead_band_{axis}"  # type: ignore[misc]
+        self.name = f"gyro_dead_band_{axis}"
         meaning = _("share of a small rate that the {axis} gyro loses", axis=axis)
-        self.parameters = (Parameter(f"l_{axis}", "1", 0.1, meaning),)  # type: ignore[misc]
+        self.parameters = (Parameter(f"l_{axis}", "1", 0.1, meaning),)
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         upward, level = known_earth(truth, motion)

@@ -1,7 +1,5 @@
 """A gyro bias with the sense of the last turn, which relaxes."""
 
-from typing import ClassVar
-
 import numpy as np
 
 from inertial.arrays import Array
@@ -29,7 +27,7 @@ class GyroRelaxationSense(Relaxing):
         0.1 * DEGREE_PER_HOUR,
         _("further bias of the {axis} gyro after a forward turn"),
     )
-    in_turns: ClassVar[bool] = True
+    in_turns: bool = True
 
     def added(self, truth: Truth, motion: Motion) -> Reading:
         shares = excited(motion.since, motion.seconds[:, None], self.value(motion))

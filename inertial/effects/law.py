@@ -37,12 +37,12 @@ class Law(Effect):
     ) -> None:
         self.sensor, self.axis, self.family, self.state = sensor, axis, family, state
         self.shape = tuple(shape)
-        self.name = law_name(sensor, axis, family, state)  # type: ignore[misc]
+        self.name = law_name(sensor, axis, family, state)
         unit, size = SIZES[sensor]
         if (family, state) == ("hysteresis", "temperature"):
             unit = f"{unit}/K"
-        self.sizes = by_grade(size, 0.1, 1, 10, 100)  # type: ignore[misc]
-        self.parameters = tuple(  # type: ignore[misc]
+        self.sizes = by_grade(size, 0.1, 1, 10, 100)
+        self.parameters = tuple(
             Parameter(
                 f"k{j}_{i}", unit, WIDE * size, _("size of the law in the {axis} reading", axis=i)
             )

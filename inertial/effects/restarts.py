@@ -57,8 +57,8 @@ class Restarts(Effect):
     ) -> None:
         unit, size = TYPICAL[sensor]
         self.sensor, self.times, self.spread, self.first = sensor, tuple(times), spread, first
-        self.name = restarts_name(sensor)  # type: ignore[misc]
-        self.sizes = SIZES[sensor]  # type: ignore[misc]
+        self.name = restarts_name(sensor)
+        self.sizes = SIZES[sensor]
         parameters: list[Parameter] = []
         terms: list[Term] = []
         for k in range(first, len(self.times) + 1):
@@ -67,7 +67,7 @@ class Restarts(Effect):
             factor = " * ".join([since] * (k > 0) + [until] * (k < len(self.times)))
             parameters += own
             terms += [Term(f"{sensor}_{each.name[-1]}", each.name, factor) for each in own]
-        self.parameters, self.terms = tuple(parameters), tuple(terms)  # type: ignore[misc]
+        self.parameters, self.terms = tuple(parameters), tuple(terms)
 
     @property
     def key(self) -> tuple[object, ...]:

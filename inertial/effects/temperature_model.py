@@ -126,10 +126,10 @@ class TemperatureModel(Effect):
         self.likeliest: Mapping[str, tuple[int, float]] = {}
         self.pieces = tuple(pieces)
         self.knots = dict(knots or {})
-        self.name = temperature_name(sensor)  # type: ignore[misc]
-        self.cause = CAUSES[sensor] + _behind(lag)  # type: ignore[misc]
-        self.parameters = tuple(map(self._parameter, self.pieces))  # type: ignore[misc]
-        self.terms = tuple(map(self._term, self.pieces))  # type: ignore[misc]
+        self.name = temperature_name(sensor)
+        self.cause = CAUSES[sensor] + _behind(lag)
+        self.parameters = tuple(map(self._parameter, self.pieces))
+        self.terms = tuple(map(self._term, self.pieces))
 
     def _parameter(self, piece: Piece) -> Parameter:
         unit, size = TYPICAL.get((self.sensor, PARTS[piece.function].kind), RELATIVE)

@@ -39,13 +39,13 @@ class ThermalHysteresis(Effect):
     def __init__(self, sensor: str) -> None:
         unit, size = UNITS[sensor]
         self.sensor = sensor
-        self.name = hysteresis_name(sensor)  # type: ignore[misc]
-        self.cause = _(  # type: ignore[misc]
+        self.name = hysteresis_name(sensor)
+        self.cause = _(
             "the biases of the {sensors} are others after warming and after cooling",
             sensors=PLURAL[sensor],
         )
-        self.sizes = dict.fromkeys(("fog", "tactical", "mti", "consumer"), size)  # type: ignore[misc]
-        self.parameters = parameters_by_axis("h", unit, size, MEANINGS[sensor])  # type: ignore[misc]
+        self.sizes = dict.fromkeys(("fog", "tactical", "mti", "consumer"), size)
+        self.parameters = parameters_by_axis("h", unit, size, MEANINGS[sensor])
 
     thinkable = 1e4
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from itertools import pairwise
-from typing import ClassVar, Self
+from typing import Self
 
 import numpy as np
 
@@ -50,8 +50,8 @@ class Drift(Effect):
     Its parameters are the sizes on x, y and z. `of_scale`: the scale factors have it, not the bias.
     """
 
-    sensor: ClassVar[str]
-    of_scale: ClassVar[bool] = False
+    sensor: str
+    of_scale: bool = False
 
     @abstractmethod
     def course(self, motion: Motion) -> Array:
@@ -134,7 +134,7 @@ class WarmUp(Drift):
             steps = [f"(t > {names[0]}) * {names[0]}"]
             steps += [f"(t > {at}) * ({at} - {before})" for before, at in pairwise(names)]
             factor = f"exp(-(t - {' - '.join(steps)}) / tau)"
-            effect.terms = tuple(replace(term, factor=factor) for term in self.terms)  # type: ignore[misc]
+            effect.terms = tuple(replace(term, factor=factor) for term in self.terms)
         return effect
 
 
@@ -291,7 +291,7 @@ class SettingIn(Effect):
     Of logs that share no clock it is sought between one and the next, in the order of the plan.
     """
 
-    times: ClassVar[int]  # that are tried
+    times: int  # that are tried
 
     def blind(self, motion: Motion) -> str:
         return "" if len(np.unique(motion.run)) > 1 else without_clock(motion)
@@ -312,10 +312,10 @@ class SettingIn(Effect):
     def between_logs(self) -> Self:
         """The effect with the place in the plan as what is scanned."""
         effect = copy(self)
-        effect.scan = BETWEEN_LOGS  # type: ignore[misc]
+        effect.scan = BETWEEN_LOGS
         if effect.terms:
-            effect.terms = ()  # type: ignore[misc]
-            effect.stays = BY_LOG  # type: ignore[misc]
+            effect.terms = ()
+            effect.stays = BY_LOG
         return effect
 
     def since(self, motion: Motion) -> Array:
@@ -365,7 +365,7 @@ class ScaleJump(SettingIn):
 
     cause = _("the instrument is restarted, set to another range, or knocked")
     source = "IEEE Std 528-2019, 'repeatability'"
-    sensor: ClassVar[str]
+    sensor: str
     scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
     times = JUMP_TIMES
     thinkable = 10.0

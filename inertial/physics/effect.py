@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import Self
 
 import numpy as np
 
@@ -166,22 +166,22 @@ class Effect(ABC):
     highest temperature, K, beyond which what depends on it is not known.
     """
 
-    name: ClassVar[str]
-    cause: ClassVar[str]
-    source: ClassVar[str]
-    parameters: ClassVar[tuple[Parameter, ...]]
-    sizes: ClassVar[Mapping[str, float]]
-    thinkable: ClassVar[float] = 100.0
-    only: ClassVar[float | None] = None
-    positive: ClassVar[bool] = False
-    sought_in: ClassVar[str] = "blocks"
-    finding: ClassVar[str] = ""
-    absorbed_by: ClassVar[str] = ""
-    of_stillness: ClassVar[bool] = False
-    vector: ClassVar[bool] = False
-    scan: ClassVar[Scan | None] = None
-    terms: ClassVar[tuple[Term, ...]] = ()
-    stays: ClassVar[str] = _("the table, the site or the mounting causes it, and the IMU feels it")
+    name: str
+    cause: str
+    source: str
+    parameters: tuple[Parameter, ...]
+    sizes: Mapping[str, float]
+    thinkable: float = 100.0
+    only: float | None = None
+    positive: bool = False
+    sought_in: str = "blocks"
+    finding: str = ""
+    absorbed_by: str = ""
+    of_stillness: bool = False
+    vector: bool = False
+    scan: Scan | None = None
+    terms: tuple[Term, ...] = ()
+    stays: str = _("the table, the site or the mounting causes it, and the IMU feels it")
     at: float | None = None
     reference: float | None = None
     valid: tuple[float, float] | None = None
@@ -297,7 +297,7 @@ class Effect(ABC):
 class OfSensed(Effect):
     """An effect on the readings of a sensor, gyro or accel, by what is sensed at the moment."""
 
-    sensor: ClassVar[str]
+    sensor: str
 
     @abstractmethod
     def change(self, truth: Truth, values: Array) -> Array:

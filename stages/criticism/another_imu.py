@@ -48,7 +48,7 @@ class OfAnotherImu(Effect):
 
     def __init__(self, number: int, runs: Collection[int]) -> None:
         self.at, self.runs = float(number), list(runs)
-        self.parameters = tuple(  # type: ignore[misc]
+        self.parameters = tuple(
             Parameter(f"{sensor}_{name}_{axis}", unit, size, "")
             for sensor in SENSORS
             for name, (unit, size) in (
@@ -57,7 +57,7 @@ class OfAnotherImu(Effect):
             )
             for axis in AXES
         )
-        self.sizes = {"usual": TYPICAL_TERM}  # type: ignore[misc]
+        self.sizes = {"usual": TYPICAL_TERM}
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         there = np.isin(motion.run, self.runs)[:, None]

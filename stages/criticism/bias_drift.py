@@ -90,10 +90,10 @@ class _BiasChange(Effect):
 
     def __init__(self, name: str, sensor: str, at: int) -> None:
         unit, size = TYPICAL_SIZE[sensor]
-        self.name, self.sensor, self.at = name, sensor, float(at)  # type: ignore[misc]
+        self.name, self.sensor, self.at = name, sensor, float(at)
         of_axis = _("of the {axis} reading")
-        self.parameters = parameters_by_axis("c", unit, size, of_axis)  # type: ignore[misc]
-        self.sizes = {"usual": size}  # type: ignore[misc]
+        self.parameters = parameters_by_axis("c", unit, size, of_axis)
+        self.sizes = {"usual": size}
 
 
 class HalfWave(_BiasChange):

@@ -52,11 +52,9 @@ class Functions(Effect):
 
     def __init__(self, sensor: str, axis: int, name: str, functions: Array) -> None:
         self.sensor, self.axis, self.functions = sensor, axis, functions
-        self.name = name  # type: ignore[misc]
+        self.name = name
         count = functions.shape[1]
-        self.parameters = tuple(  # type: ignore[misc]
-            Parameter(str(i), "", 1.0, "") for i in range(count)
-        )
+        self.parameters = tuple(Parameter(str(i), "", 1.0, "") for i in range(count))
 
     def signature(self, motion: Motion) -> Reading:
         traces = {name: np.zeros((len(motion.rate), 3, len(self.parameters))) for name in FILE_KEYS}

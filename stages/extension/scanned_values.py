@@ -41,9 +41,9 @@ class ByScannedValue(Effect):
     def __init__(self, effect: Effect, values: Array) -> None:
         assert effect.scan is not None and effect.at is not None
         self.effect, self.values, self.size = effect, values, effect.at
-        self.name = f"{effect.name} by {effect.scan.name}"  # type: ignore[misc]
+        self.name = f"{effect.name} by {effect.scan.name}"
         unit = effect.scan.unit
-        self.parameters = (  # type: ignore[misc]
+        self.parameters = (
             Parameter(effect.scan.name, unit, self.size / PRIOR_SIGMA, effect.scan.meaning),
         )
 
