@@ -1,5 +1,6 @@
 """Sessions by hand from the simulated laboratory: what they hide is named, and nothing else."""
 
+import shutil
 from collections.abc import Callable
 from functools import cache
 
@@ -7,6 +8,7 @@ import by_hand_campaigns as sessions
 import chain
 import numpy as np
 import pytest
+from ruamel.yaml import YAML
 
 from inertial.estimation.triad import linear_names
 
@@ -204,3 +206,36 @@ def test_what_no_session_by_hand_can_show_has_one_reason(hiding):
     limits = hiding("gyro_g_sensitivity")[1]["criticism/detection_limits"]
     of_tables = limits[limits["effect"].str.startswith(("table_tilt", "table_wobble"))]
     assert set(of_tables["explanation"]) == {"no table takes part in a session by hand"}
+
+
+@pytest.mark.slow
+def test_two_runs_by_hand_are_calibrated_each_alone(tmp_path):
+    """The biases of the second are others, by 0.2 °/s and 2 mg: together they are no one result."""
+    logs = {}
+    for run, moved in enumerate((0.0, 1.0)):
+        document = sessions.session(7)  # the same IMU, a quarter of an hour later
+        document |= {"seed": 7 + run, "start": dict(document["start"])}
+        document["start"]["gps_second"] += 900 * run
+        document["truth"]["gyro"]["bias_rad_s"][1] += moved * np.radians(0.2)
+        document["truth"]["accelerometer"]["bias_m_s2"][0] += moved * 0.02
+        results = sessions.by_hand(document, tmp_path / f"run-{run}")
+        assert set(results["diagnosis/verdict"]["verdict"]) <= {"usable", "usable_within_limits"}
+        for sensor, pull in pulls(document, results).items():
+            assert np.sqrt(np.mean(pull**2)) < 1.8, sensor
+        logs[f"run-{run}.asc"] = tmp_path / f"run-{run}" / "campaign" / sessions.LOG
+    both = tmp_path / "both"
+    shutil.copytree(tmp_path / "run-0" / "campaign", both)
+    (both / sessions.LOG).unlink()
+    for name, path in logs.items():
+        shutil.copy(path, both / name)
+    file = both / "campaign.yaml"
+    stated = YAML(typ="safe").load(file)
+    stated["plan"] = [
+        {"id": name[:5], "do": "positions", "seconds": 2, "log": name, "power_cycle": i > 0}
+        for i, name in enumerate(logs)
+    ]
+    YAML().dump(stated, file)
+    causes = chain.run(both, tmp_path / "derived", "diagnosis")["diagnosis/causes"]
+    own = causes[causes["cause"].str.contains("per_log|restarts|jump")]
+    assert set(own["sensor"]) == {"gyro", "accel"}
+    assert own["action"].str.contains("make a campaign").all()

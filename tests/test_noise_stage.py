@@ -70,6 +70,7 @@ def of_stretches(values: np.ndarray, **changes: Any) -> dict[str, Any]:
     clock |= {"epoch_gps": None, "began": None, "from_s": None, "to_s": None}
     clock |= {"begin": 0.0, "end": count / RATE}
     return {
+        "campaign": pd.DataFrame({"table": ["three-axis"]}),
         "samples": Batches(pa.table(samples)),
         "mean_sigmas": tables.MEAN_SIGMAS.empty(),
         "blocks": tables.BLOCKS.empty(),
@@ -130,6 +131,36 @@ def test_only_the_axes_that_drift_have_a_drift_in_the_covariance():
     assert gyro.walk[1] == pytest.approx(WALK, rel=0.4) and not gyro.walk[[0, 2]].any()
     assert gyro.instability[2] == pytest.approx(INSTABILITY, rel=0.4)
     assert not gyro.instability[:2].any() and not levels.drift("accel")
+
+
+def on_faces(seed: int, tilt: float = 0.0, walk: float = 0.0) -> np.ndarray:
+    """Six rests on faces: the support tilts by a walk, rad/√s; so does the bias of x, m/s²/√s."""
+    rng = np.random.default_rng(seed)
+    values = white(rng, 6 * STRETCH)
+    for i, face in enumerate(np.vstack([np.eye(3), -np.eye(3)])):
+        rest = slice(i * STRETCH, (i + 1) * STRETCH)
+        steps = rng.standard_normal((STRETCH, 3)) / np.sqrt(RATE)
+        angle = tilt * np.cumsum(steps, axis=0)
+        values[rest, :3] += 9.8 * (face + np.cross(face, angle))  # to the first order
+        values[rest, 0] += walk * np.cumsum(rng.standard_normal(STRETCH)) / np.sqrt(RATE)
+    return values
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_by_hand_a_support_that_tilts_is_no_drift_of_the_accelerometers(seed):
+    """1e-6 rad/√s are 1e-5 m/s²/√s where an axis is level, and nothing where it is upright."""
+    by_hand = {"campaign": pd.DataFrame({"table": ["by hand"]})}
+    tilting, drifting = on_faces(seed, tilt=1e-6), on_faces(seed, walk=1e-5)
+    supported = noise_of(of_stretches(tilting, **by_hand))
+    assert not NoiseLevels(supported["levels"]).drift("accel")
+    tilted = supported["terms"].groupby("channel")["tilted"].any()
+    assert [channel for channel in tilted.index if tilted[channel]] == [
+        f"accel_{axis}" for axis in tables.AXES
+    ]
+    own = NoiseLevels(noise_of(of_stretches(drifting, **by_hand))["levels"]).drift("accel")
+    assert own.walk[0] == pytest.approx(1e-5, rel=0.3) and not own.walk[1:].any()
+    on_table = NoiseLevels(noise_of(of_stretches(tilting))["levels"]).drift("accel")
+    assert on_table.walk == pytest.approx(1e-5 * np.sqrt(2 / 3), rel=0.3)
 
 
 def test_where_none_is_seen_the_instability_of_the_data_sheet_enters_as_far_as_it_may_be(hidden):

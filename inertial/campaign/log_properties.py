@@ -198,14 +198,16 @@ class _Channels:
         noise, of_new = np.full(6, np.nan), np.full(6, np.nan)
         for sensor in range(2):
             steps: dict[int, Array] = {}
+            at_zero: list[Booleans] = []
             for i in range(3 * sensor, 3 * sensor + 3):
                 channel = np.ascontiguousarray(readings[:, i])
                 read = channel[np.isfinite(channel)]
                 if len(read) >= 2:
                     steps[i] = np.abs(np.diff(read))
+                    at_zero.append(read[1:] == 0)
                     self._add(i, read, steps[i])
                     noise[i] = _noise(steps[i])
-            new = self._add_held(sensor, [*steps.values()])
+            new = self._add_held(sensor, [*steps.values()], at_zero)
             for i, step in steps.items():
                 of_new[i] = noise[i] if new is None else _noise(step[new])
         self.noise.append(noise)
@@ -251,12 +253,17 @@ class _Channels:
                 found[i] = least
         return found
 
-    def _add_held(self, sensor: int, steps: Sequence[Array]) -> Booleans | None:
-        """The records in which a sensor's readings are new; None where they are all the time."""
+    def _add_held(
+        self, sensor: int, steps: Sequence[Array], at_zero: Sequence[Booleans]
+    ) -> Booleans | None:
+        """The records in which a sensor's readings are new; None where they are all the time.
+
+        What a firmware sets to 0 below a threshold is held for no time: see `ZeroBelowThreshold`.
+        """
         if len({len(step) for step in steps}) != 1:
             return None
         new = np.logical_or.reduce([step > 0 for step in steps])
-        own = new[~_standing_still(new)]
+        own = new[~(_standing_still(new) | (~new & np.logical_and.reduce(at_zero)))]
         self.stood[sensor] += len(new) - len(own)
         self.held[sensor] += len(own) - np.count_nonzero(own)
         self.windows[sensor].append(_held_in_windows(new))

@@ -63,8 +63,7 @@ def drift_of(
         larger = shown[walk] * np.sqrt(seconds / 6) > MAX_STATED_RATIO * lowest
         alike = instability in terms.terms[walk].alternatives
         return shown if larger or not alike else {instability: stated}
-    own = terms.terms[instability]
-    limit = own.interval[1] if own.detected else own.upper
+    limit = terms.terms[instability].most
     return {instability: max(shown.get(instability, 0.0), float(np.fmin(stated, limit)))}
 
 

@@ -64,6 +64,11 @@ class Term:
     p_value: float
     alternatives: tuple[str, ...] = ()
 
+    @property
+    def most(self) -> float:
+        """The largest that it may be."""
+        return self.interval[1] if self.detected else self.upper
+
 
 @dataclass(frozen=True, eq=False)
 class NoiseTerms:

@@ -66,7 +66,7 @@ SPECTRA = Table(
 )
 NOISE_TERMS = Table(
     "noise_terms",
-    2,
+    3,
     (
         Column("channel", TEXT, "", "one of the six channels"),
         Column(
@@ -83,6 +83,12 @@ NOISE_TERMS = Table(
             TRUTH,
             "",
             "whether one manoeuvre alone changes by a step at rest: no drift of the channel",
+        ),
+        Column(
+            "tilted",
+            TRUTH,
+            "",
+            "whether, by hand, it drifts where it is level and not upright: the support tilts",
         ),
         optional("value", DOUBLE, "as unit", "coefficient"),
         optional("sigma", DOUBLE, "as unit", "its standard deviation"),

@@ -179,14 +179,17 @@ class BlockResults:
             return sentences.ACTION_WITHOUT_LAW
         if cause.effect in LAWS:
             return law_action(LAWS[cause.effect], self.mount)
+        free = bool(self.campaign.solution.free)
         if isinstance(effect := self.selection.families.get(cause.effect, (None,))[0], Restarts):
+            if free:
+                return sentences.ACTION_OF_FREE_CHANGE
             manoeuvres = first_after(self.campaign, effect.times)
             return sentences.action_against_restarts(manoeuvres)
         if cause.effect == "latitude_error":
             known = np.arcsin(self.campaign.solution.site.earth_up / EARTH_RATE)
             return sentences.action_against_latitude(known + (parameters[0].value or 0.0))
         timed = not without_clock(self.campaign.motion)
-        return sentences.action_against(KNOWN.get(cause.effect), timed=timed)
+        return sentences.action_against(KNOWN.get(cause.effect), timed=timed, free=free)
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
         split = None if cause.effect in LAWS else self.extended.splitting(number)

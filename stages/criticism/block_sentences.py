@@ -42,6 +42,17 @@ ACTION_PER_RUN = _(
     "If the IMU was switched off in between, state power_cycle: true in the first manoeuvre after "
     "it: then each run has biases of its own, and the report says how well they repeat."
 )
+ACTION_PER_FREE_RUN = _(
+    "If the IMU was switched off in between, make a campaign of each run, with the same serial: "
+    "then each has biases of its own, and the report says how well they repeat. power_cycle is for "
+    "positions of known attitude."
+)
+ACTION_OF_FREE_CHANGE = _(
+    "Find what changed there; if the IMU was switched off and on, make a campaign of what was "
+    "recorded before it and one of what was recorded after it, with the same serial. Later "
+    "readings have the value before it and what is added at it together, which the export holds "
+    "where the result includes them."
+)
 NO_COMMON_TIME = _(
     " If it stayed on, a warm-up or a drift does the same, and without a time that the logs share "
     "nothing tells them apart: record all in one log, or with stamps that go on from log to log."
@@ -220,12 +231,16 @@ def limit_sentence(effect: Effect, limit: Visible, why: str | None) -> str:
     return LIMIT_SCANNED.format_map(values)
 
 
-def action_against(effect: Effect | None, *, timed: bool = True) -> str:
-    """What to do against an effect; None: biases of each run, of logs that are `timed` alike."""
+def action_against(effect: Effect | None, *, timed: bool = True, free: bool = False) -> str:
+    """What to do against an effect; None: biases of each run, of logs that are `timed` alike.
+
+    `free`: of positions of unknown attitude, which have one bias in all runs.
+    """
     if effect is None:
-        return ACTION_PER_RUN if timed else ACTION_PER_RUN + NO_COMMON_TIME
+        action = ACTION_PER_FREE_RUN if free else ACTION_PER_RUN
+        return action if timed else action + NO_COMMON_TIME
     if isinstance(effect, Jump):
-        return ACTION_OF_JUMP
+        return ACTION_OF_FREE_CHANGE if free else ACTION_OF_JUMP
     if effect.terms:
         return ACTION
     return ACTION_WITHOUT_TERMS.format(stays=effect.stays)

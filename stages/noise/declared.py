@@ -5,6 +5,7 @@ from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
     reads={
+        "campaign": From("plan", tables.CAMPAIGN),
         "samples": From("decode", tables.SAMPLES),
         "mean_sigmas": From("decode", tables.MEAN_SIGMAS),
         "blocks": From("segment", tables.BLOCKS),

@@ -13,6 +13,7 @@ from inertial.campaign.findings import Finding, table_of
 from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Clock, Row, clocks_of, rows_of
+from inertial.campaign.references import BY_HAND
 from inertial.sensors import COLUMNS, PLURAL
 from inertial.signal.scatter import smallest_step
 from inertial.tables.stage import Stage, Tables
@@ -83,7 +84,7 @@ LEAST_SIGMA = {"accel": 1e-6, "gyro": 1e-8}  # m/s² and rad/s: no mean is known
 def noise(
     masked_samples: MaskedSamples,
     segments: pd.DataFrame,
-    manoeuvres: pd.DataFrame,
+    by_hand: bool,
     clocks: pd.DataFrame,
     gaps: pd.DataFrame,
     sensors: pd.DataFrame,
@@ -95,6 +96,7 @@ def noise(
 ) -> Tables:
     """White noise by manoeuvre, phase (rest or steady) and channel; the terms of each channel.
 
+    by_hand : whether positions are set by hand: what moves at rest is the support as well
     carried : logs and sensors whose counts carry over what they leave
     of_means : the levels of means without time
     """
@@ -113,7 +115,7 @@ def noise(
         for row in collected.rows(manoeuvre, phase, shapes)
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
-    noises = list(static.noises())
+    noises = list(static.noises(by_hand))
     drifts = dict(chain.from_iterable(n.drifts(sheet) for n in noises))
     levels = effective_levels(measured, drifts, rounding_levels(spectra, counts))
     if of_means:
@@ -126,7 +128,7 @@ def noise(
         "allan": [row for each in noises for row in each.allan_rows()],
         "spectra": [row for each in noises for row in each.spectrum_rows()],
         "terms": terms,
-        "findings": table_of([] if _by_hand(manoeuvres) else list(louder(terms))),
+        "findings": table_of([] if by_hand else list(louder(terms))),
     }
 
 
@@ -162,9 +164,10 @@ def _read(
     return spectra, static, count_sizes(changes, np.reshape(levels_seen, (-1, len(changes))))
 
 
-def _by_hand(manoeuvres: pd.DataFrame) -> bool:
-    """Whether positions are set by hand: what shakes at rest is the support as well."""
-    return bool((manoeuvres["do"] == "positions").any())
+def set_by_hand(campaign: pd.DataFrame, manoeuvres: pd.DataFrame) -> bool:
+    """Whether there is no table that sets positions."""
+    free = manoeuvres["do"] == "positions"
+    return bool(free.any() or (campaign["table"] == BY_HAND).any())
 
 
 def _quiet(segments: pd.DataFrame) -> list[Row]:
@@ -271,6 +274,7 @@ STAGE = Stage(
     DECLARED,
     gathers={
         "masked_samples": MaskedSamples,
+        "by_hand": set_by_hand,
         "carried": carried_counts,
         "of_means": levels_of_means,
     },

@@ -5,6 +5,10 @@ sample and in one manoeuvre, so no average spans any of these. Each stretch has 
 for it has an attitude of its own. Stretches in which the same channels of a sensor are recorded at
 the same rate, with about the same scatter, are pooled; of several such pools the one with the most
 time counts. Where somebody drills next door for an hour the other hours tell the noise.
+
+A support that tilts by ε drifts in an accelerometer by g ε where that is level, and by next to
+nothing where it is upright. So by hand, on a desk or a cushion, a drift is the accelerometer's own
+only if it drifts in the stretches in which it is upright, too; these are pooled besides.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,7 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from inertial.arrays import Array, Booleans, finite_or_none
-from inertial.campaign.noise_levels import drift_of
+from inertial.campaign.noise_levels import DRIFTS, drift_of
 from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
 from inertial.estimation.multiresolution import MIN_WHOLE, Powers, Spectrum, WelchSums, segment_for
@@ -107,6 +111,8 @@ SAME_INTERVAL = 1e-3  # relative difference of sampling intervals that are alike
 SAME_SCATTER = 1.5  # ratio of scatters that are alike
 PER_DECADE = 6  # averaging times
 LONGEST_SHARE = 0.25  # of the longest stretch, that an averaging time may be
+UPRIGHT = 0.98  # share of the specific force, from which on an accelerometer is upright
+MAX_OWN_P_VALUE = 0.1  # where it is upright, of a drift that is known to be there: whose it is
 UNITS = {  # of quantisation, white noise, bias instability, random walk and ramp
     "gyro": ("rad", "rad/√s", "rad/s", "rad/s/√s", "rad/s²"),
     "accel": ("m/s", "m/s/√s", "m/s²", "m/s²/√s", "m/s³"),
@@ -117,7 +123,8 @@ UNITS = {  # of quantisation, white noise, bias instability, random walk and ram
 class _Pool:
     """The stretches in which some channels of a sensor are recorded at one rate.
 
-    `scatter`: (c,), from sample to sample, where the first stretch begins.
+    `scatter`: (c,), from sample to sample, where the first stretch begins; `upright`: of the
+    stretches in which an accelerometer is upright, by its number; `standing`: which are now.
     """
 
     sensor: str
@@ -127,7 +134,9 @@ class _Pool:
     sums: AllanSums
     powers: Powers
     welch: WelchSums
+    upright: dict[int, Powers] = field(default_factory=dict)
     stretch: StaticStretch | None = None
+    standing: tuple[int, ...] = ()
     samples: int = 0
     course: Course = field(default_factory=Course)
     steps: list[Step] = field(default_factory=list)
@@ -157,8 +166,15 @@ class _Pool:
         if stretch != self.stretch:
             self.end()
             self.stretch = stretch
+            force = np.abs(values.mean(axis=0))
+            known = self.sensor == "accel" and all(self.recorded)
+            upright = np.flatnonzero(force > UPRIGHT * np.linalg.norm(force)) if known else ()
+            self.standing = tuple(map(int, upright))
         for sums in (self.sums, self.powers, self.welch, self.course):
             sums.add(values)
+        for i in self.standing:
+            own = self.upright.setdefault(i, Powers(1, self.interval))
+            own.add(values[:, i : i + 1])
         self.samples += len(values)
 
     def takes(
@@ -174,6 +190,8 @@ class _Pool:
     def end(self) -> None:
         for sums in (self.sums, self.powers, self.welch):
             sums.end()
+        for powers in self.upright.values():
+            powers.end()
         if self.stretch is not None:
             self.steps.append(Step(self.stretch[0], *self.course.step()))
         self.course = Course()
@@ -229,14 +247,17 @@ class StaticStretches:
         self._pools.append(pool)
         return pool
 
-    def noises(self) -> Iterator["SensorNoise"]:
-        """The noise of each sensor, where there is a stretch that is long enough."""
+    def noises(self, by_hand: bool) -> Iterator["SensorNoise"]:
+        """The noise of each sensor, where there is a stretch that is long enough.
+
+        `by_hand`: whether the support may tilt.
+        """
         for sensor in COLUMNS:
             own = [pool for pool in self._pools if pool.sensor == sensor]
             for pool in sorted(own, key=lambda pool: -pool.samples * pool.interval)[:1]:
                 pool.end()
                 if max(pool.powers.seconds, default=0.0) >= MIN_WHOLE * pool.interval:
-                    yield _noise_of(pool)
+                    yield _noise_of(pool, by_hand)
 
 
 @dataclass(frozen=True)
@@ -244,7 +265,8 @@ class SensorNoise:
     """The noise of the c recorded channels of a sensor.
 
     `interval`: s, between samples; `seconds`: of the longest stretch; `stepped`: (c,), whether one
-    manoeuvre alone changes by a step at rest, so that what it shows as a drift is none.
+    manoeuvre alone changes by a step at rest, so that what it shows as a drift is none; `of_bias`:
+    by which terms the biases drift, by hand without the support where that tilts.
     """
 
     sensor: str
@@ -255,12 +277,13 @@ class SensorNoise:
     interval: float
     seconds: float
     stepped: Booleans
+    of_bias: list[NoiseTerms | None]
 
     def drifts(
         self, sheet: Mapping[str, Mapping[str, float | None]]
     ) -> Iterator[tuple[str, dict[str, float | None]]]:
         """What enters the covariance, by channel; `sheet`: see `term_rows`."""
-        for channel, terms, stepped in zip(self.channels, self.terms, self.stepped, strict=True):
+        for channel, terms, stepped in zip(self.channels, self.of_bias, self.stepped, strict=True):
             stated = sheet[channel].get("bias_instability")
             shown = None if stepped else terms
             yield channel, {**drift_of(shown, stated, self.seconds), "data_sheet": stated}
@@ -303,7 +326,7 @@ class SensorNoise:
 
     def term_rows(self, sheet: Mapping[str, Mapping[str, float | None]]) -> Iterator[Row]:
         """Rows of the table; `sheet`: figures of the data sheet by channel and term."""
-        for channel, terms, stepped in zip(self.channels, self.terms, self.stepped, strict=True):
+        for i, (channel, terms) in enumerate(zip(self.channels, self.terms, strict=True)):
             if terms is None:
                 continue
             for name, unit in zip(TERMS, UNITS[self.sensor], strict=True):
@@ -312,7 +335,8 @@ class SensorNoise:
                     "channel": channel,
                     "term": name,
                     "detected": term.detected,
-                    "stepped": bool(stepped),
+                    "stepped": bool(self.stepped[i]),
+                    "tilted": self.of_bias[i] is not terms,
                     "value": finite_or_none(term.value),
                     "sigma": finite_or_none(term.sigma),
                     "upper": finite_or_none(term.upper),
@@ -323,7 +347,7 @@ class SensorNoise:
                 }
 
 
-def _noise_of(pool: _Pool) -> SensorNoise:
+def _noise_of(pool: _Pool, by_hand: bool) -> SensorNoise:
     terms = noise_terms(pool.powers)
     models = [NoiseModel(white_noise=1.0) if each is None else each.model for each in terms]
     return SensorNoise(
@@ -335,4 +359,18 @@ def _noise_of(pool: _Pool) -> SensorNoise:
         pool.interval,
         max(pool.powers.seconds),
         of_one_manoeuvre(pool.steps, len(pool.channels)),
+        [_without_support(pool, i, t) for i, t in enumerate(terms)] if by_hand else terms,
     )
+
+
+def _without_support(pool: _Pool, channel: int, terms: NoiseTerms | None) -> NoiseTerms | None:
+    """The terms of a channel, or those where it is upright if these contradict its drift."""
+    powers, drift = pool.upright.get(channel), drift_of(terms)
+    if not drift or not powers or max(powers.seconds, default=0.0) < MIN_WHOLE * pool.interval:
+        return terms
+    upright = noise_terms(powers)[0]
+    if upright is None:
+        return terms
+    shows = any(upright.terms[name].p_value < MAX_OWN_P_VALUE for name in DRIFTS)
+    within = all(size <= upright.terms[name].most for name, size in drift.items())
+    return terms if shows and within else upright

@@ -12,6 +12,7 @@ import pandas as pd
 
 from inertial import tables
 from inertial.campaign.records import Row
+from inertial.campaign.references import BY_HAND
 from inertial.physics.forward import at_steady_speed, in_free_fall
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
@@ -32,7 +33,7 @@ from stages.plan.recording import (
     sensors,
 )
 from stages.plan.sampling import SAMPLE_RATE, StatedRate, one_by_one
-from stages.plan.taken_as_known import BY_HAND, by_hand, gravity_repairs, known
+from stages.plan.taken_as_known import by_hand, gravity_repairs, known
 
 FACTS = ("laboratory", "operator", "notes", "mounting", "switch_on")  # as stated, or none
 

@@ -6,6 +6,7 @@ from math import cos, pi, radians, sin
 from typing import Any
 
 from inertial.campaign.records import Row
+from inertial.campaign.references import BY_HAND
 from inertial.physics.site import (
     EARTH_RATE,
     HEIGHT_SIGMA,
@@ -33,8 +34,6 @@ ASSUMED_ANGLE = 30 * ARC_SECOND
 ASSUMED_RATE = 1e-3
 ASSUMED_GRAVITY = 5e-5  # m/s² of a stated value: 5 mGal
 ASSUMED_LATITUDE = radians(0.01)
-
-BY_HAND = "by hand"
 
 
 def by_hand(campaign: dict[str, Any]) -> bool:

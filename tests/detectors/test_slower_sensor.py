@@ -56,6 +56,19 @@ def test_a_sensor_that_stands_still_for_long_is_no_slower_one():
     assert (statistics(values)["held_share"] == 0).all()
 
 
+@pytest.mark.parametrize("bias", [0.0, 1.0, 2.0])  # in standard deviations of a reading
+def test_a_sensor_set_to_zero_below_a_threshold_is_no_slower_one(bias):
+    """Of three of these: of a gyro at rest now and then a reading of one axis is above it."""
+    values = rest(RECORDS)
+    values[:, 3:] += bias * NOISE[3:]
+    moves = np.arange(RECORDS) % 700 < 200
+    values[moves, 3:] += (
+        100 * NOISE[3:] * np.random.default_rng(5).standard_normal((moves.sum(), 3))
+    )
+    values[:, 3:][np.abs(values[:, 3:]) < 3 * NOISE[3:]] = 0.0
+    assert (statistics(values[:9000], values[9000:])["held_share"] == 0).all()
+
+
 def coarse_rest_in_motion() -> np.ndarray:
     """Coarse counts: at rest all axes repeat themselves by chance, in motion none does."""
     values = rest(RECORDS, 3, 0.2 * MEMS, MEMS)

@@ -115,6 +115,7 @@ def terms() -> Rows:
                     "term": name,
                     "detected": found,
                     "stepped": False,
+                    "tilted": False,
                     "value": value if found else None,
                     "sigma": value * (0.002, 0.002, 0.06, 0.2, 0.2)[i] if found else None,
                     "upper": None if found else UPPER[sensor][i],

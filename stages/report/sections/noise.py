@@ -55,7 +55,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         sensors = [s for s in NAME if any(row["channel"].startswith(s) for row in terms)]
         for sensor in sensors:
             own = [row for row in terms if row["channel"].startswith(sensor)]
-            notes = [*_explained(tables, sensor), *_stepped(own)]
+            notes = [*_explained(tables, sensor), *_not_its_own(own)]
             if sensor == sensors[-1]:
                 notes.append(_note(terms, sheet))
             yield _terms_table(sensor, own, " ".join(filter(None, notes)))
@@ -103,14 +103,23 @@ def _nothing(segments: Iterable[Record]) -> str:
 # ---- terms
 
 
-def _stepped(terms: Sequence[Record]) -> Iterator[str]:
-    """Of which axes a single manoeuvre changes by a step at rest."""
-    rows = [row["channel"][-1] for row in terms if row["stepped"]]
-    if axes := list(dict.fromkeys(rows)):
+def _not_its_own(terms: Sequence[Record]) -> Iterator[str]:
+    """Of which axes a single manoeuvre, or the support, changes the readings at rest."""
+    stepped, tilted = (
+        list(dict.fromkeys(row["channel"][-1] for row in terms if row[kind]))
+        for kind in ("stepped", "tilted")
+    )
+    if stepped:
         yield _(
             "At rest in one manoeuvre alone {axes} changes by a step: B, K and R contain it, and "
             "enter no σ.",
-            axes=listed(axes),
+            axes=listed(stepped),
+        )
+    if tilted:
+        yield _(
+            "{axes} drifts at rest where it is level, and not where it is upright: what drifts is "
+            "the support, which tilts; B, K and R contain it, and enter no σ.",
+            axes=listed(tilted),
         )
 
 
