@@ -89,6 +89,27 @@ def test_a_bias_instability_that_the_data_sheet_states_is_no_cause(seed, tmp_pat
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_random_walk_that_is_named_is_in_the_sigmas_of_the_result(seed, tmp_path):
+    """Of 400 °/h/√h: 100 °/h in the session, while each rest shows its own bias to 10 °/h."""
+    noise = sessions.CONSUMER | {"gyro_rate_random_walk_deg_h_sqrt_h": 400}
+    document = sessions.session(seed) | {"noise": noise}
+    results = sessions.by_hand(document, tmp_path, "diagnosis")
+    assert "gyro_random_walk" in set(results["criticism/findings"]["cause"])
+    (walk,) = results["criticism/random_walks"]["value"]
+    assert walk == pytest.approx(np.radians(400) / 3600 / 60, rel=0.5)
+    fit = results["extension/fit"].set_index(["sensor", "method"])
+    assert fit.loc[("gyro", "joint"), "random_walk"] == walk
+    plain = results["gyroscope/parameters"].set_index(["method", "parameter"])["sigma"]
+    own = results["diagnosis/result"].query("sensor == 'gyro'").set_index("parameter")
+    assert set(own["method"]) == {"free_positions"}
+    for axis in "xyz":
+        assert own.loc[f"bias_{axis}", "sigma"] > 2 * plain["free_positions", f"bias_{axis}"]
+    matrix = pulls(document, results)["gyro"][:9]
+    assert np.abs(matrix).max() < 4.5
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "effect",
     list(HIDDEN),

@@ -208,11 +208,19 @@ class Estimated:
 
     @cached_property
     def _parameters(self) -> list[Row]:
-        """By candidate, what counts as the joint fit among them."""
+        """By candidate, what counts as the joint fit among them.
+
+        That of extension has the random walk of a campaign by hand.
+        """
+        extended = rows_of(self.extension_parameters)
+        walking = {_place(row) for row in extended if row["method"] == JOINT}
         kept = [
-            r for r in self._joint if r["method"] == (FREE if _place(r) in self.free else JOINT)
+            row | {"method": JOINT}
+            for row in self._joint
+            if _place(row) not in walking
+            and row["method"] == (FREE if _place(row) in self.free else JOINT)
         ]
-        return [*(row | {"method": JOINT} for row in kept), *rows_of(self.extension_parameters)]
+        return [*kept, *extended]
 
     @cached_property
     def _fits(self) -> list[Row]:

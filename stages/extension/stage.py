@@ -49,7 +49,7 @@ from stages.extension.named_effects import NamedEffects, combinations_of, compar
 from stages.extension.navigation_error import change_of, worth
 from stages.extension.scanned_values import over_moments, with_scanned_values
 from stages.extension.temperature_shapes import with_shapes
-from stages.extension.without_one import LEFT_OUT, carried_alone, fit_without
+from stages.extension.without_one import LEFT_OUT, carried_alone, fit_without, joint_fit
 
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]
@@ -178,9 +178,21 @@ class Extension:
         else:
             for sensor in SENSORS:
                 yield from self._candidates(sensor, [Candidate(JOINT, probability=1.0)], {}, {})
+        yield from self._walking_by_hand()
         yield from self._without_one()
         if self.named.in_spectrum and self.data.result.gyro is not None:
             yield from self._of_spectrum(simulated)
+
+    def _walking_by_hand(self) -> Iterator[tuple[str, Any]]:
+        """The fits of positions of unknown attitude with the random walks that criticism found.
+
+        Those of the accelerometers and gyros themselves have none, unlike those on a table.
+        """
+        for sensor, walk in zip(SENSORS, self.random_walks, strict=True):
+            if walk and sensor in self.data.result.free:
+                campaign = self._campaign().with_random_walks(self.random_walks)
+                fit = joint_fit(campaign, sensor, Candidate(JOINT), self.data)
+                yield from self._solution(fit)
 
     def _without_one(self) -> Iterator[tuple[str, Any]]:
         """The joint fits without a disturbed manoeuvre; no probability weighs them with others."""

@@ -48,10 +48,15 @@ def fit_without(
     campaign: Campaign, sensor: str, candidate: Candidate, data: CampaignData
 ) -> Solved | None:
     """The joint fit without its manoeuvre; None where noise does not describe the others either."""
-    others = set(campaign.manoeuvres).difference([candidate.left_out])
-    system = campaign.system(sensor, [], PRIOR_SIGMA, others)
+    fit = joint_fit(campaign, sensor, candidate, data)
+    return fit if fit.estimate.p_value(data.noise.degrees) >= MIN_P else None
+
+
+def joint_fit(campaign: Campaign, sensor: str, candidate: Candidate, data: CampaignData) -> Solved:
+    """The joint fit with the random walk of the campaign, without a manoeuvre that is left out."""
+    used = set(campaign.manoeuvres).difference([candidate.left_out])
+    system = campaign.system(sensor, [], PRIOR_SIGMA, used)
     assert system is not None  # it determines all parameters
     nothing_selected = SelectedSizes({sensor: None}, (), np.zeros(0), np.zeros((0, 0)))
     walk = campaign.solution.random_walks[SENSORS.index(sensor)]
-    fit = solved(sensor, system, candidate, campaign.motion, walk, nothing_selected, data)
-    return fit if fit.estimate.p_value(data.noise.degrees) >= MIN_P else None
+    return solved(sensor, system, candidate, campaign.motion, walk, nothing_selected, data)
