@@ -14,6 +14,9 @@ from stages.report.sections.noise_figures import LOWEST, allan_figure
 from tests.report import synthetic, synthetic_noise
 
 
+MICRO_G = 9.80665e-6  # m/s²
+
+
 def made(**changed: Any) -> list[Any]:
     tables = synthetic.campaign(logs=()) | changed
     return list(noise.SECTION.parts(synthetic.tables_of(tables)))
@@ -50,6 +53,24 @@ def test_a_term_has_value_and_sigma_or_an_upper_limit_that_is_written_as_one() -
     assert [plain(row.cells[place]) for row in accelerometers.rows[:3]] == ["< 3.7"] * 3
     assert accelerometers.rows[0].cells[place + 1] == ""
     assert "upper limit, 95 %" in accelerometers.note
+
+
+def test_an_instability_that_may_hide_is_told_beside_the_sigma_of_the_bias() -> None:
+    """0.664 of 30 µg are 20 µg: more than the σ of 4 µg of the bias, and less than one of 25 µg."""
+    tables = synthetic.campaign(logs=())
+    terms, result = tables["noise_terms"].copy(), tables["result"].copy()
+    hidden = terms["channel"].str.startswith("accel") & (terms["term"] == "bias_instability")
+    terms.loc[hidden, ["value", "sigma"]] = np.nan
+    terms.loc[hidden, "detected"] = False
+    terms.loc[hidden, "upper"] = 30 * MICRO_G
+    bias = (result["sensor"] == "accel") & result["parameter"].str.startswith("bias_")
+    for sigma, told in ((4.0, True), (25.0, False)):
+        result.loc[bias, "sigma"] = sigma * MICRO_G
+        *_unused, accelerometers = made(noise_terms=terms, result=result)
+        assert ("bias_instability_ug" in accelerometers.note) == told
+        if told:
+            assert "B = 30 µg" in accelerometers.note
+            assert "up to 20 µg to a bias whose σ is 4.0 µg" in accelerometers.note
 
 
 def test_without_a_long_stretch_a_sentence_says_why_and_the_levels_stay() -> None:

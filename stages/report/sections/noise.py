@@ -11,7 +11,7 @@ from inertial.text.numbers import common_decimals, shortened, significant, with_
 from inertial.text.typography import capital
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
-from stages.report.sections.noise_figures import allan_figure, spectrum_figure
+from stages.report.sections.noise_figures import LOWEST, allan_figure, spectrum_figure
 from stages.report.tables import Record, Tables
 
 # The terms of IEEE Std 952 in the order of their slopes, with their letters.
@@ -39,6 +39,11 @@ NAME = {
     },
 }
 RESTS = ("rest", "rest-before", "rest-after")
+BIAS_UNIT = {"gyro": "rad/s", "accel": "m/s²"}
+STATED_BY = {  # keys of the campaign file
+    "gyro": "gyro: bias_instability_deg_h",
+    "accel": "accelerometer: bias_instability_ug",
+}
 
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
@@ -55,7 +60,11 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         sensors = [s for s in NAME if any(row["channel"].startswith(s) for row in terms)]
         for sensor in sensors:
             own = [row for row in terms if row["channel"].startswith(sensor)]
-            notes = [*_explained(tables, sensor), *_not_its_own(own)]
+            notes = [
+                *_explained(tables, sensor),
+                *_not_its_own(own),
+                *_open(tables, sensor, own),
+            ]
             if sensor == sensors[-1]:
                 notes.append(_note(terms, sheet))
             yield _terms_table(sensor, own, " ".join(filter(None, notes)))
@@ -76,7 +85,16 @@ SECTION = outline.Section(
         "counts that are coarse beside it; of the data sheet, dashed, the bias instability is used "
         "as far as the rests leave it open, and nothing else."
     ),
-    ("allan", "spectra", "noise_terms", "levels", "sensors", "segments", "drifts_at_rest"),
+    (
+        "allan",
+        "spectra",
+        "noise_terms",
+        "levels",
+        "sensors",
+        "segments",
+        "drifts_at_rest",
+        "result",
+    ),
     parts,
 )
 
@@ -132,6 +150,36 @@ def _explained(tables: Tables, sensor: str) -> Iterator[str]:
             "single manoeuvres, explain better: the fit with effects in the model does without "
             "them.",
             sensors=PLURAL[sensor],
+        )
+
+
+def _open(tables: Tables, sensor: str, terms: Sequence[Record]) -> Iterator[str]:
+    """What a bias instability that neither rests nor a data sheet show would add to a bias."""
+    sigma = {
+        row["parameter"].removeprefix("bias_"): row["sigma"]
+        for row in tables.rows("result")
+        if row["sensor"] == sensor and row["sigma"]
+    }
+    added = [
+        (LOWEST * row["upper"] / sigma[axis], row["upper"], sigma[axis])
+        for row in terms
+        if row["term"] == "bias_instability" and row["upper"] and not row["data_sheet"]
+        for axis in [row["channel"][-1]]
+        if axis in sigma
+    ]
+    ratio, upper, own = max(added, default=(0.0, 0.0, 0.0))
+    if ratio > 1:
+        unit = quantity("bias_x", BIAS_UNIT[sensor]).shown
+        yield _(
+            "No data sheet states the bias instability of the {sensors}, so none is in their σ. "
+            "One of B = {upper} {unit} could hide in these rests, and would add up to {floor} "
+            "{unit} to a bias whose σ is {sigma} {unit}. Stated ({key}), it is in σ.",
+            sensors=PLURAL[sensor],
+            upper=significant(unit.of(upper), 2),
+            unit=unit.name,
+            floor=significant(unit.of(LOWEST * upper), 2),
+            sigma=significant(unit.of(own), 2),
+            key=STATED_BY[sensor],
         )
 
 
