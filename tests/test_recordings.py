@@ -83,9 +83,8 @@ def test_imucal_runs_through_all_of_it_and_nothing_is_named_that_the_data_do_not
         assert (gravity["after"] - gravity["expected"]).abs().max() < 0.1  # m/s²
         assert (gravity["before"] - gravity["expected"]).abs().max() > 0.1
         assert len(results["history/archived"]) == 1
-    labelled = recorded("imucal-labelled")["criticism/findings"].set_index("cause")["sensor"]
-    # A hand is no table: its accelerometers drift within a rest, too.
-    assert labelled.to_dict() == {"accel_random_walk": "accel"}
+    # Its z accelerometer drifts where it is level, and not where it is upright: the support tilts.
+    assert recorded("imucal-labelled")["criticism/findings"].empty
     levels = recorded("imucal-labelled")["noise/levels"].query("source == 'own'")
     assert ("z-turn", "gyro_z") in set(zip(levels["manoeuvre"], levels["channel"], strict=True))
     assert recorded("imucal-continuous")["criticism/findings"].empty

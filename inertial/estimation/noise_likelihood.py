@@ -84,14 +84,8 @@ class Likelihood:
 
     @classmethod
     def of(cls, bins: Bins, lowest: Iterable[Lowest], channel: int, used: Booleans) -> "Likelihood":
-        """The likelihood of a channel by the bins that are used, (b,).
-
-        Where they end below the others, so do the lowest coefficients of short stretches.
-        """
+        """The likelihood of a channel by the bins that are used, (b,)."""
         groups = tuple(lowest)
-        highest = float(np.max(bins.frequency[used], initial=0.0))
-        if highest < bins.frequency.max():
-            groups = tuple(one for each in groups if len((one := each.up_to(highest)).ramp))
         density = bins.density[used, channel]
         unit = float(np.median(density)) or 1.0
         return cls(

@@ -222,7 +222,7 @@ def test_the_path_of_a_telegraph():
     levels = np.isin(place // 5, [*range(20, 41), *range(66, 90)]) * 1.0
     steps = (place[:, None] >= 5 * np.arange(120)).astype(float)
     right = steps.T @ (levels + random.normal(size=600) / 3)
-    found = best_paths(Equations(9 * steps.T @ steps, 9 * right), range(120))
+    found = best_paths(Equations(9 * steps.T @ steps, 9 * right), range(120), 2)
     (path,) = (path for path in found if len(path) == 4)
     assert np.abs(np.array(path) - [20, 41, 66, 90]).max() <= 1
 
