@@ -587,6 +587,13 @@ def test_a_table_set_a_degree_further_between_two_turns_moves():
     short = slow_motion(np.radians(still + np.outer(rate, [0, 1, 0]))[110:270], step)
     assert short is not None
     assert 15.5 < 11 + step * short[0] < 15.9 and 22.1 < 11 + step * short[1] < 22.6
+    # Nor for two thirds of the time in which it is thousands of times as fast as the noise: 8° in
+    # 10 s, which reach 0.01 °/s, 6 sigma of three axes, in 0.1 s.
+    s = np.clip((time[:150] - 2.5) / 10, 0, 1)
+    rate, quiet = 8 / 10 * 30 * s**2 * (1 - s) ** 2, 0.001 * rng.standard_normal((150, 3))
+    long = slow_motion(np.radians(quiet + np.outer(rate, [0, 1, 0])), step)
+    assert long is not None
+    assert 2.5 < step * long[0] < 2.9 and 12.1 < step * long[1] < 12.5
     for quiet in (
         still,
         still + np.outer(0.3 * np.sin(2 * np.pi * 1.3 * time), [1, 0, 0]),  # vibrates

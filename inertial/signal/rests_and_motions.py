@@ -31,6 +31,7 @@ PLATEAU_ROUNDS = 10  # in which the level of a short plateau is had from what re
 MIN_PLATEAU_BAND = 1e-3  # of a rate, within which it is kept where the bins scatter less
 MIN_PLATEAU_CROSSINGS = 3.0  # of the time in which a ramp passes that band: a plateau is longer
 MIN_SLOW_TURN = np.radians(0.05)  # rad, of a motion below what counts as motion
+AT_ENDS = 1 / 6  # of a stretch at each end, in which a slow motion has not begun, or is over
 LEVEL_ROUNDS = 3  # in which what the gyros read at rest is had from the bins that do not move
 # In m/s², change of the specific force that counts as motion where no gyro is recorded
 MIN_FORCE_CHANGE = 0.1
@@ -199,12 +200,15 @@ def slow_motion(
     quantum : rad/s, the step of the gyros, (3,) or of each, NaN where it is not known
     """
     recorded = bridged(rates[:, np.isfinite(rates).any(axis=0)])
-    if len(recorded) < 2 or not recorded.size:
+    if len(recorded) < 3 or not recorded.size:
         return None
-    change = MAD_TO_SIGMA * np.median(np.abs(np.diff(recorded, axis=0)), axis=0) / np.sqrt(2)
+    # A smooth motion bends little, however fast; the bends of noise have √6 times its scatter.
+    bends = np.abs(np.diff(recorded, 2, axis=0))
+    noise = MAD_TO_SIGMA * np.median(bends, axis=0) / np.sqrt(6)
     by_counts = float(np.linalg.norm(toggling(np.broadcast_to(quantum, 3))))
-    least = max(MIN_MOTION_SIGMA * float(np.linalg.norm(change)), by_counts)
-    rests = np.ones(len(recorded), bool)
+    least = max(MIN_MOTION_SIGMA * float(np.linalg.norm(noise)), by_counts)
+    place = np.arange(len(recorded)) / (len(recorded) - 1)
+    rests = np.abs(place - 0.5) > 0.5 - AT_ENDS
     for _ in range(LEVEL_ROUNDS):  # it may last as long as the rest
         away = recorded - np.median(recorded[rests], axis=0)
         above = np.linalg.norm(away, axis=1) > least

@@ -13,7 +13,6 @@ from stages.report.sections import noise, noise_by_manoeuvre, noise_figures
 from stages.report.sections.noise_figures import LOWEST, allan_figure
 from tests.report import synthetic, synthetic_noise
 
-
 MICRO_G = 9.80665e-6  # m/s²
 
 
