@@ -7,6 +7,9 @@ from it by more than chance: there the table, or the air, adds to the noise.
 Where counts are coarse beside the noise, and do not carry over what they leave, the mean of a
 manoeuvre is off by their rounding however long it is; a level beside its own holds that.
 
+A white noise of the angle, the quantisation of IEEE Std 952, is no level: it makes every sum as
+uncertain by its two ends, however long it is. So it stands beside the level, which is without it.
+
 Beside the common level of a channel stand the bias instability and the random walk that the static
 stretches show, or the bias instability of the data sheet as far as these leave it open. From here
 they enter the covariance of every estimate, and from nowhere else.
@@ -74,9 +77,9 @@ def effective_levels(
 ) -> pd.DataFrame:
     """The table of effective levels, by the levels of all manoeuvres.
 
-    `drifts`: see `drift_of`, by channel; `rounding`: what coarse counts add, by manoeuvre, phase
-    and channel; a channel that stands still in a manoeuvre has no level there, but this. One that
-    stands still in all has no noise that its counts would show, and this alone.
+    `drifts`: see `drift_of`, and the quantisation, by channel; `rounding`: what coarse counts add,
+    by manoeuvre, phase and channel; a channel that stands still in a manoeuvre has no level there,
+    but this. One that stands still in all has no noise that its counts would show, and this alone.
 
     The common variance is the mean of theirs, weighted with w = (N/σ)², their relative precision,
     for else a level that came out low would weigh more for it. Then the common level has the
@@ -164,6 +167,11 @@ class NoiseLevels:
         """The standard deviation of the samples of some channels; NaN where nothing is known."""
         rows = [self._rows.get((manoeuvre, phase, channel)) for channel in channels]
         return np.array([np.nan if row is None else row["per_sample"] for row in rows], np.float64)
+
+    def quantisation(self, sensor: str) -> Array:
+        """The white noise of the integral of each channel of a sensor, (3,), rad or m/s."""
+        found = [row.get("quantisation") or 0.0 for row in self._of_axes(sensor)]
+        return np.nan_to_num(np.array(found, np.float64))
 
     def rounded(self, sensor: str) -> int:
         """How many means of the channels of a sensor are off by rounding of coarse counts."""

@@ -27,6 +27,7 @@ from inertial.campaign.static_positions import (
     turn_errors,
 )
 from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.noise_model import sigma_of_mean
 from inertial.estimation.random_walk import MeasuredDrift, Stretch
 from inertial.physics.motion import Motion, level_axes, mean_turned
 from inertial.sensors import SENSORS
@@ -63,12 +64,13 @@ def campaign_of(data: CampaignData) -> Campaign:
         motion = motions.turning(recorded, turn)
         turns.append(motion)
         if not turn.by_hand:
-            levels = [data.noise.of(recorded.plan.name, at, ACCEL) for at in ("steady", "rest")]
+            noise = [data.noise.of(recorded.plan.name, at, ACCEL) for at in ("steady", "rest")]
+            noise.append(data.noise.quantisation("accel"))
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
             clock = data.clocks.get(recorded.plan.log)
             early = 0.0 if clock is None or clock.averaged else clock.step / np.sqrt(12)
             walk = 0.0 if turn.course is not None else turn.angle_walk
-            parts = _turning(recorded.plan, recorded.blocks, motion, levels, edges, early, walk)
+            parts = _turning(recorded.plan, recorded.blocks, motion, noise, edges, early, walk)
             stretches = _stretches(turn.stretch, [at for _, _, at in parts], drifts["accel"])
             static_forces += [
                 (m, replace(part, stretch=own), at)
@@ -139,15 +141,15 @@ def _turning(
     m: Manoeuvre,
     blocks: Blocks,
     motion: Motion,
-    levels: Sequence[Array],
+    noise: Sequence[Array],
     edges: Sequence[int],
     early: float,
     walk: float,
 ) -> list[tuple[str, StaticForce, Motion]]:
     """The accelerometers during a rotation in means of some blocks, none across the `edges`.
 
-    `levels`: their noise at the steady rate and at rest. While the table starts and stops it is
-    the larger one: what shakes the rest after a turn may begin before the table is at rest.
+    `noise`: white at the steady rate and at rest, and quantisation. While the table starts and
+    stops the larger white one: what shakes the rest after a turn may begin before it is at rest.
     `early`: sigma of the time of a sample against that of the gyros, s. By it a mean is off in
     proportion to the change from its start to its end, of specific force that does not turn with
     the table: that of a lever arm in a ramp. `walk`: as in `turn_errors`.
@@ -165,8 +167,9 @@ def _turning(
     starts = [start for piece in pairwise(edges) for start in _merged(off, *piece)]
     merged = Merged(seconds, starts)
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
-    density = np.where(steady, levels[0], np.fmax(*levels))
-    sigmas = density / np.sqrt(merged.seconds)[:, None]
+    moving, resting, quantisation = noise
+    density = np.where(steady, moving, np.fmax(moving, resting))
+    sigmas = sigma_of_mean(density, quantisation, merged.seconds[:, None])
     axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes(m.up)]
     level = np.stack(axes, axis=1)
     if case is None:

@@ -19,6 +19,7 @@ from inertial.estimation.gyroscope_observations import (
     SteadyRate,
     WholeTurn,
 )
+from inertial.estimation.noise_model import SQRT2, sigma_of_mean
 from inertial.estimation.turning_noise import with_turning_noise
 from inertial.physics.motion import horizontal, north_of
 from inertial.tables import GYRO
@@ -171,6 +172,7 @@ def rate_segment_of(
         seconds=part.seconds,
         density=noise.of(m.name, "steady", GYRO),
         quiet_density=noise.of(m.name, "rest", GYRO),
+        quantisation=noise.quantisation("gyro"),
         by_hand=bool((part.phase == "turning").any()),
         gaps=missing,
         gap_sigma=sigma_of(part, missing, m.axis, m.name, noise, rate_sigma),
@@ -200,7 +202,9 @@ def steady_rate_of(
         seconds=part.seconds,
         elapsed=ends - part.seconds / 2,
         mean=mean_rate(part),
-        sigma=noise.of(m.name, "steady", GYRO) / np.sqrt(part.seconds.sum()),
+        sigma=sigma_of_mean(
+            noise.of(m.name, "steady", GYRO), noise.quantisation("gyro"), part.seconds.sum()
+        ),
         table_rate_sigma=stated if m.rate_sigma is None else 0.0,
     )
 
@@ -225,7 +229,7 @@ def _angle(rotation: Rotation, i: int, noise: NoiseLevels) -> WholeTurn:
     return WholeTurn(
         summed=float((part.gyro[:, i] * part.seconds * rotation.weights).sum()),
         angle=m.angle * float(m.axis[i]),
-        angle_sigma=m.angle_sigma,
+        angle_sigma=float(np.hypot(m.angle_sigma, SQRT2 * noise.quantisation("gyro")[i])),
         seconds=float(rotation.weights @ part.seconds),
         up=float(m.up[i]),
         density=float(noise.of(m.name, "rest", GYRO)[i]),

@@ -13,6 +13,7 @@ from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.records import Manoeuvre, Performed
 from inertial.campaign.static_positions import NO_BLOCKS, Blocks, by_manoeuvre
 from inertial.estimation.gyroscope_observations import Gap
+from inertial.estimation.noise_model import sigma_of_mean
 from inertial.estimation.spectrum import rate_deviation
 from inertial.tables import GYRO, STATIC_PHASES
 from inertial.text.messages import _
@@ -201,9 +202,10 @@ def _rates(run: Rotation, noise: NoiseLevels) -> tuple[float, float, float]:
     """Stated and read about the axis, without its sign, and the sigma, rad/s."""
     m, part = run.plan, run.steady
     sign = 1.0 if m.axis.sum() > 0 else -1.0
-    density = float(np.max(noise.of(m.name, "steady", GYRO)))
+    white, ends = np.max([noise.of(m.name, "steady", GYRO), noise.quantisation("gyro")], axis=1)
     read = float(m.axis @ mean_rate(part))
-    return sign * (m.rate or 0.0), sign * read, density / float(part.seconds.sum()) ** 0.5
+    sigma = float(sigma_of_mean(white, ends, part.seconds.sum()))
+    return sign * (m.rate or 0.0), sign * read, sigma
 
 
 def mean_rate(part: Blocks) -> Array:

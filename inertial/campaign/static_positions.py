@@ -1,8 +1,8 @@
 """The static positions of a campaign: means of blocks, with their noise."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from dataclasses import dataclass, field, fields, replace
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from inertial.arrays import Array, Booleans
 from inertial.campaign.records import Manoeuvre, Part, Performed
 from inertial.estimation.accelerometers import StaticForce
+from inertial.estimation.noise_model import SQRT2, sigma_of_mean
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.random_walk import COMMON_CLOCK, Stretch
 from inertial.physics.motion import are_parts_of_turns, cross, is_vertical, level_axes, turned
@@ -85,7 +86,6 @@ def _blocks(table: pd.DataFrame) -> Blocks:
 
 # --- Static positions of known attitude ---
 
-SQRT2 = float(np.sqrt(2))
 WAVES = 8  # of the error of the angle within a turn
 FASTER = float(np.sqrt(1 / 6 - np.sum(np.arange(1, WAVES + 1) ** -2.0) / np.pi**2))  # rms of others
 UNTIMED = Stretch("")
@@ -110,7 +110,7 @@ class StaticPosition:
     `part`: of the plan; `up`, `about`: (3,), body axes at the start of its manoeuvre; `angle`: rad,
     by which it has turned about `about` since; `means`: (k, 3), rad/s or m/s², NaN where not
     recorded; `counts`, `seconds`, `time` of the middle, s, `temperature`, K: (k,); `density`: (3,),
-    white noise per √s; `stretch`: of time.
+    white noise per √s; `stretch`: of time; `quantisation`: (3,), white noise of the integral.
     """
 
     part: Part
@@ -125,6 +125,7 @@ class StaticPosition:
     temperature: Array
     density: Array
     stretch: Stretch = UNTIMED
+    quantisation: Array = field(default_factory=partial(np.zeros, 3))
 
     @property
     def label(self) -> str:
@@ -148,7 +149,8 @@ class StaticPosition:
         count = int(np.searchsorted(self._starts, seconds))
         with np.errstate(invalid="ignore", divide="ignore"):  # a channel that is not recorded
             summed, samples, duration = self._so_far[:, count - 1]
-            return summed / samples, self.density * self._louder / np.sqrt(duration)
+            louder = self.density * self._louder
+            return summed / samples, sigma_of_mean(louder, self.quantisation, duration)
 
     def force(self, seconds: float = np.inf) -> StaticForce:
         """The observation of the accelerometers in the first `seconds`."""
@@ -202,9 +204,13 @@ class StaticPosition:
         if len(self.seconds) < 3:
             return np.ones(3)
         with np.errstate(invalid="ignore", divide="ignore"):
-            variance = (1 / self.seconds)[:, None] * self.density**2
+            each = 1 / self.seconds[:, None]
+            variance = each * self.density**2
             squares = np.diff(self.means, 2, axis=0) ** 2
-            squares /= variance[:-2] + 4 * variance[1:-1] + variance[2:]
+            first, middle, last = each[:-2], 2 * each[1:-1], each[2:]
+            ends = first**2 + (first + middle) ** 2 + (middle + last) ** 2 + last**2
+            white = variance[:-2] + 4 * variance[1:-1] + variance[2:]
+            squares /= white + ends * self.quantisation**2
         seen = np.isfinite(squares)
         excess = np.mean(squares, axis=0, where=seen) if seen.any(axis=0).all() else np.ones(3)
         degrees = np.maximum(seen.sum(axis=0), 1) / DIFFERENCES_PER_DEGREE
@@ -340,6 +346,7 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
                             ),
                             switch_on=m.switch_on,
                         ),
+                        data.noise.quantisation(sensor),
                     )
                 )
     return positions, left_out

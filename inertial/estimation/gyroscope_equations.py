@@ -8,6 +8,11 @@ every block is an unknown that occurs in its own three readings only; known is t
 rest to rest. So a block gives the two combinations of its channels that are free of Δθ, and the
 rate segment as a whole the third.
 
+White noise of the angle, the quantisation of the gyros, is an error of the readings at every edge
+of the blocks that its two neighbours share with opposite signs. A combination of channels that is
+white by their rates has a share r of it, s: the covariance of its blocks is τ + 2r, and −r beside.
+Of the segment as a whole, and of a window, the errors at both ends remain.
+
 A gap in a rate segment is interpolated from the blocks next to it: the table turned in it at their
 rate, to a known sigma, an unknown of its own. So in the segment as a whole every block counts for
 itself and for its share of the gaps,
@@ -40,6 +45,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import cholesky_banded, solve_banded
 
 from inertial.arrays import Array, Booleans
 from inertial.estimation.elimination import (
@@ -59,13 +65,12 @@ from inertial.estimation.gyroscope_observations import (
     StaticRate,
     SteadyRate,
 )
-from inertial.estimation.noise_model import wave, waves_within
+from inertial.estimation.noise_model import SQRT2, wave, waves_within
 from inertial.estimation.random_walk import Stretch
 from inertial.estimation.triad import UNKNOWNS, design_of
 from inertial.physics.forward import Triad, measured_angles
 from inertial.physics.motion import all_level_axes, cross, is_vertical, level_axes, turned_all
 
-SQRT2 = float(np.sqrt(2))
 UPRIGHT = np.array([0.0, 0.0, 1.0])  # z, for want of a direction
 # What is known of an encoder before: it is read within 50 ms, and off its axis by no more than
 # those of a laboratory are; what the windows say of both counts.
@@ -269,7 +274,7 @@ def segment_equations(
     # Two combinations of every block that do not depend on its angle.
     across = np.zeros((int(recorded.sum()) - 1, 3))
     across[:, recorded] = np.linalg.svd(along[None, recorded] / np.linalg.norm(along))[2][1:]
-    across *= weight
+    across, edges = _apart(across * weight, segment.quantisation)
     blocks = _Blocks(segment, point, earth, prior, effects, list(own), course, sums, angle, middle)
     whole = np.zeros((3, len(prior) + len(own) + 1))
     unweighted, rows, count = whole.copy(), [whole[:0]], 1
@@ -285,12 +290,13 @@ def segment_equations(
             unweighted += equations.sum(axis=0)
             continue
         usable = segment.usable_blocks[some]
-        noise = np.sqrt(segment.seconds[some][usable])
-        pairs = np.einsum("dr,krc->kdc", across, equations[usable]) / noise[:, None, None]
+        pairs = np.einsum("dr,krc->kdc", across, equations[usable])
+        for d, edge in enumerate(edges):
+            pairs[:, d] = _whitened_blocks(pairs[:, d], segment.seconds[some], usable, edge)
         rows.append(compressed(pairs.reshape(-1, pairs.shape[-1])))
         count += len(across) * int(usable.sum())
     if segment.by_hand:
-        rows.append(across @ unweighted / np.sqrt(segment.seconds.sum()))
+        rows.append(across @ unweighted / np.sqrt(segment.seconds.sum() + 2 * edges)[:, None])
         count += len(across)
     if segment.windows:
         known = _windows(segment, name, point.matrix, of_windows, recorded, angle, list(own))
@@ -300,6 +306,42 @@ def segment_equations(
     known = known[np.isfinite(known).all(axis=1)]
     stacked, count = np.vstack([*rows, known]), count - 1 + len(known)
     return EquationBlock(compressed(stacked), tuple(own), count, 0.0)
+
+
+def _apart(across: Array, quantisation: Array) -> tuple[Array, Array]:
+    """Combinations of channels, (d, 3), whose errors of the angle are independent too.
+
+    And of each the variance of that, s, (d,). `across`: those that are white of 1 by their rates.
+    """
+    edges = np.zeros(len(across))
+    if quantisation.any():
+        edges, axes = np.linalg.eigh((across * quantisation**2) @ across.T)
+        across = axes.T @ across
+    return across, edges
+
+
+def _whitened_blocks(rows: Array, seconds: Array, usable: Booleans, edge: float) -> Array:
+    """The equations of the usable of k blocks, (u, c), with errors that are white of 1.
+
+    Parameters
+    ----------
+    seconds : (k,), their duration, the variance of their white noise
+    edge : s, variance at each edge that neighbours share
+    """
+    time = seconds[usable]
+    if not edge:
+        return np.asarray(rows / np.sqrt(time)[:, None])
+    beside = np.append(np.where(np.diff(np.flatnonzero(usable)) == 1, -edge, 0.0), 0.0)
+    root = cholesky_banded(np.array([time + 2 * edge, beside[: len(time)]]), lower=True)
+    return np.asarray(solve_banded((1, 0), root, rows))
+
+
+def _ends(along: Array, quiet: Array, quantisation: Array) -> float:
+    """Variance of the errors of the angle at both ends of a sum of the channels, s.
+
+    In units of its white noise. `along`: (3,), their weights in sigmas; `quiet`: (3,), 1/sigma.
+    """
+    return float(2 * along**2 @ (quiet * quantisation) ** 2 / (along @ along))
 
 
 def _own_errors(
@@ -409,7 +451,8 @@ def _whole_angle(
     """The equation of the known angle; the motion of the table on the way is no noise here."""
     quiet = np.where(recorded, 1 / np.where(recorded, segment.quiet_density, 1.0), 0.0)
     along = quiet * (matrix @ segment.about)
-    scale = float(np.linalg.norm(along)) * np.sqrt(segment.weights**2 @ segment.seconds)
+    duration = segment.weights**2 @ segment.seconds + _ends(along, quiet, segment.quantisation)
+    scale = float(np.linalg.norm(along)) * np.sqrt(duration)
     along = quiet * along / scale
     row = along @ whole
     # M multiplies the known angle, from which the sum of the blocks' angles differs a little.
@@ -435,11 +478,12 @@ def _windows(
     """The equations of the angles that the encoder reads, a row for each window."""
     quiet = np.where(recorded, 1 / np.where(recorded, segment.quiet_density, 1.0), 0.0)
     along = quiet * (matrix @ segment.about)
+    ends = _ends(along, quiet, segment.quantisation)
     rows = []
     for window, whole in zip(segment.windows, sums, strict=True):
         inside = slice(window.first, window.after)
         factor = quiet * along
-        factor /= np.linalg.norm(along) * np.sqrt(segment.seconds[inside].sum())
+        factor /= np.linalg.norm(along) * np.sqrt(segment.seconds[inside].sum() + ends)
         row = factor @ whole
         # M multiplies the angle of the encoder, from which that of the blocks differs a little.
         known = window.end - window.start

@@ -373,7 +373,7 @@ def turn_and_stop(
         matrix = np.where(columns, (matrix_factors @ np.nan_to_num(less_earth)).T, np.eye(3))
 
     scatters = np.array([scatter * turn.seconds.sum() for turn in turns] + [scatter] * len(statics))
-    noise = [turn.quiet_density * np.sqrt(turn.seconds.sum()) for turn in turns]
+    noise = [turn.noise_of_sum for turn in turns]
     noise += [static.sigma for static in statics]
     readings = Readings(less_earth, np.hypot(np.array(noise).reshape(-1, 3), scatters[:, None]))
     for j, rate in enumerate(earth_rates):

@@ -1,12 +1,14 @@
 """Static positions and rate segments of a campaign as the equations of the gyros take them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
 from inertial.arrays import Array, Booleans
 from inertial.estimation.effect_information import NO_SENSITIVITIES, Sensitivities
+from inertial.estimation.noise_model import SQRT2
 from inertial.estimation.random_walk import Stretch
 
 EARTH_UP = ("earth", "up")  # the name of the unknown: the upward component
@@ -107,7 +109,8 @@ class RateSegment:
     """A whole turn from rest to rest, or a part of one that the encoder knows, in k blocks.
 
     `sums`: (k, 3), rad; `seconds`: (k,); `angle`, `angle_sigma`: rad; `density` and
-    `quiet_density`: (3,), rad/√s, white noise while turning and at rest. `by_hand`: the
+    `quiet_density`: (3,), rad/√s, white noise while turning and at rest; `quantisation`: (3,), rad,
+    white noise of the angle at every edge of the blocks. `by_hand`: the
     axis sways on the way, so only the sums over the whole turn are used. `gaps`: missing parts
     between the blocks; `gap_sigma`: rad, of the interpolated angle.
     `unsteady`: blocks in which the amplitude of an oscillation of the case changes.
@@ -134,6 +137,7 @@ class RateSegment:
     clock_sigma: float = 0.0
     windows: Sequence[EncoderWindow] = ()
     course: Array | None = None
+    quantisation: Array = field(default_factory=partial(np.zeros, 3))
 
     @property
     def weights(self) -> Array:
@@ -153,6 +157,12 @@ class RateSegment:
     def elapsed(self) -> Array:
         """The middle of each block since the first began, (k,), s."""
         return self._cumulated(self.seconds, [gap.seconds for gap in self.gaps])
+
+    @property
+    def noise_of_sum(self) -> Array:
+        """Sigma of the weighted sum of the readings by their noise at rest, (3,), rad."""
+        white = self.quiet_density * np.sqrt(self.weights**2 @ self.seconds)
+        return np.hypot(white, SQRT2 * self.quantisation)
 
     @property
     def angle_walk(self) -> float:

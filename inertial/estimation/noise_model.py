@@ -28,6 +28,7 @@ from numpy.typing import ArrayLike
 
 from inertial.arrays import Array
 
+SQRT2 = float(np.sqrt(2))
 FLOOR_VARIANCE = 2 * float(np.log(2)) / np.pi  # Allan variance of a bias instability of 1
 STOCHASTIC = ("quantisation", "white_noise", "bias_instability", "random_walk")
 TERMS = (*STOCHASTIC, "ramp")
@@ -63,6 +64,12 @@ class NoiseModel:
         `frequency`: Hz, above 0, up to half the sampling rate; `interval`: s.
         """
         return np.asarray(self.variances @ density_shapes(np.asarray(frequency, float), interval))
+
+
+def sigma_of_mean(white: ArrayLike, quantisation: ArrayLike, seconds: ArrayLike) -> Array:
+    """Of a mean over so many seconds, U: white noise N, and the angle's Q at either end of it."""
+    time = np.asarray(seconds, np.float64)
+    return np.hypot(white / np.sqrt(time), SQRT2 * np.asarray(quantisation) / time)
 
 
 def allan_shapes(tau: Array) -> Array:

@@ -65,7 +65,8 @@ def _log_odds(turns: Sequence[RateSegment], rests: Mapping[str, StaticRate]) -> 
         summed = float(np.nan_to_num(turn.weights @ turn.sums - rest.mean * seconds) @ along)
         white = np.array([turn.quiet_density, np.fmax(turn.density, turn.quiet_density)])
         of_rest = rest.sigma[about != 0] ** 2 @ about[about != 0] ** 2 * seconds**2
-        known = turn.angle_sigma**2 + turn.gap_sigma**2 + of_rest
+        ends = 2 * turn.quantisation**2 @ about**2
+        known = turn.angle_sigma**2 + turn.gap_sigma**2 + of_rest + ends
         values.append(summed)
         variances.append(np.nan_to_num(white**2) @ about**2 * seconds + known)
     if len(values) < 2:

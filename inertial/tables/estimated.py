@@ -101,7 +101,7 @@ NOISE_TERMS = Table(
 )
 LEVELS = Table(
     "levels",
-    5,
+    6,
     (
         optional("manoeuvre", TEXT, "", "as in noise; none: all that have no row"),
         optional("phase", TEXT, "", "rest or steady; none as manoeuvre"),
@@ -138,6 +138,12 @@ LEVELS = Table(
             "K of its bias by terms, or the likeliest; none: does not enter",
         ),
         optional("data_sheet", DOUBLE, "rad/s, m/s²", "B of the data sheet, of a common level"),
+        optional(
+            "quantisation",
+            DOUBLE,
+            "rad, m/s",
+            "Q of the common level's channel, of which white_noise is free; none: not significant",
+        ),
     ),
 )
 PARAMETERS = Table(

@@ -41,7 +41,9 @@ FIDELITY = Table(
         Column("channel", TEXT, "", "one of the six channels"),
         Column("profile", TEXT, "", "trapezoid; as the gyros have it; or at rest"),
         Column("residual_rms", DOUBLE, "rad/s, m/s²", "root mean square of the residuals"),
-        Column("noise_rms", DOUBLE, "rad/s, m/s²", "what white noise alone would give"),
+        Column(
+            "noise_rms", DOUBLE, "rad/s, m/s²", "what white noise, and quantisation, would give"
+        ),
         Column("samples", INTEGER, "1", "number of samples, or of blocks of a rest"),
     ),
 )

@@ -31,6 +31,7 @@ from laboratory.effects.earth_rate_omitted import EarthRateOmitted
 from laboratory.effects.effect import Effect
 from laboratory.effects.gravity_error import GravityError
 from laboratory.effects.gyro_accel_misalignment import GyroAccelMisalignment
+from laboratory.effects.gyro_angle_noise import GyroAngleNoise
 from laboratory.effects.gyro_anisoelasticity import GyroAnisoelasticity
 from laboratory.effects.gyro_bias_jump import GyroBiasJump
 from laboratory.effects.gyro_bias_ramp import GyroBiasRamp
@@ -148,6 +149,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_relaxation_sense": GyroRelaxationSense.specified,
     "gyro_relaxation_braking": GyroRelaxationBraking.specified,
     "gyro_flicker": GyroFlicker.specified,
+    "gyro_angle_noise": GyroAngleNoise.specified,
     "gyro_low_pass": GyroLowPass.specified,
     "gyro_saturation": GyroSaturation.specified,
     "gyro_latency": GyroLatency.specified,

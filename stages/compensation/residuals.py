@@ -21,6 +21,7 @@ from inertial.campaign.rate_segments import position_of
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
 from inertial.estimation.horizontal_earth_rate import MAX_AZIMUTH_SIGMA
+from inertial.estimation.noise_model import sigma_of_mean
 from inertial.physics.forward import UNKNOWN_TRIAD, Site, predict
 from inertial.physics.motion import Motion, cross, stretches, turned
 from inertial.tables import ACCEL, CHANNELS, GYRO
@@ -73,7 +74,8 @@ def _static(
     for position, values in zip(positions, residuals_at(rests), strict=True):
         if data.by_hand:
             values[:, np.abs(position.up_now) < MIN_COSINE] = np.nan
-        sigma = position.density[:, None] / np.sqrt(position.seconds)
+        noise = position.density[:, None], position.quantisation[:, None]
+        sigma = sigma_of_mean(*noise, position.seconds)
         yield _frame(
             data,
             (position.manoeuvre.name, position.part.phase),
@@ -142,7 +144,8 @@ def _in_rotation(
         rates = (read - known) @ gyro.matrix.T
     if m.rate is None or m.acceleration is None:  # then the rate is what the gyros read
         rates[:, np.abs(m.axis) > MIN_COSINE] = np.nan
-    sigma = data.noise.of(name, "rest", GYRO) / np.sqrt(seconds)[:, None]
+    own = data.noise.of(name, "rest", GYRO), data.noise.quantisation("gyro")
+    sigma = sigma_of_mean(*own, seconds[:, None])
     return _frame(
         data,
         (name, "steady"),

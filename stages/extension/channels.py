@@ -137,7 +137,7 @@ class Channels:
         earth = _known_rate(motion, truth, turn.position) - motion.omega
         known = turn.about * (turn.angle / total) + share @ earth
         residual = turn.weights @ turn.sums / total - self._gyro.matrix @ known - self._gyro.bias
-        sigma = turn.quiet_density * np.sqrt(turn.weights**2 @ turn.seconds) / total
+        sigma = turn.noise_of_sum / total
         errors = self._earth(turn.position, motion, share)
         along = self._gyro.matrix @ turn.about / total
         errors["angle", recorded.plan.name] = (

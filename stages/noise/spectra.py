@@ -7,6 +7,7 @@ import numpy as np
 
 from inertial import tables
 from inertial.arrays import Array
+from inertial.estimation.noise_model import NoiseModel
 from inertial.estimation.spectrum import NoiseShape, in_band, level_of_pieces, shape_of
 from inertial.sensors import COLUMNS
 
@@ -44,6 +45,13 @@ class Spectra:
                 self.sums[columns] += part.sum(axis=0)
                 self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
                 self.seconds.setdefault(sensor, []).append(len(part) / rate)
+
+    def without_quantisation(self, sensor: str, axis: int, model: NoiseModel, step: float) -> None:
+        """Leave of a channel the white noise of a model, of records that come every `step`, s."""
+        for frequency, level in zip(
+            self.frequencies.get(sensor, ()), self.levels.get(sensor, ()), strict=True
+        ):
+            level[:, axis] *= model.white_noise**2 / model.density(frequency, step)
 
     def rows(
         self, manoeuvre: str, phase: str, shapes: Mapping[str, Sequence[NoiseShape]]

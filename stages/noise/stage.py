@@ -23,7 +23,7 @@ from inertial.text.units import quantity
 from stages.noise.declared import DECLARED
 from stages.noise.rounding import Level, count_sizes, rounding_levels
 from stages.noise.spectra import Spectra, shapes_of
-from stages.noise.static_stretches import StaticStretches
+from stages.noise.static_stretches import SensorNoise, StaticStretches
 
 # ---- White noise at rest that is far above the data sheet's: the IMU is another one, or is shaken.
 
@@ -108,6 +108,8 @@ def noise(
         carried,
         (from_hz, to_hz),
     )
+    noises = list(static.noises(by_hand))
+    _without_quantisation(spectra, noises)
     shapes = shapes_of(spectra)
     rows = [
         row | {"data_sheet": sheet[row["channel"]]["white_noise"]}
@@ -115,7 +117,6 @@ def noise(
         for row in collected.rows(manoeuvre, phase, shapes)
     ]
     measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
-    noises = list(static.noises(by_hand))
     drifts = dict(chain.from_iterable(n.drifts(sheet) for n in noises))
     levels = effective_levels(measured, drifts, rounding_levels(spectra, counts))
     if of_means:
@@ -130,6 +131,19 @@ def noise(
         "terms": terms,
         "findings": table_of([] if by_hand else list(louder(terms))),
     }
+
+
+def _without_quantisation(
+    spectra: Mapping[tuple[str, str], Spectra], noises: Sequence[SensorNoise]
+) -> None:
+    """Leave in the spectra the white noise, beside which quantisation is a term of its own."""
+    for noise_at_rest in noises:
+        for channel, model in noise_at_rest.quantised.items():
+            sensor, axis = channel.split("_")
+            for own in spectra.values():
+                own.without_quantisation(
+                    sensor, tables.AXES.index(axis), model, noise_at_rest.interval
+                )
 
 
 def _read(

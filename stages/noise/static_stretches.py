@@ -17,12 +17,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from inertial.arrays import Array, Booleans, finite_or_none
-from inertial.campaign.noise_levels import DRIFTS, drift_of
+from inertial.campaign.noise_levels import DRIFTS, MAX_P_VALUE, drift_of
 from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
 from inertial.estimation.multiresolution import MIN_WHOLE, Powers, Spectrum, WelchSums, segment_for
 from inertial.estimation.noise_model import TERMS, NoiseModel
-from inertial.estimation.noise_terms import NoiseTerms, noise_terms
+from inertial.estimation.noise_terms import QUANTISATION, NoiseTerms, noise_terms
 from inertial.sensors import COLUMNS
 from inertial.tables import AXES
 
@@ -279,6 +279,23 @@ class SensorNoise:
     stepped: Booleans
     of_bias: list[NoiseTerms | None]
 
+    @property
+    def quantised(self) -> dict[str, NoiseModel]:
+        """Quantisation and white noise of the channels that certainly have the former.
+
+        White noise that does not show beside it is as large as it may be.
+        """
+        return {
+            channel: NoiseModel(
+                terms.model.quantisation,
+                terms.model.white_noise or terms.terms["white_noise"].most,
+            )
+            for channel, terms in zip(self.channels, self.terms, strict=True)
+            if terms is not None
+            and terms.model.quantisation
+            and terms.terms[QUANTISATION].p_value < MAX_P_VALUE
+        }
+
     def drifts(
         self, sheet: Mapping[str, Mapping[str, float | None]]
     ) -> Iterator[tuple[str, dict[str, float | None]]]:
@@ -286,7 +303,10 @@ class SensorNoise:
         for channel, terms, stepped in zip(self.channels, self.of_bias, self.stepped, strict=True):
             stated = sheet[channel].get("bias_instability")
             shown = None if stepped else terms
-            yield channel, {**drift_of(shown, stated, self.seconds), "data_sheet": stated}
+            own = {**drift_of(shown, stated, self.seconds), "data_sheet": stated}
+            if channel in self.quantised:
+                own["quantisation"] = self.quantised[channel].quantisation
+            yield channel, own
 
     def allan_rows(self) -> Iterator[Row]:
         """Rows of the table."""

@@ -17,9 +17,11 @@ from inertial.campaign.motions import at_rest, in_samples
 from inertial.campaign.records import Manoeuvre, Performed, Row, rows_of
 from inertial.campaign.sample_stretches import columns_in, records_of
 from inertial.campaign.solution import Solution
+from inertial.estimation.noise_model import sigma_of_mean
 from inertial.physics.effect import Reading
 from inertial.physics.forward import UNKNOWN_TRIAD, predict
 from inertial.physics.motion import Motion
+from inertial.sensors import COLUMNS
 from inertial.tables import GYRO
 from inertial.tables.parquet import Stream
 from inertial.tables.stage import Pieces, Stage
@@ -166,9 +168,11 @@ def _frame(parts: Sequence[Simulated]) -> pd.DataFrame:
 
 
 def _fidelity(part: Simulated, data: CampaignData, how: str, seconds: float) -> Iterator[Row]:
-    """Rms of the residuals, and rms of white noise alone in means of this length."""
+    """Rms of the residuals, and that of noise alone in means of this length."""
     white = data.noise.of(part.manoeuvre, "rest", tables.CHANNELS)
-    for channel, residual, level in zip(tables.CHANNELS, part.residual.T, white, strict=True):
+    quantisation = np.concatenate([data.noise.quantisation(sensor) for sensor in COLUMNS])
+    levels = sigma_of_mean(white, quantisation, seconds)
+    for channel, residual, level in zip(tables.CHANNELS, part.residual.T, levels, strict=True):
         there = residual[np.isfinite(residual)]
         if len(there) and np.isfinite(level):
             yield {
@@ -177,7 +181,7 @@ def _fidelity(part: Simulated, data: CampaignData, how: str, seconds: float) -> 
                 "channel": channel,
                 "profile": how,
                 "residual_rms": float(np.sqrt(np.mean(there**2))),
-                "noise_rms": float(level) / np.sqrt(seconds),
+                "noise_rms": float(level),
                 "samples": len(there),
             }
 

@@ -1,4 +1,4 @@
-"""Noise that grows for a while, or with the rate: there is nothing to find."""
+"""Noise that grows for a while, or with the rate or the frequency: there is nothing to find."""
 
 from dataclasses import replace
 
@@ -56,6 +56,32 @@ def test_noise_of_a_scale_factor_is_no_effect() -> None:
     document = hidden_plans.PLANS["rates"](seed=7, effects=effects)
     tables = chain.in_memory_of(document, "criticism", chain.BESIDE)
     assert not tables["criticism/findings"]["verdict"].isin(["found", "one_of_class"]).any()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("arcseconds", [0.9, 9.0])
+def test_white_noise_of_the_angle_is_quantisation(arcseconds: float) -> None:
+    """The dither of a ring laser leaves it; once blocks of turns were off by 2.4 times their noise.
+
+    It is free of the white noise of the rate, which stays as it is, and no effect.
+    """
+    quiet, noisy = (
+        chain.in_memory_of(hidden_plans.PLANS["rates"](seed=7, effects=effects), to, chain.BESIDE)
+        for effects, to in (
+            ({}, "noise"),
+            ({"gyro_angle_noise": {"q_arcsec": arcseconds}}, "criticism"),
+        )
+    )
+    assert noisy["criticism/findings"].empty
+    (fit,) = noisy["gyroscope/fit"].query("method == 'joint'").to_dict("records")
+    assert fit["chi_squared"] / fit["degrees"] == pytest.approx(1, abs=0.1)
+    without, found = (
+        each["noise/levels"].query("channel == 'gyro_x' and manoeuvre.isna()").iloc[0]
+        for each in (quiet, noisy)
+    )
+    assert np.degrees(found["quantisation"]) * 3600 == pytest.approx(arcseconds, rel=0.02)
+    assert not without["quantisation"] > 1e-7  # rad, a count
+    assert found["white_noise"] == pytest.approx(without["white_noise"], rel=0.15)
 
 
 @pytest.mark.parametrize("of_gyros", [True, False])

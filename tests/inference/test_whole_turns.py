@@ -15,6 +15,7 @@ from inertial.estimation.gyroscope_observations import (
     WholeTurn,
 )
 from inertial.estimation.gyroscopes import bias_and_scale, joint
+from inertial.estimation.noise_model import SQRT2
 from inertial.physics.site import earth_rate
 
 UP, LEVEL = earth_rate(np.radians(30.5278))
@@ -84,6 +85,31 @@ def test_the_truth_comes_back_also_from_turns_of_one_direction(directions):
     assert np.abs(pulls).max() < 4
     assert fit.sigma[0] < 1e-5  # a scale factor to 10 ppm
     assert fit.p_value() > 1e-3
+
+
+@pytest.mark.parametrize("quantisation", [1e-6, 1e-5, 1e-4])
+def test_white_noise_of_the_angle_is_that_of_the_ends_of_a_turn(quantisation: float):
+    """An error at each edge of the blocks, of opposite sign in both: of a turn, 2 Q² remain.
+
+    As independent errors of the blocks it would make all cross terms as uncertain as 190 turns.
+    """
+    rng = np.random.default_rng(9)
+    M = np.eye(3) + 5e-3 * rng.standard_normal((3, 3))
+    bias = 1e-5 * rng.standard_normal(3)
+    rests, turns = campaign((1.0, -1.0), rng, M, bias)
+    white = joint(rests, turns, [], EARTH, 1e-5)
+    read = quantisation * np.array([1.0, 0.5, 2.0])  # axes differ
+    noisy = []
+    for turn_ in turns:
+        edges = read * rng.standard_normal((len(turn_.sums) + 1, 3))
+        noisy.append(replace(turn_, sums=turn_.sums + np.diff(edges, axis=0), quantisation=read))
+    fit = joint(rests, noisy, [], EARTH, 1e-5)
+    pulls = (fit.values[:12] - np.append(M.ravel(), bias)) / fit.sigma[:12]
+    assert np.abs(pulls).max() < 4
+    assert fit.p_value() > 1e-3
+    ends = np.hypot(1, SQRT2 * read.max() / (3.5e-6 * np.sqrt(38)))  # beside the white noise
+    assert (fit.sigma[:9] < 1.2 * ends * white.sigma[:9]).all()
+    assert (fit.sigma[:12] >= white.sigma[:12] * (1 - 1e-9)).all()
 
 
 @pytest.mark.parametrize("whole", [True, False])

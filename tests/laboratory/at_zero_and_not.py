@@ -118,6 +118,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     ),
     "accel_flicker": ({"instability_micro_g": 0}, {"instability_micro_g": 10}),
     "gyro_flicker": ({"instability_deg_h": 0}, {"instability_deg_h": 1}),
+    "gyro_angle_noise": ({"q_arcsec": 0}, {"q_arcsec": 1}),
     "gyro_saturation": ({"limit_deg_s": [300] * 3}, {"limit_deg_s": [30] * 3}),
     "gyro_low_pass": ({"time_constant_ms": ZERO}, {"time_constant_ms": [20, 0, 0]}),
     "gyro_latency": ({"lag_ms": 0}, {"lag_ms": 2}),

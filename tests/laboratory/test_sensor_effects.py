@@ -484,6 +484,19 @@ def test_flicker_has_a_level_allan_deviation(ideal: Callable[..., Document]) -> 
         assert allan == pytest.approx(0.664 * 2, rel=0.15), samples
 
 
+def test_noise_of_the_angle_does_not_add_up(performed: Performed) -> None:
+    """The angle from any sample to any later one is off by √2 Q, over one sample or over many."""
+    move = rest(seconds=100)
+    noisy, ideal = (
+        performed(move, effects=each).truth["still"].noisy.gyro
+        for each in ({"gyro_angle_noise": {"q_arcsec": 2}}, {})
+    )
+    off = np.degrees(noisy - ideal) * 3600
+    for samples in (1, 10, 1000):
+        change = off[samples:] - off[:-samples]
+        assert change.std() == pytest.approx(2 * sqrt(2), rel=0.04), samples
+
+
 def test_the_noise_of_a_scale_factor_goes_with_the_rate(performed: Performed) -> None:
     """200 ppm√s of 40 °/s in samples of 10 ms: 0.08 °/s; of half the rate half as much."""
     effects = {"gyro_rate_noise": {"relative_ppm_sqrt_s": [0, 0, 200]}}

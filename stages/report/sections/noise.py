@@ -80,10 +80,10 @@ SECTION = outline.Section(
         "Points are the data with their 1-σ interval, lines the sum of the fitted terms; from left "
         "to right quantisation falls with slope −1, white noise (random walk of angle or velocity) "
         "with −½, bias instability is flat, a random walk of the bias rises with +½, a ramp with "
-        "+1. Every σ of this report rests on white noise as each manoeuvre has it, on bias "
-        "instability and random walk where they are certain (p < 0.1 %), and on the rounding of "
-        "counts that are coarse beside it; of the data sheet, dashed, the bias instability is used "
-        "as far as the rests leave it open, and nothing else."
+        "+1. Every σ of this report rests on white noise as each manoeuvre has it, on "
+        "quantisation, bias instability and random walk where they are certain (p < 0.1 %), and on "
+        "the rounding of counts that are coarse beside it; of the data sheet, dashed, the bias "
+        "instability is used as far as the rests leave it open, and nothing else."
     ),
     (
         "allan",
