@@ -303,14 +303,14 @@ for stage, makes in STAGES.items():
         resources:
             **needs(stage),
         params:
-            stage=stage,
+            command=f"python -m stages {stage}",
             settings=settings(stage),
             files=files(stage, **PATHS.get(stage, {})),
             code=code(stage),
         message:
             f"{{wildcards.campaign}}: {makes}"
         shell:  # by params, for it is read when the job runs, and the loop is over
-            "python -m stages {params.stage} data/derived/{wildcards.campaign:q}"
+            "{params.command} data/derived/{wildcards.campaign:q}"
             " --settings {params.settings:q} {params.files:q} 2> {log:q}"
 
 
