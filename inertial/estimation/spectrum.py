@@ -81,7 +81,7 @@ def in_band(values: Array, rate: float, band: tuple[float, float]) -> tuple[Arra
     first = min(int(np.searchsorted(frequency, band[0])), max(len(frequency) - MIN_BAND_BINS, 1))
     after = int(np.searchsorted(frequency, band[1], side="right"))
     inside = slice(first, max(after, first + MIN_BAND_BINS))
-    return frequency[inside], density[inside]
+    return frequency[inside].copy(), density[inside].copy()  # a view would keep all of them
 
 
 def detrended(values: Array) -> Array:

@@ -162,7 +162,7 @@ def _read(
     levels_seen: list[Array] = []
     for log, record, values, continues in parts:
         changes = np.minimum(changes, [smallest_step(channel) for channel in values.T])
-        levels_seen.append(values[0])
+        levels_seen.append(values[0].copy())  # a view would keep the whole piece
         step = clock[log].duration
         number += not continues
         for row in quiet:
