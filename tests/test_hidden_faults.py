@@ -158,6 +158,33 @@ def test_a_reading_off_once_a_second_is_named_with_its_phase(sigma):
     assert set(masks["finding"]) == {found.id} and len(masks) == found.count
 
 
+def gated(limit: float) -> Fault:
+    return {"gate": {"log": "all", "channel": "gyro_z", "limit_rad_s": limit}}
+
+
+@pytest.mark.parametrize("limit", [pytest.param(0.09, marks=pytest.mark.slow), 0.07, 3e-3])
+def test_zeros_below_a_threshold_are_one_cause_in_all_logs(limit):
+    """Four ramps pass 0.07 rad/s with 40 readings; turns about x and y are read as 5 mrad/s."""
+    results, recording = hide([gated(limit)])
+    (found,) = findings(results).itertuples()
+    assert (found.cause, found.sensor, found.axis) == ("zero_below_threshold", "gyro", "z")
+    told = results["quality/channel_statistics"].query("sensor == 'gyro' and axis == 'z'")
+    np.testing.assert_allclose(told["threshold"], limit, rtol=0.15)  # 7 mrad/s a sample
+    masks = results["quality/masks"]
+    assert masks["censored"].all()
+    for one in recording.spoiled:
+        own = masks[masks["log"] == one.log]
+        inside = (own["from_record"] <= one.first) & (own["to_record"] >= one.after)
+        assert inside.any()
+
+
+def test_a_threshold_that_few_readings_pass_is_an_axis_that_stands_still_or_a_firmware():
+    """With six readings of the ramps at 0.01 rad/s between it and twice as much."""
+    results, _ = hide([gated(0.01)])
+    still = findings(results).set_index("cause").loc["dead_axis"]
+    assert "firmware writes below a threshold" in still["action"]
+
+
 COMBINATIONS = [
     (["gap", "spike", "dead_axis"], [lost(20), spikes(0.1), dead(100)]),
     (["bias_jump", "duplicate", "oscillation"], [step(10 * GYRO), repeated(5), oscillation(0.01)]),

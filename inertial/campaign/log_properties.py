@@ -146,6 +146,7 @@ class ChannelStatistics:
 
     def table(self) -> pd.DataFrame:
         """The table of these statistics, a row for each channel of each log."""
+        thresholds = _thresholds([*self._by_log.values()])
         frames = [
             pd.DataFrame(
                 {
@@ -158,7 +159,7 @@ class ChannelStatistics:
                     "held_share": np.repeat(channels.held_share(), 3),
                     "smallest": channels.smallest,
                     "largest": channels.largest,
-                    "threshold": channels.thresholds(),
+                    "threshold": thresholds,
                 }
             )
             for log, channels in self._by_log.items()
@@ -235,24 +236,6 @@ class _Channels:
             nearest = np.sort(np.append(self.nearest[i][k], least))
             self.nearest[i][k] = nearest[:MIN_BESIDE_THRESHOLD]
 
-    def thresholds(self) -> Array:
-        """Below which each channel reads 0, (6,), NaN where it reads what is small.
-
-        A channel that goes through zero either way, for which 0 is no value of a lost reading.
-        """
-        found = np.full(6, np.nan)
-        for i, (above, below) in enumerate(self.nearest):
-            if self.zeros[i] < MIN_BESIDE_THRESHOLD or not len(above) or not len(below):
-                continue
-            least = min(above[0], below[0])
-            beside = sum(np.count_nonzero(own < 2 * least) for own in (above, below))
-            beyond = max(-self.smallest[i], self.largest[i]) > MIN_BEYOND_THRESHOLD * least
-            either = max(above[0], below[0]) < 2 * least
-            fine = least > MIN_THRESHOLD_STEPS * self.resolution[i]
-            if beside >= MIN_BESIDE_THRESHOLD and beyond and either and fine:
-                found[i] = least
-        return found
-
     def _add_held(
         self, sensor: int, steps: Sequence[Array], at_zero: Sequence[Booleans]
     ) -> Booleans | None:
@@ -297,6 +280,30 @@ class _Channels:
         noise = np.where(held, self.noise_of_new, self.noise)
         recorded = np.isfinite(noise).any(axis=0)
         return np.where(recorded, np.nanmedian(np.where(recorded, noise, 0.0), axis=0), np.nan)
+
+
+def _thresholds(logs: Sequence[_Channels]) -> Array:
+    """Below which each channel reads 0 in all logs, (6,), NaN where it reads what is small.
+
+    A channel that goes through zero either way, for which 0 is no value of a lost reading.
+    """
+    found = np.full(6, np.nan)
+    for i in range(6):
+        above, below = (
+            np.sort(np.concatenate([log.nearest[i][k] for log in logs])) for k in (0, 1)
+        )
+        zeros = sum(log.zeros[i] for log in logs)
+        if zeros < MIN_BESIDE_THRESHOLD or not len(above) or not len(below):
+            continue
+        least = min(above[0], below[0])
+        beside = sum(np.count_nonzero(own < 2 * least) for own in (above, below))
+        either = max(above[0], below[0]) < 2 * least
+        beyond = max(max(-log.smallest[i], log.largest[i]) for log in logs)
+        step = min(log.resolution[i] for log in logs if log.smallest[i] < log.largest[i])
+        far = beyond > MIN_BEYOND_THRESHOLD * least and least > MIN_THRESHOLD_STEPS * step
+        if beside >= MIN_BESIDE_THRESHOLD and either and far:
+            found[i] = least
+    return found
 
 
 def _held_in_windows(new: Booleans) -> Array:

@@ -143,7 +143,12 @@ CHANNEL_STATISTICS = Table(
         ),
         optional("smallest", DOUBLE, AS_CHANNEL, "smallest reading", BODY),
         optional("largest", DOUBLE, AS_CHANNEL, "largest reading", BODY),
-        optional("threshold", DOUBLE, AS_CHANNEL, "smaller readings are exactly 0, if they are"),
+        optional(
+            "threshold",
+            DOUBLE,
+            AS_CHANNEL,
+            "of all logs: smaller readings are exactly 0, if they are",
+        ),
     ),
 )
 

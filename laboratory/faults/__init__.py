@@ -12,6 +12,7 @@ from laboratory.faults.drop import Drop
 from laboratory.faults.exchange import Exchange
 from laboratory.faults.fault import Fault
 from laboratory.faults.flip import Flip
+from laboratory.faults.gate import Gate
 from laboratory.faults.glitch import Glitch
 from laboratory.faults.jitter import Jitter
 from laboratory.faults.kill import Kill
@@ -35,6 +36,7 @@ FAULTS: Final[dict[str, type[Fault]]] = {
         Spikes,
         Glitch,
         Clip,
+        Gate,
         Kill,
         Step,
         Oscillate,
