@@ -298,8 +298,8 @@ def _thresholds(logs: Sequence[_Channels]) -> Array:
         least = min(above[0], below[0])
         beside = sum(np.count_nonzero(own < 2 * least) for own in (above, below))
         either = max(above[0], below[0]) < 2 * least
-        beyond = max(max(-log.smallest[i], log.largest[i]) for log in logs)
-        step = min(log.resolution[i] for log in logs if log.smallest[i] < log.largest[i])
+        beyond = np.nanmax([[-log.smallest[i], log.largest[i]] for log in logs])
+        step = np.fmin.reduce([log.resolution[i] for log in logs])  # NaN where none changes
         far = beyond > MIN_BEYOND_THRESHOLD * least and least > MIN_THRESHOLD_STEPS * step
         if beside >= MIN_BESIDE_THRESHOLD and either and far:
             found[i] = least

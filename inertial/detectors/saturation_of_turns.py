@@ -26,7 +26,7 @@ class SaturationOfTurns(PlanDetector):
     """
 
     name = "saturation"
-    source = "a rate range before the converter, as of MEMS gyros at a high supply of the drive"
+    source = "IEEE Std 528-2019, 'input limits'"
     unit = "°/s"
     severity = 3
     sensor = "gyro"

@@ -78,6 +78,23 @@ def test_zeros_of_another_kind_are_no_threshold(values):
     assert np.isnan(thresholds(values)).all()
 
 
+def test_logs_in_which_nothing_changes_or_that_lack_a_sensor_show_none():
+    of_logs = ChannelStatistics()
+    constant = {"up": 1.0, "down": -1.0, "nothing": 0.0}
+    for log, value in constant.items():
+        of_logs.add(SimpleNamespace(log=log, readings=np.full((99, 6), value)))
+    assert of_logs.table()["threshold"].isna().all()
+
+
+def test_a_log_without_gyros_hides_no_threshold_of_another():
+    alone = np.hstack([np.ones((99, 3)), np.full((99, 3), np.nan)])
+    of_logs = ChannelStatistics()
+    for log, readings in (("static", alone), ("turns", set_to_zero(turns()))):
+        of_logs.add(SimpleNamespace(log=log, readings=readings))
+    found = of_logs.table().query("log == 'turns' and sensor == 'gyro'")["threshold"]
+    np.testing.assert_allclose(found, THRESHOLD, rtol=0.1)
+
+
 def test_what_is_small_is_masked_and_no_axis_is_dead():
     """With none of the readings that noise lifts over the threshold: their mean is above it."""
     values = set_to_zero(turns())
