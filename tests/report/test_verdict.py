@@ -105,6 +105,10 @@ def test_a_class_names_its_members_in_title_and_certainty() -> None:
     made["cause_members"]["probability"] = [0.75, 0.25]
     shares = answers(cards(made)["criticism/accel_quadratic"])["How sure"]
     assert "quadratic term with probability 75 %, lever arm with probability 25 %" in shares
+    made["cause_members"]["probability"] = [1.0, 5e-14]
+    sure = answers(cards(made)["criticism/accel_quadratic"])["How sure"]
+    assert sure.startswith("By far the likeliest of a class")
+    assert "with probability > 99.9 %, lever arm with probability < 0.1 %" in sure
 
 
 def test_the_worst_comes_first_and_what_is_harmless_last() -> None:

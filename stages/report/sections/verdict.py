@@ -86,6 +86,9 @@ CURED = {
 }
 HARMLESS = _("harmless")
 MIN_MOVE, MAX_MOVE = 0.01, 1000.0  # sigma: between these the number says something
+# Of a member of a class, between which its probability says something: beyond, it rests on the
+# number of its parameters
+MIN_PROBABILITY, MAX_PROBABILITY = 0.001, 0.999
 MOST_CONSEQUENCES = 8
 
 
@@ -157,19 +160,16 @@ def _sentence(text: str) -> str:
 def _sure(tables: Tables, row: Record) -> str:
     """The degree of certainty, the members of a class, and the significance."""
     words = NOT_TESTABLE if row["cause"] == JUMP_NOT_TESTABLE else SURE[row["verdict"]]
-    own = members(tables, row)
-    shares = [one["probability"] is not None for one in own]
-    if own:
-        each = [
-            _(
-                "{member} with probability {percent} %",
-                member=in_words(one["member"]),
-                percent=significant(100 * one["probability"], 2),
-            )
-            if all(shares)
-            else in_words(one["member"])
-            for one in own
-        ]
+    if own := members(tables, row):
+        shares = [one["probability"] for one in own]
+        each = [in_words(one["member"]) for one in own]
+        if None not in shares:
+            if max(shares) > MAX_PROBABILITY:
+                words = _("by far the likeliest of a class of which each can show much the same")
+            each = [
+                _("{member} with probability {percent} %", member=member, percent=_percent(share))
+                for member, share in zip(each, shares, strict=True)
+            ]
         words += ": " + ", ".join(each)
     numbers = []
     if row["snr"] is not None:
@@ -177,6 +177,14 @@ def _sure(tables: Tables, row: Record) -> str:
     if row["p_value"] is not None:
         numbers.append(p_is(row["p_value"]))
     return _sentence(words + (f" ({', '.join(numbers)})" if numbers else ""))
+
+
+def _percent(share: float) -> str:
+    if share < MIN_PROBABILITY:
+        return f"< {significant(100 * MIN_PROBABILITY, 1)}"
+    if share > MAX_PROBABILITY:
+        return f"> {significant(100 * MAX_PROBABILITY, 3)}"
+    return significant(100 * share, 2)
 
 
 def _effect_on_result(row: Record) -> str:
