@@ -1,7 +1,5 @@
 """What else differs between two campaigns: IMU, place, conditions, manoeuvres, settings, code."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping
 from math import degrees

@@ -1,7 +1,5 @@
 """The comparison of two campaigns as a page, and as plain text for the screen."""
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Iterator, Sequence
 from pathlib import Path

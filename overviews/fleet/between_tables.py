@@ -1,7 +1,5 @@
 """What tables do to all gyros, or all accelerometers, alike, as rows of the fleet's tables."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import hypot

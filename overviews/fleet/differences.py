@@ -1,7 +1,5 @@
 """Differences between tables in sentences."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 from inertial.campaign.records import Row

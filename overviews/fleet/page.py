@@ -1,7 +1,5 @@
 """The page of a fleet: effects with what shares them, populations, outliers, campaigns."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, groupby
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What the campaigns of a fleet show together, as rows of its tables."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import atanh, sqrt

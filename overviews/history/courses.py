@@ -1,7 +1,5 @@
 """The courses of the parameters over the dates, with what the next calibration may find."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from datetime import date, timedelta
 

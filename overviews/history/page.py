@@ -1,7 +1,5 @@
 """The page of a serial number: its calibrations, every parameter over them, and the next one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The page of all campaigns: IMUs with their due dates, campaigns with verdict, cause, sigmas."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ matplotlib's own DejaVu Sans, which the page brings along, and neither a date no
 a random identifier enters.
 """
 
-from __future__ import annotations
-
 import io
 import re
 import warnings
@@ -14,10 +12,12 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
@@ -28,11 +28,6 @@ from inertial.text.messages import language
 from inertial.text.typography import typeset
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
 from stages.report.tables import Record
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-
 
 Array = NDArray[np.float64]
 

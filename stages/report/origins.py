@@ -1,7 +1,5 @@
 """Where a number comes from: the stage and method that estimated it, its settings, its data."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from inertial.campaign.log_lines import LogLines, RecordRange, UsedPhase, lines_of, used_phases

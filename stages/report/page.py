@@ -4,8 +4,6 @@ The letters are matplotlib's DejaVu fonts, cut to those that are used. They trav
 page, so that it looks the same on every machine, without network and installed fonts.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import re

@@ -1,7 +1,5 @@
 """The result that counts, the parameters by every method, and how a parameter is written."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 

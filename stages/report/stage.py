@@ -1,7 +1,5 @@
 """The calibration report: the result, how sure it is, and where every number comes from."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count
 from string import ascii_uppercase

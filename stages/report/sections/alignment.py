@@ -1,7 +1,5 @@
 """Alignment at rest, and how far the attitude errs afterwards, with rotation and without."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 

@@ -1,7 +1,5 @@
 """Parameters against averaging time: as more of each rest is used, and epoch by epoch."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot, sqrt
 

@@ -1,7 +1,5 @@
 """What a calibration rests on: the manoeuvres and bytes recorded, known quantities, provenance."""
 
-from __future__ import annotations
-
 import json
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

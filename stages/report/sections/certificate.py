@@ -1,7 +1,5 @@
 """The certificate on pages one and two, with the items of ISO/IEC 17025:2017, 7.8."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 

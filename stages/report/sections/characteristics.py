@@ -1,7 +1,5 @@
 """The figures by which the standards describe a sensor, over the inputs that were applied."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from inertial.sensors import SINGULAR

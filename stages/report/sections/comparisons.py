@@ -1,7 +1,5 @@
 """Results against each other; the one that counts against published and earlier ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import floor, hypot, log10
 

@@ -1,7 +1,5 @@
 """Effects in sentences: how certain the name is, what an effect in the model improves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, pi

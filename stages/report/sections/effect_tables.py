@@ -1,7 +1,5 @@
 """Effects as tables: their parameters, the extended result, detection limits, structure tests."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 

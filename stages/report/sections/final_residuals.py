@@ -1,7 +1,5 @@
 """Residuals of the result that counts: by manoeuvre with 3 σ, and as a histogram."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What shows each cause: pictures, and the findings that are behind it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """Annex: what ideal sensors would read at the site of the campaign."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from inertial.text import numbers, units

@@ -1,7 +1,5 @@
 """What the calibration is worth in free inertial navigation, and what limits it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import sqrt
 

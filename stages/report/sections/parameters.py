@@ -1,7 +1,5 @@
 """The parameters by result and method, each with its sigma, and what could not be determined."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby

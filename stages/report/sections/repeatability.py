@@ -1,7 +1,5 @@
 """How well the calibrations of this IMU repeat, its jumps, and what the next may find."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from inertial.sensors import SINGULAR

@@ -1,7 +1,5 @@
 """Residuals by manoeuvre: of the joint model, without and with effects, and their structure."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Studies: what a longer rest, another window or a larger angle changes, and the table."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import degrees
 

@@ -1,7 +1,5 @@
 """Studies of the table: its encoder against the gyros, and its angle against time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from matplotlib.axes import Axes

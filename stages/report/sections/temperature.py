@@ -1,7 +1,5 @@
 """Parameters as functions of the temperature: curves with sigma, knots, range, warm-up."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
