@@ -27,6 +27,16 @@ class From:
         return f"{self.stage}/{self.file or self.table.name}.parquet"
 
 
+def of_stage(stage: str, *contracts: Table) -> dict[str, From]:
+    """Tables of an earlier stage, each by its own name."""
+    return {table.name: From(stage, table) for table in contracts}
+
+
+def of_stages(stages: Sequence[str], *contracts: Table) -> dict[str, From]:
+    """The same tables of several stages, each by the stage and its own name."""
+    return {f"{stage}_{table.name}": From(stage, table) for stage in stages for table in contracts}
+
+
 @dataclass(frozen=True)
 class Declared:
     """A stage by the tables that it reads, by argument, and those that it writes, by file name.
