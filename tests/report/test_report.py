@@ -17,7 +17,7 @@ import pytest
 
 from inertial.tables import CERTIFICATE
 from inertial.text.units import DEGREES_PER_HOUR
-from stages.report import origins
+from stages.report import results
 from stages.report.outline import Heading, Paragraph, Part, Section, Table
 from stages.report.sections import (
     certificate,
@@ -744,7 +744,7 @@ def write(tables: dict[str, Any], derived: Path) -> None:
 def test_a_section_reads_no_table_but_those_it_declares() -> None:
     made = synthetic.campaign(logs=("z-backward.asc",))
     read = {name for section in (*EVIDENCE, *ANNEXES) for name in section.reads}
-    assert read | set(origins.READS) == set(STAGE.reads)
+    assert read | set(results.READS) == set(STAGE.reads)
     for section in (*EVIDENCE, *ANNEXES):
         own = {name: made[name] for name in (*section.reads, "provenance")}
         assert list(section.parts(synthetic.tables_of(own))), section.key
