@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inertial import tables
 from inertial.tables.table import Table
 
 if TYPE_CHECKING:
@@ -65,3 +66,33 @@ def read_declared(derived: Path, sources: Mapping[str, From]) -> dict[str, pd.Da
         where one is missing, damaged, or of another version
     """
     return {name: source.table.read(derived / source.place) for name, source in sources.items()}
+
+
+# ---- What stages that work on the mounts of a campaign read alike: it, and its joint result.
+
+ESTIMATING = ("accelerometer", "gyroscope")
+RECORDED = {
+    **of_stage("segment", tables.BLOCKS, tables.MANOEUVRES, tables.PERFORMED),
+    "levels": From("noise", tables.LEVELS),
+    "known": From("plan", tables.KNOWN),
+    "clocks": From("decode", tables.CLOCKS),
+}
+ESTIMATED = of_stages(ESTIMATING, tables.PARAMETERS, tables.POSITIONS, tables.SWITCH_ONS)
+# With what the fits say of scatter, random walks and switch-ons.
+FITTED = ESTIMATED | of_stages(ESTIMATING, tables.FIT)
+
+# Both stages of estimation, each of its sensor.
+ESTIMATION = Declared(
+    reads=RECORDED,
+    writes={
+        "parameters": tables.PARAMETERS,
+        "covariance": tables.COVARIANCE,
+        "fit": tables.FIT,
+        "fit_manoeuvres": tables.FIT_MANOEUVRES,
+        "averaging": tables.AVERAGING,
+        "positions": tables.POSITIONS,
+        "switch_ons": tables.SWITCH_ONS,
+        "wanted": tables.WANTED,
+        "findings": tables.FINDINGS,
+    },
+)

@@ -1,8 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import ESTIMATING
-from inertial.tables.declared import Declared, From, of_stage, of_stages
+from inertial.tables.declared import ESTIMATING, Declared, From, of_stage, of_stages
 
 DECLARED = Declared(
     reads={

@@ -1,8 +1,15 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import ESTIMATING, FITTED, RECORDED
-from inertial.tables.declared import Declared, From, of_stage, of_stages
+from inertial.tables.declared import (
+    ESTIMATING,
+    FITTED,
+    RECORDED,
+    Declared,
+    From,
+    of_stage,
+    of_stages,
+)
 
 DECLARED = Declared(
     reads={

@@ -1,8 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import ESTIMATED, RECORDED
-from inertial.tables.declared import Declared, From, of_stage
+from inertial.tables.declared import ESTIMATED, RECORDED, Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
