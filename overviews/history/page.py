@@ -321,7 +321,7 @@ def figures(imu: Imu) -> Iterator[outline.Figure]:
                 key = (sensor, name)
                 _panel(panel, name, series[name], unit, forecast.get(key), jumps.get(key))
 
-            drawn = grid(there, draw, HEIGHT, MARGINS, "", f"{sensor}-{kind}-{imu.simulated:d}")
+            drawn = grid(there, draw, HEIGHT, "", f"{sensor}-{kind}-{imu.simulated:d}", MARGINS)
             what = _(
                 "{kind} of the {sensor}, {unit}",
                 kind=KIND[kind],

@@ -155,13 +155,16 @@ def side_by_side(
     return figure, axes
 
 
+GRID_MARGINS = Margins(left=0.45, across=0.5, down=0.3)
+
+
 def grid(
     names: Sequence[str],
     draw: Callable[[Axes, str], None],
     height: float,
-    margins: Margins,
     label: str,
     key: str,
+    margins: Margins = GRID_MARGINS,
 ) -> str:
     """A panel for each name, three in a row, `label` below the lowest of each column."""
     lines = -(-len(names) // GRID_COLUMNS)
@@ -183,6 +186,13 @@ def band(
 ) -> None:
     """The area from `low` to `high`."""
     panel.fill_between(x, low, high, color=colour, **{"linewidth": 0.5} | look)
+
+
+def around(
+    panel: Axes, x: Sequence[float] | Array, value: Array, sigma: Array, colour: str, alpha: float
+) -> None:
+    """The area within ± σ of a value."""
+    band(panel, x, value - sigma, value + sigma, colour, alpha=alpha, linewidth=0)
 
 
 def ticks(panel: Axes, y: int, x: int | None = None) -> None:

@@ -46,10 +46,14 @@ def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
     """Every difference in units of its sigma with the verdict in words, the weightiest first."""
     rows = _weightiest_first(tables, tables.rows("differences"))
     yield from _judged(rows, _effects_of(tables, rows))
+    static_scale = any(
+        row["kind"] == "static_against_turns" and kind_of(row["quantity"]) == "scale"
+        for row in rows
+    )
     yield _differences(
         rows,
         _("None: no parameter was estimated in two ways that could be compared."),
-        STATIC_SCALE if any(map(_of_static_scale, rows)) else "",
+        STATIC_SCALE if static_scale else "",
     )
     yield outline.Heading(_("Published values against the final result"))
     published = _weightiest_first(tables, tables.rows("published_differences"))
@@ -132,11 +136,6 @@ def _weightiest_first(tables: Tables, rows: Sequence[Record]) -> list[Record]:
     return sorted(rows, key=order)
 
 
-def _of_static_scale(row: Record) -> bool:
-    """Whether a scale factor of a gyro is compared that static positions alone gave."""
-    return row["kind"] == "static_against_turns" and kind_of(row["quantity"]) == "scale"
-
-
 def _fencepost(row: Record) -> bool:
     """Whether it says why published values are wrong, rather than that they are."""
     return bool(row["kind"] == "fencepost")
@@ -177,12 +176,10 @@ def _differences(rows: Sequence[Record], none: str, remark: str = "") -> outline
 
 def _not_compared(rows: Sequence[Record]) -> str:
     """What has two values that were not compared, by the reason."""
-    by_reason: dict[str, list[str]] = {}
-    for row in rows:
-        what, _colon, reason = str(row["sentence"]).partition(": ")
-        by_reason.setdefault(reason, []).append(what)
+    said = (str(row["sentence"]).partition(": ") for row in rows)
     each = (
-        f"{capital(reason).rstrip('.')}: {', '.join(own)}." for reason, own in by_reason.items()
+        f"{capital(reason).rstrip('.')}: {', '.join(what for what, _colon, _reason in own)}."
+        for reason, own in grouped(said, lambda parts: parts[2]).items()
     )
     return _("Not compared. {each}", each=numbers.shortened(" ".join(each), 900)) if rows else ""
 

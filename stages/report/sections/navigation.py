@@ -42,11 +42,7 @@ Key = tuple[str, str, float | None]  # mount, motion, seconds; none: turns
 def parts(tables: Tables) -> Iterator[outline.Part]:
     """A table of the errors, the longest course as a figure, a table of the shares."""
     rows = tables.rows("navigation_errors")
-    groups: dict[Key, list[Record]] = {}
-    for row in rows:
-        if row["predicted"] is not None:
-            seconds = None if row["motion"] == "turn" else row["seconds"]
-            groups.setdefault((row["mount"], row["motion"], seconds), []).append(row)
+    groups = grouped((row for row in rows if row["predicted"] is not None), _key)
     if not groups:
         yield from (outline.Paragraph(f"{row['reason']}.") for row in rows[:1] if row["reason"])
         return
@@ -127,6 +123,10 @@ def _errors(groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
     )
 
 
+def _key(row: Record) -> Key:
+    return row["mount"], row["motion"], None if row["motion"] == "turn" else row["seconds"]
+
+
 def _order(key: Key) -> tuple[str, str, float]:
     return key[0], key[1], key[2] or 0.0
 
@@ -199,8 +199,7 @@ def _drawn(rows: Sequence[Record], key: str) -> str:
         panel.set_ylim(bottom=0)
         drawing.ticks(panel, 4)
 
-    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
-    return drawing.grid(list(QUANTITIES), panel_of, 1.05, margins, _("Time, s"), key)
+    return drawing.grid(list(QUANTITIES), panel_of, 1.05, _("Time, s"), key)
 
 
 def _shares(tables: Tables, groups: Mapping[Key, Sequence[Record]]) -> outline.Table:

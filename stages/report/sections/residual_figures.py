@@ -29,7 +29,7 @@ from stages.report.outline import (
 )
 from stages.report.sections.effect_sentences import FITTED, HELD_OUT, about_effect
 from stages.report.sections.effect_tables import SMOOTH, TESTS, channel, place
-from stages.report.tables import Record, Tables, gains, once
+from stages.report.tables import Record, Tables, arrays, gains, once
 
 UNIT = {"gyro": DEGREES_PER_HOUR, "accel": MICRO_G}
 MOST_NAMES = 24  # manoeuvres whose names have room below each other
@@ -272,10 +272,7 @@ def _draw_structure(row: Record, points: Sequence[Record], key: str) -> str:
     name, unit, zero = ALONG[row["kind"]]
     size = UNIT[sensor]
     points = sorted(points, key=lambda point: float(point["x"]))
-    x, residual, sigma, structure = (
-        np.array([point[column] for point in points], np.float64)
-        for column in ("x", "residual", "sigma", "structure")
-    )
+    x, residual, sigma, structure = arrays(points, "x", "residual", "sigma", "structure")
     x = (x - zero) / unit.size
     with drawing.style():
         drawn, [panel] = drawing.side_by_side([1.0], 1.25, drawing.Margins(top=0.12, left=0.6))

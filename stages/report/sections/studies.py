@@ -6,6 +6,7 @@ from math import degrees
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.campaign.records import grouped
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.units import DEGREES_PER_HOUR, PPM
@@ -140,10 +141,7 @@ def _wholes(tables: Tables) -> dict[Pair, Record]:
 
 
 def _by_time(rows: Sequence[Record], wholes: Wholes, by: str = "set rate") -> By:
-    by_pair: By = {}
-    for row in rows:
-        if row["by"] == by and _pair(row) in wholes:
-            by_pair.setdefault(_pair(row), []).append(row)
+    by_pair = grouped((row for row in rows if row["by"] == by and _pair(row) in wholes), _pair)
     return dict(list(by_pair.items())[:MOST_PAIRS])
 
 
@@ -216,7 +214,7 @@ def _panel(
     axis, unit = whole_turn["axis"], UNIT[key]
     value, sigma = (column / unit.size for column in arrays(rows, key, SIGMA[key]))
     colour = drawing.AXIS_COLOUR.get(axis, drawing.INK)
-    drawing.band(panel, place, value - sigma, value + sigma, colour, alpha=0.2, linewidth=0)
+    drawing.around(panel, place, value, sigma, colour, 0.2)
     panel.plot(place, value, color=colour, linewidth=0.8)
     drawing.ticks(panel, 4)
     panel.yaxis.get_major_formatter().set_useOffset(False)  # type: ignore[attr-defined]

@@ -113,6 +113,7 @@ def _row(row: Record) -> Row:
 # ---- time and angle
 
 MOST_TURNS = 9
+MARGINS = drawing.Margins(left=0.45, across=0.4, down=0.3)
 COLOUR = "#0072b2"
 RAMPS = ((_("Spin-up"), "spin-up"), (_("Spin-down"), "spin-down"))
 SET = (
@@ -154,7 +155,6 @@ def time_and_angle(tables: Tables) -> Iterator[Part]:
 
     names = list(turns)[:MOST_TURNS]
     rest = more(len(turns) - len(names), _(" in the table time_angle"))
-    margins = drawing.Margins(left=0.45, across=0.4, down=0.3)
     yield Figure(
         _(
             "Angle of the table less that of the set trapezoid, which is laid through the "
@@ -163,7 +163,7 @@ def time_and_angle(tables: Tables) -> Iterator[Part]:
             "faster than the line resolves. {rest}",
             rest=rest,
         ).rstrip(),
-        drawing.grid(names, draw, 0.95, margins, _("Time, s"), "time-angle"),
+        drawing.grid(names, draw, 0.95, _("Time, s"), "time-angle", MARGINS),
         _("The table's angle against time, less the trapezoid that was set."),
     )
     yield from map(Paragraph, _sentences(turns, tables.rows("motions")))
@@ -178,8 +178,8 @@ def _angle(panel: Axes, name: str, rows: Sequence[Record]) -> None:
         values / SECONDS_OF_ARC.size for values in (angle - set_angle, sigma, swing)
     )
     panel.axhline(0, color=drawing.INK, linewidth=0.6)
-    drawing.band(panel, time, -sigma, sigma, drawing.QUIET, alpha=0.25, linewidth=0)
-    drawing.band(panel, time, off - swing, off + swing, COLOUR, alpha=0.3, linewidth=0)
+    drawing.around(panel, time, 0 * sigma, sigma, drawing.QUIET, 0.25)
+    drawing.around(panel, time, off, swing, COLOUR, 0.3)
     panel.plot(time, off, color=COLOUR, linewidth=0.7)
     panel.set_title(numbers.shortened(name, 30), pad=3)
     drawing.ticks(panel, 4)
