@@ -25,10 +25,9 @@ REPEATABILITY = table(
         "component",
         "within: rms of the calibrations' sigmas, shared errors out; repeatability: standard"
         " deviation of all values (JJF 1535-2015, 3.2; IEEE Std 528); day, mounting, switch_on:"
-        " what values that share one have in common, beyond within; with + what the"
-        " calibrations do not tell apart; power_cycle: between the switch-ons of this campaign,"
-        " beside the noise; stability: of means over 10 s in the longest rest of"
-        " this campaign (JJF 1535-2015, 3.3)",
+        " what values that share one have in common, beyond within; with + what the calibrations do"
+        " not tell apart; power_cycle: between the switch-ons of this campaign, beside the noise;"
+        " stability: of means over 10 s in the longest rest of this campaign (JJF 1535-2015, 3.3)",
     ),
     integer("calibrations", "values, one for each calibration and mount"),
     integer("groups", "days, mountings or switch-ons; of stability: means"),

@@ -54,9 +54,8 @@ SECTION = outline.Section(
         "only, relative to its final value; the joint fit is that without effects."
     ),
     _(
-        "The band is value ± σ. Where it narrows about zero, longer static positions "
-        "would still help; where the line leaves the band and stays outside, something "
-        "drifts."
+        "The band is value ± σ. Where it narrows about zero, longer static positions would still "
+        "help; where the line leaves the band and stays outside, something drifts."
     ),
     tuple(f"{stage}_{table}" for stage in SENSOR_OF for table in ("averaging", "wanted")),
     parts,
@@ -250,11 +249,9 @@ def _scatter(rows: Sequence[Record]) -> outline.Figure:
         drawn = drawing.svg(figure, "spreads")
     return outline.Figure(
         _(
-            "Standard deviation of the values by single epochs over what white noise "
-            "gives, against "
-            "the length of an epoch; band: ± 2 σ of chance alone. A rise with the "
-            "length is drift; a "
-            "fall to 1 is an oscillation that averages out."
+            "Standard deviation of the values by single epochs over what white noise gives, "
+            "against the length of an epoch; band: ± 2 σ of chance alone. A rise with the length "
+            "is drift; a fall to 1 is an oscillation that averages out."
         ),
         drawn,
         _("Scatter of single epochs in units of that of white noise."),

@@ -59,9 +59,8 @@ RECORDED = Section(
     _("Every manoeuvre of the plan, and what its log contains of it."),
     _(
         "✓ recorded from rest to rest as planned, or its rests found where their attitudes are "
-        "unknown, of which the plan states no time; ◐ incomplete; ✗ not found. Angle and "
-        "rate are about the axis of the turn, right-hand rule; the angle is a sum of "
-        "increments."
+        "unknown, of which the plan states no time; ◐ incomplete; ✗ not found. Angle and rate are "
+        "about the axis of the turn, right-hand rule; the angle is a sum of increments."
     ),
     ("manoeuvres", "performed"),
     recorded_parts,
@@ -274,10 +273,9 @@ KNOWN = Section(
     _("Known quantities"),
     _("The quantities that were given to the estimation."),
     _(
-        "The σ of the parameters include those of these quantities; one without σ is "
-        "taken as exact. "
-        "Stated: by the campaign file; computed: from what is stated; assumed: by the pipeline, "
-        "in the absence of a statement."
+        "The σ of the parameters include those of these quantities; one without σ is taken as "
+        "exact. Stated: by the campaign file; computed: from what is stated; assumed: by the "
+        "pipeline, in the absence of a statement."
     ),
     ("known",),
     known_parts,
@@ -353,9 +351,8 @@ PROVENANCE = Section(
     _("Provenance"),
     _("The inputs, and per stage its settings and the hash of its code."),
     _(
-        "The same inputs, settings and code give this report again, byte for byte. A "
-        "hash is SHA-256; that of a stage covers every module it uses and the lock file "
-        "of the libraries."
+        "The same inputs, settings and code give this report again, byte for byte. A hash is "
+        "SHA-256; that of a stage covers every module it uses and the lock file of the libraries."
     ),
     ("inputs",),
     provenance_parts,

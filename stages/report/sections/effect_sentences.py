@@ -229,9 +229,8 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
             )
             yield (
                 _(
-                    "The residuals of the {gyro} fall from {before} {unit} to {after} "
-                    "{unit} rms in "
-                    "held-out turns.",
+                    "The residuals of the {gyro} fall from {before} {unit} to {after} {unit} rms "
+                    "in held-out turns.",
                     gyro=gyro,
                     before=before,
                     unit=shortened(unit.name, 20),

@@ -405,9 +405,8 @@ def _tests(rows: Sequence[Record], where: str) -> outline.Table:
     """The tests, the significant ones first."""
     return outline.Table(
         _(
-            "{count_} tests for structure in the residuals of the model with the "
-            "identified effects{where}. By chance one of them is significant in "
-            "one campaign of a hundred.",
+            "{count_} tests for structure in the residuals of the model with the identified "
+            "effects{where}. By chance one of them is significant in one campaign of a hundred.",
             count_=_count(rows),
             where=where,
         ),

@@ -71,11 +71,10 @@ SECTION = outline.Section(
     ),
     _(
         "Errors are root mean squares over the manoeuvres, of all three axes; that of the attitude "
-        "is its drift since the start. Predicted is what "
-        "the covariance of the result and the noise lead to; in brackets its part by the "
-        "parameters alone, which were estimated from these same data, so that the error found "
-        "may be smaller. Where the campaign states power cycles, it contains that a bias differs "
-        "from switch-on to switch-on."
+        "is its drift since the start. Predicted is what the covariance of the result and the "
+        "noise lead to; in brackets its part by the parameters alone, which were estimated from "
+        "these same data, so that the error found may be smaller. Where the campaign states power "
+        "cycles, it contains that a bias differs from switch-on to switch-on."
     ),
     ("navigation_errors", "navigation_courses", "navigation_shares"),
     parts,

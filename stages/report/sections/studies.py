@@ -90,9 +90,8 @@ SECTION = Section(
     "studies",
     _("Studies"),
     _(
-        "The parameters by single epochs and running means of static positions, by a "
-        "window that slides through the turns and by one that grows, and the angle of "
-        "the table against time."
+        "The parameters by single epochs and running means of static positions, by a window that "
+        "slides through the turns and by one that grows, and the angle of the table against time."
     ),
     _(
         "A window of N samples lies between N + 1 edges and lasts N sample intervals: "
@@ -160,10 +159,9 @@ def _sliding(slides: By, wholes: Wholes) -> Figure:
     count = numbers.whole(next(iter(slides.values()))[0]["samples"])
     return Figure(
         _(
-            "Windows of 180° by time ({count_} samples at the set rate) against "
-            "where they start: over the steady part, its first second close up, and "
-            "the bias. Coloured band: ± σ of noise and oscillation, without the "
-            "table's speed; grey: the whole turn ± σ. {ALIAS}",
+            "Windows of 180° by time ({count_} samples at the set rate) against where they start: "
+            "over the steady part, its first second close up, and the bias. Coloured band: ± σ of "
+            "noise and oscillation, without the table's speed; grey: the whole turn ± σ. {ALIAS}",
             count_=count,
             ALIAS=ALIAS,
         ),
@@ -240,11 +238,10 @@ def _on_place(rows: Sequence[Record], whole_turn: Record) -> str:
         )
     )
     return _(
-        "{axis} gyro, {whole_turn}: with the start of the 180° the scale factor varies "
-        "between {least} and {most} ppm, {rms} ppm rms about its mean, where noise and "
-        "the remainder of an oscillation over a window of this length allow {allowed} "
-        "ppm. Its mean differs by {off} ppm from that of the whole turn, whose σ is "
-        "{sigma} ppm.",
+        "{axis} gyro, {whole_turn}: with the start of the 180° the scale factor varies between "
+        "{least} and {most} ppm, {rms} ppm rms about its mean, where noise and the remainder of an "
+        "oscillation over a window of this length allow {allowed} ppm. Its mean differs by {off} "
+        "ppm from that of the whole turn, whose σ is {sigma} ppm.",
         axis=whole_turn["axis"],
         whole_turn=_names(whole_turn),
         least=least,
@@ -273,9 +270,8 @@ def _on_angle(rows: Sequence[Record], whole_turn: Record) -> str:
                 )
             )
     return _(
-        "{axis} gyro, {whole_turn}: the difference from the whole turn is "
-        "{differences}. The larger the angle, the smaller the effect of noise and of an "
-        "oscillation that is cut.",
+        "{axis} gyro, {whole_turn}: the difference from the whole turn is {differences}. The "
+        "larger the angle, the smaller the effect of noise and of an oscillation that is cut.",
         axis=whole_turn["axis"],
         whole_turn=_names(whole_turn),
         differences="; ".join(differences),
@@ -304,10 +300,9 @@ def _middles(tables: Tables) -> Table:
         [_middle(row, wholes[_pair(row)]) for row in tables.rows("middles")],
         _("None: no pair of whole turns forward and backward was recorded."),
         _(
-            "By time, σ includes that of the table's rate; the last column includes "
-            "only noise and the "
-            "remainder of an oscillation, so a difference far beyond it is due to "
-            "the table's speed."
+            "By time, σ includes that of the table's rate; the last column includes only noise and "
+            "the remainder of an oscillation, so a difference far beyond it is due to the table's "
+            "speed."
         ),
     )
 

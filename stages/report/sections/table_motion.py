@@ -123,11 +123,10 @@ SET = (
 )
 LIMITS = (
     _(
-        "Use: the function gives the motion of the table between its ends, so its real "
-        "speed and its ramps, for other gyros, for other turns and for marks at fixed "
-        "angles. With the speed from turns about other axes the middle 180° become as "
-        "good as their noise, whatever the set rate, if the table keeps the same speed "
-        "in all turns."
+        "Use: the function gives the motion of the table between its ends, so its real speed and "
+        "its ramps, for other gyros, for other turns and for marks at fixed angles. With the speed "
+        "from turns about other axes the middle 180° become as good as their noise, whatever the "
+        "set rate, if the table keeps the same speed in all turns."
     ),
     _(
         "Limits: with the angle of its own turn a window gives the scale factor of the "
