@@ -78,7 +78,7 @@ def page(report: Report) -> str:
     letters = ALWAYS.union(plain)
     if report.language == LOCALES["zh"]:
         letters -= FULL_WIDTH_QUOTES  # as wide as a character, hence of the Chinese font
-    fonts = _subsets("".join(sorted(letters)))
+    fonts = _fonts("".join(sorted(letters)))
     whole = template.render(report=report, style=style, script=script, fonts=fonts)
     head, main, body = whole.partition("<main>")
     # The indices of symbols in sentences are below the line, as in tables.
@@ -102,7 +102,7 @@ class Font:
 
 
 @lru_cache(maxsize=4)
-def _subsets(letters: str) -> list[Font]:
+def _fonts(letters: str) -> list[Font]:
     """Each font with these letters only."""
     folder = Path(mpl.get_data_path()) / "fonts" / "ttf"
     fonts = []
