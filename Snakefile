@@ -338,7 +338,7 @@ rule index:
     message:
         "all campaigns on one page"
     shell:
-        "python -m overviews.index {params.campaigns:q} --settings {params.settings:q} 2> {log:q}"
+        "python -m overviews index {params.campaigns:q} --settings {params.settings:q} 2> {log:q}"
 
 
 rule histories:
@@ -365,7 +365,7 @@ rule history_page:
     message:
         "{wildcards.serial}: the history of an IMU"
     shell:
-        "python -m overviews.history {wildcards.serial:q} --settings {params.settings:q} 2> {log:q}"
+        "python -m overviews history {wildcards.serial:q} --settings {params.settings:q} 2> {log:q}"
 
 
 rule compare:
@@ -387,7 +387,7 @@ rule compare:
     message:
         "{params.both[0]} and {params.both[1]} beside each other"
     shell:
-        "python -m overviews.compare {params.both:q} --settings {params.settings:q} 2> {log:q}"
+        "python -m overviews compare {params.both:q} --settings {params.settings:q} 2> {log:q}"
 
 
 rule fleet:
@@ -409,5 +409,5 @@ rule fleet:
     message:
         "{wildcards.fleet}: what the campaigns of a fleet show together"
     shell:
-        "python -m overviews.fleet {wildcards.fleet:q} {params.campaigns:q}"
+        "python -m overviews fleet {wildcards.fleet:q} {params.campaigns:q}"
         " --settings {params.settings:q} 2> {log:q}"

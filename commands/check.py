@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from commands import run
 from inertial import tables
 from inertial.campaign.competition import ExplainedFindings, circumstances, compete
 from inertial.campaign.hypotheses import MODEL, UNKNOWN_STRUCTURE, Findings, hypotheses
@@ -454,6 +455,4 @@ def _wrapped(text: str, indent: str = "") -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.stderr.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.exit(main())
+    run(main)

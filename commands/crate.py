@@ -24,6 +24,7 @@ import pyarrow.parquet as pq
 from rocrate.model.contextentity import ContextEntity
 from rocrate.rocrate import ROCrate
 
+from commands import run
 from inertial import tables
 from inertial.campaign.records import Row, rows_of
 from inertial.tables.code import code_of, hash_of
@@ -347,6 +348,4 @@ def _version() -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.stderr.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.exit(main())
+    run(main)

@@ -7,8 +7,6 @@ The browser is Debian's headless Chromium, by its own protocol over two pipes: C
 Protocol 1.3 (`--remote-debugging-pipe`).
 """
 
-from __future__ import annotations
-
 import argparse
 import base64
 import io

@@ -1,7 +1,5 @@
 """The tables of a campaign as the sections of its report get them, and what they are made from."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 

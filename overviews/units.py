@@ -1,7 +1,5 @@
 """The calibrations of an IMU out of the archive, and what they show together."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property

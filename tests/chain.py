@@ -16,7 +16,7 @@ from ruamel.yaml import YAML
 import laboratory
 import stages
 from inertial.campaign.campaign_data import CampaignData, CampaignTables, campaigns_of
-from inertial.tables.campaign_inputs import FITTED, RECORDED
+from inertial.tables.declared import FITTED, RECORDED
 from inertial.tables.stage import Stage
 
 ROOT = Path(__file__).parent.parent

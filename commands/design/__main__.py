@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 from ruamel.yaml import YAML
 
+from commands import run
 from commands.design import for_campaign, printed
 from commands.design.for_campaign import (
     Splitting,
@@ -167,6 +168,4 @@ def _full_scale(derived: Path) -> float:
 
 
 if __name__ == "__main__":
-    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.stderr.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.exit(main())
+    run(main)

@@ -38,8 +38,7 @@ from inertial.model_selection.evidence import searched_effect
 from inertial.model_selection.splitting import MIN_SEPARATION, Rivals
 from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
-from inertial.tables.campaign_inputs import FITTED, RECORDED
-from inertial.tables.declared import read_declared
+from inertial.tables.declared import FITTED, RECORDED, read_declared
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.parameters import STAGES

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from commands import run
 from commands.draft.campaign_file import campaign_file
 from commands.draft.header import names_of_logs, without_clock
 from commands.draft.manoeuvres import plan_of
@@ -120,6 +121,4 @@ def _check(logs: Sequence[Path], rate: float | None) -> None:
 
 
 if __name__ == "__main__":
-    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.stderr.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.exit(main())
+    run(main)

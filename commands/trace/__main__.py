@@ -12,6 +12,7 @@ import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
+from commands import run
 from commands.trace.provenance import Campaign
 from commands.trace.steps import Trace, trace
 from inertial.tables.code import ROOT
@@ -66,6 +67,4 @@ def _printable(text: str) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.stderr.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]
-    sys.exit(main())
+    run(main)

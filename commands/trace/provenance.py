@@ -113,9 +113,8 @@ class Provenance:
             if (known.settings, known.code, known.inputs) != (settings, code, inputs):
                 known.broken.append(
                     _(
-                        "{path} and {tables} are of different runs of {stage}: settings, "
-                        "code or inputs "
-                        "differ.",
+                        "{path} and {tables} are of different runs of {stage}: settings, code or "
+                        "inputs differ.",
                         path=path,
                         tables=self._campaign.path(known.tables[0]),
                         stage=stage,
@@ -196,8 +195,7 @@ class Provenance:
                 broken.append(
                     _(
                         "{table} has changed since {path} was made from it: SHA-256 was "
-                        "{recorded}, is "
-                        "{current}.",
+                        "{recorded}, is {current}.",
                         table=self._campaign.path(table),
                         path=path,
                         recorded=recorded,

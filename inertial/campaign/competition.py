@@ -1,7 +1,5 @@
 """The competition of findings: which are causes, and which are consequences of these."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace

@@ -15,7 +15,7 @@ from inertial.estimation.gyroscope_observations import EARTH_UP
 from inertial.estimation.least_squares import Estimate
 from inertial.estimation.scatter_and_random_walk import ScatterFit, SwitchOns
 from inertial.tables import AXES, BODY, OF_TRIAD
-from inertial.tables.campaign_inputs import ESTIMATION
+from inertial.tables.declared import ESTIMATION
 from inertial.text.messages import _
 from inertial.text.parameters import (
     CROSS,

@@ -3,8 +3,6 @@
 One table, read from top to bottom: a cause, what it makes other stages report, and where it does.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from inertial.campaign.hypotheses import (

@@ -1,7 +1,5 @@
 """Every finding of the earlier stages as a hypothesis about the same recording."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property

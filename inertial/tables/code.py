@@ -30,7 +30,7 @@ def code_of(stage: str, package: str = "stages") -> list[Path]:
     """
     reached: set[Path] = set()
     own = f"{package}.{stage}"
-    waiting = [package, own, f"{package}.__main__", f"{own}.__main__", f"{own}.stage"]
+    waiting = [package, own, f"{package}.__main__", f"{own}.page", f"{own}.stage"]
     seen: set[str] = set()
     while waiting:
         if (module := waiting.pop()) not in seen:

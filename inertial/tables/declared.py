@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from inertial import tables
 from inertial.tables.table import Table
 
 if TYPE_CHECKING:
@@ -25,6 +26,16 @@ class From:
     def place(self) -> str:
         """Where it lies in the folder of a campaign."""
         return f"{self.stage}/{self.file or self.table.name}.parquet"
+
+
+def of_stage(stage: str, *contracts: Table) -> dict[str, From]:
+    """Tables of an earlier stage, each by its own name."""
+    return {table.name: From(stage, table) for table in contracts}
+
+
+def of_stages(stages: Sequence[str], *contracts: Table) -> dict[str, From]:
+    """The same tables of several stages, each by the stage and its own name."""
+    return {f"{stage}_{table.name}": From(stage, table) for stage in stages for table in contracts}
 
 
 @dataclass(frozen=True)
@@ -55,3 +66,33 @@ def read_declared(derived: Path, sources: Mapping[str, From]) -> dict[str, pd.Da
         where one is missing, damaged, or of another version
     """
     return {name: source.table.read(derived / source.place) for name, source in sources.items()}
+
+
+# ---- What stages that work on the mounts of a campaign read alike: it, and its joint result.
+
+ESTIMATING = ("accelerometer", "gyroscope")
+RECORDED = {
+    **of_stage("segment", tables.BLOCKS, tables.MANOEUVRES, tables.PERFORMED),
+    "levels": From("noise", tables.LEVELS),
+    "known": From("plan", tables.KNOWN),
+    "clocks": From("decode", tables.CLOCKS),
+}
+ESTIMATED = of_stages(ESTIMATING, tables.PARAMETERS, tables.POSITIONS, tables.SWITCH_ONS)
+# With what the fits say of scatter, random walks and switch-ons.
+FITTED = ESTIMATED | of_stages(ESTIMATING, tables.FIT)
+
+# Both stages of estimation, each of its sensor.
+ESTIMATION = Declared(
+    reads=RECORDED,
+    writes={
+        "parameters": tables.PARAMETERS,
+        "covariance": tables.COVARIANCE,
+        "fit": tables.FIT,
+        "fit_manoeuvres": tables.FIT_MANOEUVRES,
+        "averaging": tables.AVERAGING,
+        "positions": tables.POSITIONS,
+        "switch_ons": tables.SWITCH_ONS,
+        "wanted": tables.WANTED,
+        "findings": tables.FINDINGS,
+    },
+)

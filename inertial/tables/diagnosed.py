@@ -2,308 +2,257 @@
 
 from inertial.tables.table import (
     BODY,
-    DOUBLE,
-    INTEGER,
     MOUNT,
-    SENTENCE,
-    TEXT,
-    TRUTH,
-    Column,
-    Table,
-    optional,
+    integer,
+    number,
+    optional_integer,
+    optional_number,
+    optional_sentence,
+    optional_text,
+    sentence,
+    table,
+    text,
+    truth,
 )
 
-SENSOR = optional("sensor", TEXT, "", "accel or gyro, where one is concerned")
-AXIS = optional("axis", TEXT, "", BODY)
+SENSOR = optional_text("sensor", "accel or gyro, where one is concerned")
+AXIS = optional_text("axis", BODY)
 
 # ---- Repairs: what was set right before the estimation, on which condition.
 
-REPAIRS = Table(
+REPAIRS = table(
     "repairs",
     1,
-    (
-        Column("id", TEXT, "", "name by which `accept` of the campaign file confirms it"),
-        Column(
-            "repair",
-            TEXT,
-            "",
-            "gravity, axes, signs, count_size, sense_of_table, other_way_up, exchanged_manoeuvres,"
-            " stated_rate, stated_spans, stated_marks",
-        ),
-        Column(
-            "state",
-            TEXT,
-            "",
-            "applied; confirmed: applied, and accepted in the campaign file; refused: by the"
-            " settings; rival: others explain as much, so none of them is applied",
-        ),
-        SENSOR,
-        AXIS,
-        optional("log", TEXT, "", "as in logs, where one is concerned"),
-        optional("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned"),
-        optional("value", DOUBLE, "as unit", "what is used, where it is a number"),
-        optional("sigma", DOUBLE, "as unit", "its standard deviation"),
-        optional("stated", DOUBLE, "as unit", "what the campaign states"),
-        Column("unit", TEXT, "", "unit of value, sigma and stated"),
-        optional("fitting_before", INTEGER, "1", "observations that fit the plan without it"),
-        optional("fitting_after", INTEGER, "1", "observations that fit the plan with it"),
-        optional("observations", INTEGER, "1", "observations that were compared"),
-        optional("finding", TEXT, "", "id of the finding that it removes"),
-        Column("condition", SENTENCE, "", "what must be true for it to be right, in words"),
-        Column("sentence", SENTENCE, "", "what was set right, in words"),
+    text("id", "name by which `accept` of the campaign file confirms it"),
+    text(
+        "repair",
+        "gravity, axes, signs, count_size, sense_of_table, other_way_up, exchanged_manoeuvres,"
+        " stated_rate, stated_spans, stated_marks",
     ),
+    text(
+        "state",
+        "applied; confirmed: applied, and accepted in the campaign file; refused: by the"
+        " settings; rival: others explain as much, so none of them is applied",
+    ),
+    SENSOR,
+    AXIS,
+    optional_text("log", "as in logs, where one is concerned"),
+    optional_text("manoeuvre", "as in manoeuvres, where one is concerned"),
+    optional_number("value", "as unit", "what is used, where it is a number"),
+    optional_number("sigma", "as unit", "its standard deviation"),
+    optional_number("stated", "as unit", "what the campaign states"),
+    text("unit", "unit of value, sigma and stated"),
+    optional_integer("fitting_before", "observations that fit the plan without it"),
+    optional_integer("fitting_after", "observations that fit the plan with it"),
+    optional_integer("observations", "observations that were compared"),
+    optional_text("finding", "id of the finding that it removes"),
+    sentence("condition", "what must be true for it to be right, in words"),
+    sentence("sentence", "what was set right, in words"),
 )
-CHANNEL_REPAIRS = Table(
+CHANNEL_REPAIRS = table(
     "channel_repairs",
     1,
-    (
-        Column("repair", TEXT, "", "id of an applied repair"),
-        Column("log", TEXT, "", "as in logs: whose readings it concerns"),
-        Column("sensor", TEXT, "", "accel or gyro"),
-        Column("axis", TEXT, "", "axis whose reading is set right", BODY),
-        Column("from_axis", TEXT, "", "axis under which it was recorded", BODY),
-        Column("factor", DOUBLE, "1", "by which the recorded reading is multiplied"),
-    ),
+    text("repair", "id of an applied repair"),
+    text("log", "as in logs: whose readings it concerns"),
+    text("sensor", "accel or gyro"),
+    text("axis", "axis whose reading is set right", BODY),
+    text("from_axis", "axis under which it was recorded", BODY),
+    number("factor", "1", "by which the recorded reading is multiplied"),
 )
 
 # ---- Candidates for the result of a sensor, from extension.
 
-CANDIDATES = Table(
+CANDIDATES = table(
     "candidates",
     2,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("method", TEXT, "", "method of its parameters, as in parameters of extension"),
-        Column(
-            "probability",
-            DOUBLE,
-            "1",
-            "posterior probability among the members of its class, all equal beforehand; of the"
-            " joint method that of the members which this sensor does not show",
-        ),
-        optional(
-            "drop",
-            DOUBLE,
-            "1",
-            "reduction of chi-squared of held-out manoeuvres against the joint model; none: not"
-            " cross-validated",
-        ),
-        optional(
-            "drop_without_walk",
-            DOUBLE,
-            "1",
-            "the same against the joint model without its random walk of the biases; none: it has"
-            " none",
-        ),
-        optional("snr_squared", DOUBLE, "1", "what exactly known effects would bring"),
-        optional("folds", INTEGER, "1", "number of groups of manoeuvres held out"),
-        optional("counted", INTEGER, "1", "of these, predictable from the others"),
-        optional(
-            "carried_by",
-            TEXT,
-            "",
-            "manoeuvre without which an effect of it is not detected in the others; by which"
-            " effect: candidate_effects",
-        ),
-        Column(
-            "undetermined",
-            INTEGER,
-            "1",
-            "parameters of the sensor that the joint model determines and this one does not",
-        ),
-        Column(
-            "open_form",
-            TRUTH,
-            "",
-            "whether its laws of the rate, or of the attitude, have about as many terms as the plan"
-            " has of these, so that no manoeuvre confirms their form",
-        ),
-        Column("sentence", SENTENCE, "", "the gain in words"),
+    MOUNT,
+    text("sensor", "gyro or accel"),
+    text("method", "method of its parameters, as in parameters of extension"),
+    number(
+        "probability",
+        "1",
+        "posterior probability among the members of its class, all equal beforehand; of the"
+        " joint method that of the members which this sensor does not show",
     ),
+    optional_number(
+        "drop",
+        "1",
+        "reduction of chi-squared of held-out manoeuvres against the joint model; none: not"
+        " cross-validated",
+    ),
+    optional_number(
+        "drop_without_walk",
+        "1",
+        "the same against the joint model without its random walk of the biases; none: it has none",
+    ),
+    optional_number("snr_squared", "1", "what exactly known effects would bring"),
+    optional_integer("folds", "number of groups of manoeuvres held out"),
+    optional_integer("counted", "of these, predictable from the others"),
+    optional_text(
+        "carried_by",
+        "manoeuvre without which an effect of it is not detected in the others; by which"
+        " effect: candidate_effects",
+    ),
+    integer(
+        "undetermined",
+        "parameters of the sensor that the joint model determines and this one does not",
+    ),
+    truth(
+        "open_form",
+        "whether its laws of the rate, or of the attitude, have about as many terms as the plan"
+        " has of these, so that no manoeuvre confirms their form",
+    ),
+    sentence("sentence", "the gain in words"),
 )
-CANDIDATE_EFFECTS = Table(
+CANDIDATE_EFFECTS = table(
     "candidate_effects",
     2,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("method", TEXT, "", "as in candidates"),
-        Column("effect", TEXT, "", "effect of the catalogue in the model of this candidate"),
-        Column("finding", TEXT, "", "id of the finding of criticism that names it or its class"),
-        optional(
-            "carried_by",
-            TEXT,
-            "",
-            "manoeuvre without which this effect is not detected in the others, so that these do"
-            " not show it, or contradict it; none: no single manoeuvre carries it",
-        ),
+    MOUNT,
+    text("sensor", "gyro or accel"),
+    text("method", "as in candidates"),
+    text("effect", "effect of the catalogue in the model of this candidate"),
+    text("finding", "id of the finding of criticism that names it or its class"),
+    optional_text(
+        "carried_by",
+        "manoeuvre without which this effect is not detected in the others, so that these do"
+        " not show it, or contradict it; none: no single manoeuvre carries it",
     ),
 )
 
 # ---- The diagnosis.
 
-CAUSE = Column("cause", TEXT, "", "id of the cause")
+CAUSE = text("cause", "id of the cause")
 
-CAUSES = Table(
+CAUSES = table(
     "causes",
     2,
-    (
-        Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
-        Column("cause", TEXT, "", "what is wrong: an effect of the catalogue or a fault"),
-        Column("verdict", TEXT, "", "found, one_of_class, law, or unknown_structure"),
-        MOUNT,
-        SENSOR,
-        AXIS,
-        optional("log", TEXT, "", "as in logs, where one is concerned"),
-        optional("manoeuvre", TEXT, "", "as in manoeuvres, where one is concerned"),
-        Column("count", INTEGER, "1", "how many equal ones this stands for"),
-        Column("sentence", SENTENCE, "", "the cause in words, with how large and how sure"),
-        optional("size", DOUBLE, "as unit", "how large"),
-        optional("sigma", DOUBLE, "as unit", "standard deviation of size"),
-        Column("unit", TEXT, "", "unit of size and sigma"),
-        optional("snr", DOUBLE, "1", "signal-to-noise ratio of an effect"),
-        optional("p_value", DOUBLE, "1", "chance of it if nothing is wrong"),
-        Column(
-            "cure",
-            TEXT,
-            "",
-            "repaired, modelled, curve: of the temperature, masked, interpolated, left_out; none:"
-            " nothing removes it here",
-        ),
-        optional("gain", SENTENCE, "", "what the cure brought, in words"),
-        optional("fitting_before", INTEGER, "1", "as in repairs"),
-        optional("fitting_after", INTEGER, "1", "as in repairs"),
-        optional(
-            "held_out_drop",
-            DOUBLE,
-            "1",
-            "reduction of chi-squared of manoeuvres that the fit has not seen",
-        ),
-        optional(
-            "moves",
-            DOUBLE,
-            "1",
-            "largest shift of a parameter that it causes or caused, in sigma of that parameter;"
-            " none: not known",
-        ),
-        optional("condition", SENTENCE, "", "on which the result is valid, in words"),
-        Column("consequence", SENTENCE, "", "what it does to the result, in words"),
-        Column("done", SENTENCE, "", "what was done about it, in words"),
-        Column("action", SENTENCE, "", "what to do in the laboratory, in words"),
+    text("id", "stable identifier; no code reads anything from it"),
+    text("cause", "what is wrong: an effect of the catalogue or a fault"),
+    text("verdict", "found, one_of_class, law, or unknown_structure"),
+    MOUNT,
+    SENSOR,
+    AXIS,
+    optional_text("log", "as in logs, where one is concerned"),
+    optional_text("manoeuvre", "as in manoeuvres, where one is concerned"),
+    integer("count", "how many equal ones this stands for"),
+    sentence("sentence", "the cause in words, with how large and how sure"),
+    optional_number("size", "as unit", "how large"),
+    optional_number("sigma", "as unit", "standard deviation of size"),
+    text("unit", "unit of size and sigma"),
+    optional_number("snr", "1", "signal-to-noise ratio of an effect"),
+    optional_number("p_value", "1", "chance of it if nothing is wrong"),
+    text(
+        "cure",
+        "repaired, modelled, curve: of the temperature, masked, interpolated, left_out; none:"
+        " nothing removes it here",
     ),
+    optional_sentence("gain", "what the cure brought, in words"),
+    optional_integer("fitting_before", "as in repairs"),
+    optional_integer("fitting_after", "as in repairs"),
+    optional_number(
+        "held_out_drop", "1", "reduction of chi-squared of manoeuvres that the fit has not seen"
+    ),
+    optional_number(
+        "moves",
+        "1",
+        "largest shift of a parameter that it causes or caused, in sigma of that parameter;"
+        " none: not known",
+    ),
+    optional_sentence("condition", "on which the result is valid, in words"),
+    sentence("consequence", "what it does to the result, in words"),
+    sentence("done", "what was done about it, in words"),
+    sentence("action", "what to do in the laboratory, in words"),
 )
-CAUSE_MEMBERS = Table(
+CAUSE_MEMBERS = table(
     "cause_members",
     1,
-    (
-        Column("id", TEXT, "", "stable identifier; no code reads anything from it"),
-        CAUSE,
-        MOUNT,
-        Column("rank", INTEGER, "1", "1 for the most probable"),
-        Column("member", TEXT, "", "what it may be: an effect of the catalogue or a fault"),
-        optional("probability", DOUBLE, "1", "posterior probability, where compared"),
-    ),
+    text("id", "stable identifier; no code reads anything from it"),
+    CAUSE,
+    MOUNT,
+    integer("rank", "1 for the most probable"),
+    text("member", "what it may be: an effect of the catalogue or a fault"),
+    optional_number("probability", "1", "posterior probability, where compared"),
 )
-CONSEQUENCES = Table(
+CONSEQUENCES = table(
     "consequences",
     1,
-    (
-        Column("finding", TEXT, "", "id of a finding"),
-        Column("stage", TEXT, "", "stage whose finding it is"),
-        CAUSE,
-    ),
+    text("finding", "id of a finding"),
+    text("stage", "stage whose finding it is"),
+    CAUSE,
 )
-VERDICTS = Table(
+VERDICTS = table(
     "verdicts",
     2,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("recorded", TRUTH, "", "whether a log has readings of it"),
-        Column("verdict", TEXT, "", "usable, usable_within_limits, on_condition, or not_usable"),
-        Column("sentence", SENTENCE, "", "the verdict in words, the cause first"),
-        Column("method", TEXT, "", "method of the result: joint, extended, or mixture"),
-        optional("condition", SENTENCE, "", "on which the result is valid, in words"),
-        Column("reason", SENTENCE, "", "why this method, in words"),
-    ),
+    MOUNT,
+    text("sensor", "gyro or accel"),
+    truth("recorded", "whether a log has readings of it"),
+    text("verdict", "usable, usable_within_limits, on_condition, or not_usable"),
+    sentence("sentence", "the verdict in words, the cause first"),
+    text("method", "method of the result: joint, extended, or mixture"),
+    optional_sentence("condition", "on which the result is valid, in words"),
+    sentence("reason", "why this method, in words"),
 )
 
 # ---- Parameters as functions of temperature, by the result that counts.
 
-TEMPERATURE_CURVES = Table(
+TEMPERATURE_CURVES = table(
     "temperature_curves",
     2,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("parameter", TEXT, "", "one of the twelve, as in parameters"),
-        Column("temperature", DOUBLE, "K", "within the range of the campaign"),
-        Column("value", DOUBLE, "as unit", "of the parameter at this temperature", BODY),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation, that at T0 included"),
-        Column("unit", TEXT, "", "unit of value and sigma"),
-        Column("order", INTEGER, "1", "degree of the polynomial, or of the lines beside a knot"),
-        optional("knot", DOUBLE, "K", "where the slope changes, if it does"),
-        optional(
-            "probability",
-            DOUBLE,
-            "1",
-            "of this order or knot, where the value is the mean over several shapes",
-        ),
-        optional(
-            "relative_to",
-            DOUBLE,
-            "K",
-            "temperature from which the value is a change, where its level is not known",
-        ),
-        optional(
-            "not_separated",
-            TEXT,
-            "",
-            "what else the change may be, in words, where one attitude does not separate it",
-        ),
+    MOUNT,
+    text("sensor", "gyro or accel"),
+    text("parameter", "one of the twelve, as in parameters"),
+    number("temperature", "K", "within the range of the campaign"),
+    number("value", "as unit", "of the parameter at this temperature", BODY),
+    number("sigma", "as unit", "its standard deviation, that at T0 included"),
+    text("unit", "unit of value and sigma"),
+    integer("order", "degree of the polynomial, or of the lines beside a knot"),
+    optional_number("knot", "K", "where the slope changes, if it does"),
+    optional_number(
+        "probability", "1", "of this order or knot, where the value is the mean over several shapes"
+    ),
+    optional_number(
+        "relative_to",
+        "K",
+        "temperature from which the value is a change, where its level is not known",
+    ),
+    optional_text(
+        "not_separated",
+        "what else the change may be, in words, where one attitude does not separate it",
     ),
 )
 
-WARM_UP = Table(
+WARM_UP = table(
     "warm_up",
     1,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("axis", TEXT, "", BODY),
-        Column("band", DOUBLE, "as unit", "to either side of the last value of the bias"),
-        Column("unit", TEXT, "", "unit of band"),
-        optional(
-            "seconds",
-            DOUBLE,
-            "s",
-            "from the first sample, after which the bias stays within; none: it does not settle",
-        ),
-        optional("sigma", DOUBLE, "s", "its standard deviation; none at the start"),
-        Column("sentence", SENTENCE, "", "the same in words"),
+    MOUNT,
+    text("sensor", "gyro or accel"),
+    text("axis", BODY),
+    number("band", "as unit", "to either side of the last value of the bias"),
+    text("unit", "unit of band"),
+    optional_number(
+        "seconds",
+        "s",
+        "from the first sample, after which the bias stays within; none: it does not settle",
     ),
+    optional_number("sigma", "s", "its standard deviation; none at the start"),
+    sentence("sentence", "the same in words"),
 )
 
-DRIFT_MEANS = Table(
+DRIFT_MEANS = table(
     "drift_means",
     1,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("method", TEXT, "", "candidate whose effects drift"),
-        Column("parameter", TEXT, "", "of a drift, as in its table of parameters"),
-        Column("of", TEXT, "", "parameter of the sensor that drifts"),
-        Column("mean", DOUBLE, "of/parameter", "change of `of` on average over the recording"),
-    ),
+    MOUNT,
+    text("sensor", "gyro or accel"),
+    text("method", "candidate whose effects drift"),
+    text("parameter", "of a drift, as in its table of parameters"),
+    text("of", "parameter of the sensor that drifts"),
+    number("mean", "of/parameter", "change of `of` on average over the recording"),
 )
-PROPOSED = Table(
+PROPOSED = table(
     "proposed",
     1,
-    (
-        MOUNT,
-        Column("effect", TEXT, "", "the law, as in effects"),
-        Column("file", TEXT, "", "name of its file in extension/proposed"),
-        Column("text", TEXT, "", "the file: an effect in the form of the catalogue"),
-    ),
+    MOUNT,
+    text("effect", "the law, as in effects"),
+    text("file", "name of its file in extension/proposed"),
+    text("text", "the file: an effect in the form of the catalogue"),
 )

@@ -1,197 +1,165 @@
 """What several campaigns show together: effects and what shares them, populations of types."""
 
 from inertial.tables.table import (
-    DOUBLE,
-    INTEGER,
     SENSOR,
-    SENTENCE,
-    TEXT,
-    TRUTH,
-    Column,
-    Table,
-    optional,
+    integer,
+    number,
+    optional_number,
+    optional_text,
+    sentence,
+    table,
+    text,
+    truth,
 )
 
-FINDING = Column("finding", TEXT, "", "id of the finding")
+FINDING = text("finding", "id of the finding")
 LEVELS = "type, table, imu or campaign; with + what the campaigns do not tell apart"
-TYPE = Column("instrument", TEXT, "", "name of the IMU's type")
-PARAMETER = (TYPE, SENSOR, Column("parameter", TEXT, "", "name of the parameter, such as bias_x"))
+TYPE = text("instrument", "name of the IMU's type")
+PARAMETER = (TYPE, SENSOR, text("parameter", "name of the parameter, such as bias_x"))
 
 FLEET = {
-    table.name: table
-    for table in (
-        Table(
+    each.name: each
+    for each in (
+        table(
             "campaigns",
             1,
-            (
-                Column("campaign", TEXT, "", "name of the campaign's folder"),
-                Column("mount", TEXT, "", "of the plan; empty where there is a single one"),
-                Column("type", TEXT, "", "name of the IMU's type"),
-                Column("imu", TEXT, "", "serial number; of unknown ones the campaign"),
-                Column("table", TEXT, "", "name of the table; without a name the campaign"),
-                Column("pooled", TRUTH, "", "whether it is in the numbers"),
-                Column("reason", TEXT, "", "why it is not"),
-            ),
+            text("campaign", "name of the campaign's folder"),
+            text("mount", "of the plan; empty where there is a single one"),
+            text("type", "name of the IMU's type"),
+            text("imu", "serial number; of unknown ones the campaign"),
+            text("table", "name of the table; without a name the campaign"),
+            truth("pooled", "whether it is in the numbers"),
+            text("reason", "why it is not"),
         ),
-        Table(
+        table(
             "findings",
             2,
-            (
-                FINDING,
-                Column("effect", TEXT, "", "name in the catalogue"),
-                Column("level", TEXT, "", "what shares it: type, table, imu or campaign"),
-                optional(
-                    "group",
-                    TEXT,
-                    "",
-                    "the type, table, IMU or campaign; none: each has a size of its own, or tables"
-                    " differ, see table_differences",
-                ),
-                Column("statistic", DOUBLE, "1", "reduction of chi-squared beside the others"),
-                Column("degrees", INTEGER, "1", "degrees of freedom of the statistic"),
-                Column("p_value", DOUBLE, "1", "by noise alone, the search accounted for"),
+            FINDING,
+            text("effect", "name in the catalogue"),
+            text("level", "what shares it: type, table, imu or campaign"),
+            optional_text(
+                "group",
+                "the type, table, IMU or campaign; none: each has a size of its own, or tables"
+                " differ, see table_differences",
             ),
+            number("statistic", "1", "reduction of chi-squared beside the others"),
+            integer("degrees", "degrees of freedom of the statistic"),
+            number("p_value", "1", "by noise alone, the search accounted for"),
         ),
-        Table(
+        table(
             "members",
             1,
-            (
-                FINDING,
-                Column("effect", TEXT, "", "an effect that it may be, whatever shares it"),
-                Column("probability", DOUBLE, "1", "posterior probability"),
-            ),
+            FINDING,
+            text("effect", "an effect that it may be, whatever shares it"),
+            number("probability", "1", "posterior probability"),
         ),
-        Table(
+        table(
             "sharings",
             1,
-            (
-                FINDING,
-                Column("level", TEXT, "", "type, table, imu or campaign"),
-                Column("probability", DOUBLE, "1", "that this shares the effect, posterior"),
-                Column("possible", TRUTH, "", "one of the most probable, of 95 % together"),
-            ),
+            FINDING,
+            text("level", "type, table, imu or campaign"),
+            number("probability", "1", "that this shares the effect, posterior"),
+            truth("possible", "one of the most probable, of 95 % together"),
         ),
-        Table(
+        table(
             "shares",
             1,
-            (
-                Column("effect", TEXT, "", "name in the catalogue"),
-                Column("levels", TEXT, "", LEVELS),
-                Column("share", DOUBLE, "1", "of the mean square of the effect"),
-                Column("sigma", DOUBLE, "1", "its standard deviation"),
-            ),
+            text("effect", "name in the catalogue"),
+            text("levels", LEVELS),
+            number("share", "1", "of the mean square of the effect"),
+            number("sigma", "1", "its standard deviation"),
         ),
-        Table(
+        table(
             "sizes",
             1,
-            (
-                FINDING,
-                Column("group", TEXT, "", "the type, table, IMU or campaign"),
-                Column("parameter", TEXT, "", "name within the effect"),
-                Column("value", DOUBLE, "as unit", "estimate, all findings fitted together"),
-                Column("sigma", DOUBLE, "as unit", "its standard deviation"),
-                Column("unit", TEXT, "", "unit of value and sigma, SI"),
-            ),
+            FINDING,
+            text("group", "the type, table, IMU or campaign"),
+            text("parameter", "name within the effect"),
+            number("value", "as unit", "estimate, all findings fitted together"),
+            number("sigma", "as unit", "its standard deviation"),
+            text("unit", "unit of value and sigma, SI"),
         ),
-        Table(
+        table(
             "table_differences",
             1,
-            (
-                FINDING,
-                SENSOR,
-                Column("more", SENTENCE, "", "tables on which all axes of all IMUs read more"),
-                Column("less", SENTENCE, "", "tables on which they read less"),
-                Column("value", DOUBLE, "1", "by how much, of all scale factors alike"),
-                Column("sigma", DOUBLE, "1", "its standard deviation, turn-on to turn-on in it"),
-                optional(
-                    "stated",
-                    DOUBLE,
-                    "1",
-                    "standard deviation of a difference of two such tables by what the campaigns"
-                    " state; none: not stated",
-                ),
-                Column("imus", INTEGER, "1", "IMUs that were on both sides"),
-                Column("axes", INTEGER, "1", "axes that show it"),
+            FINDING,
+            SENSOR,
+            sentence("more", "tables on which all axes of all IMUs read more"),
+            sentence("less", "tables on which they read less"),
+            number("value", "1", "by how much, of all scale factors alike"),
+            number("sigma", "1", "its standard deviation, turn-on to turn-on in it"),
+            optional_number(
+                "stated",
+                "1",
+                "standard deviation of a difference of two such tables by what the campaigns"
+                " state; none: not stated",
             ),
+            integer("imus", "IMUs that were on both sides"),
+            integer("axes", "axes that show it"),
         ),
-        Table(
+        table(
             "population",
             3,
-            (
-                *PARAMETER,
-                Column("imus", INTEGER, "1", "IMUs with a value, without outliers"),
-                Column("unit", TEXT, "", "unit of the values, SI"),
-                Column("mean", DOUBLE, "as unit", "of the type"),
-                Column(
-                    "mean_sigma",
-                    DOUBLE,
-                    "as unit",
-                    "of the Student's t that has the 68 % and 95 % intervals of the mean, averaged"
-                    " over the spreads between tables that are possible; with one table its part is"
-                    " in the mean and not in sigma",
-                ),
-                optional(
-                    "mean_degrees",
-                    DOUBLE,
-                    "1",
-                    "degrees of freedom of mean_sigma, for Student's t; none: on one table the"
-                    " differences are no larger than the sigmas, or how well they are known is not"
-                    " determined",
-                ),
-                optional(
-                    "prior_sigma",
-                    DOUBLE,
-                    "as unit",
-                    "standard deviation of a new IMU of the type about the mean, in one campaign on"
-                    " one table, beside the sigma of that campaign; none: of a single IMU",
-                ),
-                optional(
-                    "prior_degrees",
-                    DOUBLE,
-                    "1",
-                    "degrees of freedom of prior_sigma, for Student's t; none: of a single IMU, or"
-                    " the differences are no larger than the sigmas",
-                ),
+            *PARAMETER,
+            integer("imus", "IMUs with a value, without outliers"),
+            text("unit", "unit of the values, SI"),
+            number("mean", "as unit", "of the type"),
+            number(
+                "mean_sigma",
+                "as unit",
+                "of the Student's t that has the 68 % and 95 % intervals of the mean, averaged"
+                " over the spreads between tables that are possible; with one table its part is"
+                " in the mean and not in sigma",
+            ),
+            optional_number(
+                "mean_degrees",
+                "1",
+                "degrees of freedom of mean_sigma, for Student's t; none: on one table the"
+                " differences are no larger than the sigmas, or how well they are known is not"
+                " determined",
+            ),
+            optional_number(
+                "prior_sigma",
+                "as unit",
+                "standard deviation of a new IMU of the type about the mean, in one campaign on"
+                " one table, beside the sigma of that campaign; none: of a single IMU",
+            ),
+            optional_number(
+                "prior_degrees",
+                "1",
+                "degrees of freedom of prior_sigma, for Student's t; none: of a single IMU, or"
+                " the differences are no larger than the sigmas",
             ),
         ),
-        Table(
+        table(
             "spreads",
             1,
-            (
-                *PARAMETER,
-                Column("levels", TEXT, "", LEVELS),
-                Column("groups", INTEGER, "1", "number of tables, IMUs or campaigns"),
-                Column("value", DOUBLE, "as unit", "standard deviation, by restricted likelihood"),
-                optional(
-                    "sigma",
-                    DOUBLE,
-                    "as unit",
-                    "its standard deviation; none where 0 is the likeliest value",
-                ),
-                Column("unit", TEXT, "", "unit of the values, SI"),
+            *PARAMETER,
+            text("levels", LEVELS),
+            integer("groups", "number of tables, IMUs or campaigns"),
+            number("value", "as unit", "standard deviation, by restricted likelihood"),
+            optional_number(
+                "sigma", "as unit", "its standard deviation; none where 0 is the likeliest value"
             ),
+            text("unit", "unit of the values, SI"),
         ),
-        Table(
+        table(
             "correlations",
             1,
-            (
-                TYPE,
-                Column("first", TEXT, "", "sensor and parameter"),
-                Column("second", TEXT, "", "sensor and parameter"),
-                Column("correlation", DOUBLE, "1", "between the IMUs of the type"),
-                Column("sigma", DOUBLE, "1", "its standard deviation"),
-                Column("p_value", DOUBLE, "1", "if there is none, by Fisher's z"),
-            ),
+            TYPE,
+            text("first", "sensor and parameter"),
+            text("second", "sensor and parameter"),
+            number("correlation", "1", "between the IMUs of the type"),
+            number("sigma", "1", "its standard deviation"),
+            number("p_value", "1", "if there is none, by Fisher's z"),
         ),
-        Table(
+        table(
             "outliers",
             1,
-            (
-                *PARAMETER,
-                Column("imu", TEXT, "", "serial number; in no number of the population"),
-                Column("size", DOUBLE, "1", "by how much it differs from the others, in sigmas"),
-                Column("p_value", DOUBLE, "1", "of any IMU and parameter of the type"),
-            ),
+            *PARAMETER,
+            text("imu", "serial number; in no number of the population"),
+            number("size", "1", "by how much it differs from the others, in sigmas"),
+            number("p_value", "1", "of any IMU and parameter of the type"),
         ),
     )
 }

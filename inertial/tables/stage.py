@@ -6,8 +6,6 @@ It reads the tables that it declares from the folders of earlier stages in the f
 campaign, and writes its own into the folder of its name there; or documents, into `reports/`.
 """
 
-from __future__ import annotations
-
 import argparse
 import inspect
 import json

@@ -3,166 +3,137 @@
 from inertial.tables.table import (
     AXIS,
     BODY,
-    DOUBLE,
-    INTEGER,
     METHOD,
     MOUNT,
     QUANTITY,
     SENSOR,
-    SENTENCE,
-    TEXT,
-    Column,
-    Table,
-    optional,
+    integer,
+    number,
+    optional_number,
+    optional_text,
+    sentence,
+    table,
+    text,
 )
 
-EPOCHS = Table(
+EPOCHS = table(
     "epochs",
     2,
-    (
-        MOUNT,
-        SENSOR,
-        METHOD,
-        QUANTITY,
-        Column("unit", TEXT, "", "unit of the parameter, SI"),
-        Column("seconds", DOUBLE, "s", "end of the epoch, from the start of every rest"),
-        optional("single", DOUBLE, "as unit", "by this epoch alone"),
-        Column("single_sigma", DOUBLE, "as unit", "its sigma by white noise"),
-        optional("running_mean", DOUBLE, "as unit", "by all epochs up to this one"),
-        Column("running_mean_sigma", DOUBLE, "as unit", "its sigma by white noise"),
-    ),
+    MOUNT,
+    SENSOR,
+    METHOD,
+    QUANTITY,
+    text("unit", "unit of the parameter, SI"),
+    number("seconds", "s", "end of the epoch, from the start of every rest"),
+    optional_number("single", "as unit", "by this epoch alone"),
+    number("single_sigma", "as unit", "its sigma by white noise"),
+    optional_number("running_mean", "as unit", "by all epochs up to this one"),
+    number("running_mean_sigma", "as unit", "its sigma by white noise"),
 )
-SPREADS = Table(
+SPREADS = table(
     "spreads",
     2,
-    (
-        MOUNT,
-        SENSOR,
-        METHOD,
-        QUANTITY,
-        Column("unit", TEXT, "", "unit of the parameter, SI"),
-        Column("seconds", DOUBLE, "s", "length of an epoch"),
-        Column("epochs", INTEGER, "1", "how many there are"),
-        Column("single_variance", DOUBLE, "unit²", "variance of the values by single epochs"),
-        Column("running_variance", DOUBLE, "unit²", "variance of the values by running means"),
-        Column("white_variance", DOUBLE, "unit²", "of single epochs, by white noise alone"),
-    ),
+    MOUNT,
+    SENSOR,
+    METHOD,
+    QUANTITY,
+    text("unit", "unit of the parameter, SI"),
+    number("seconds", "s", "length of an epoch"),
+    integer("epochs", "how many there are"),
+    number("single_variance", "unit²", "variance of the values by single epochs"),
+    number("running_variance", "unit²", "variance of the values by running means"),
+    number("white_variance", "unit²", "of single epochs, by white noise alone"),
 )
-WINDOWS = Table(
+WINDOWS = table(
     "windows",
     2,
-    (
-        MOUNT,
-        Column("axis", TEXT, "", "gyro, and axis of both turns", BODY),
-        Column("forward", TEXT, "", "manoeuvre of the turn forward"),
-        Column("backward", TEXT, "", "manoeuvre of the turn backward"),
-        Column(
-            "by",
-            TEXT,
-            "",
-            "how the angle of the window is known: whole turn; set rate: by time; own angle: by the"
-            " time and angle of the same two turns; encoder: by that of the table; other turns: by"
-            " the speed of turns about other axes",
-        ),
-        Column("from_s", DOUBLE, "s", "start of the window, from the start of the steady part"),
-        Column("samples", INTEGER, "1", "intervals of the window"),
-        Column("angle", DOUBLE, "rad", "half of what lies between the two angles of the table"),
-        Column("scale", DOUBLE, "1", "scale factor error"),
-        Column("scale_sigma", DOUBLE, "1", "its sigma"),
-        Column("cut_sigma", DOUBLE, "1", "the part of it that differs from window to window"),
-        Column("bias", DOUBLE, "rad/s", "bias"),
-        Column("bias_sigma", DOUBLE, "rad/s", "its sigma"),
+    MOUNT,
+    text("axis", "gyro, and axis of both turns", BODY),
+    text("forward", "manoeuvre of the turn forward"),
+    text("backward", "manoeuvre of the turn backward"),
+    text(
+        "by",
+        "how the angle of the window is known: whole turn; set rate: by time; own angle: by the"
+        " time and angle of the same two turns; encoder: by that of the table; other turns: by"
+        " the speed of turns about other axes",
     ),
+    number("from_s", "s", "start of the window, from the start of the steady part"),
+    integer("samples", "intervals of the window"),
+    number("angle", "rad", "half of what lies between the two angles of the table"),
+    number("scale", "1", "scale factor error"),
+    number("scale_sigma", "1", "its sigma"),
+    number("cut_sigma", "1", "the part of it that differs from window to window"),
+    number("bias", "rad/s", "bias"),
+    number("bias_sigma", "rad/s", "its sigma"),
 )
-TIME_ANGLE = Table(
+TIME_ANGLE = table(
     "time_angle",
     1,
-    (
-        Column("manoeuvre", TEXT, "", "a turn that was recorded whole"),
-        Column("seconds", DOUBLE, "s", "since the stretch with its motion began"),
-        Column("angle", DOUBLE, "rad", "turned so far, mean over some samples about this time"),
-        Column("swing", DOUBLE, "rad", "half the range within them, what bends slowly left out"),
-        Column("sigma", DOUBLE, "rad", "of the angle; at the end that of the whole angle"),
-        optional("set_angle", DOUBLE, "rad", "of the trapezoid that was set"),
-    ),
+    text("manoeuvre", "a turn that was recorded whole"),
+    number("seconds", "s", "since the stretch with its motion began"),
+    number("angle", "rad", "turned so far, mean over some samples about this time"),
+    number("swing", "rad", "half the range within them, what bends slowly left out"),
+    number("sigma", "rad", "of the angle; at the end that of the whole angle"),
+    optional_number("set_angle", "rad", "of the trapezoid that was set"),
 )
-MOTIONS = Table(
+MOTIONS = table(
     "motions",
     1,
-    (
-        Column("manoeuvre", TEXT, "", "a turn that was recorded whole"),
-        Column(
-            "quantity",
-            TEXT,
-            "",
-            "speed; spin-up or spin-down and start, seconds, acceleration: as if it were constant",
-        ),
-        Column("value", DOUBLE, "as unit", "by time and angle"),
-        Column("sigma", DOUBLE, "as unit", "its sigma"),
-        optional("set_value", DOUBLE, "as unit", "what was set"),
-        Column("unit", TEXT, "", "unit of these"),
+    text("manoeuvre", "a turn that was recorded whole"),
+    text(
+        "quantity",
+        "speed; spin-up or spin-down and start, seconds, acceleration: as if it were constant",
     ),
+    number("value", "as unit", "by time and angle"),
+    number("sigma", "as unit", "its sigma"),
+    optional_number("set_value", "as unit", "what was set"),
+    text("unit", "unit of these"),
 )
-ENCODER = Table(
+ENCODER = table(
     "encoder",
     3,
-    (
-        MOUNT,
-        optional("manoeuvre", TEXT, "", "a turn with the angle of the encoder; none: all"),
-        Column(
-            "quantity",
-            TEXT,
-            "",
-            "scale: scale factor's error of the gyro less that of the encoder; delay of the gyro"
-            " less that of the encoder; spread: variance of that delay, 0 where both are only late;"
-            " low_pass: time constant of first order with that variance, where it is certain;"
-            " dead_time: delay less low_pass; sine, cosine: error of the encoder with its angle"
-            " times order; ripple: amplitude in the course of the encoder at the steady rate",
-        ),
-        optional("order", DOUBLE, "1", "periods in a turn; none: not periodic"),
-        Column("value", DOUBLE, "as unit", "its value"),
-        Column("sigma", DOUBLE, "as unit", "its sigma, enlarged where the residuals exceed noise"),
-        Column("unit", TEXT, "", "unit of value and sigma"),
-        optional(
-            "p_value",
-            DOUBLE,
-            "1",
-            "of a ripple, without one; of all turns, that they have the value in common",
-        ),
+    MOUNT,
+    optional_text("manoeuvre", "a turn with the angle of the encoder; none: all"),
+    text(
+        "quantity",
+        "scale: scale factor's error of the gyro less that of the encoder; delay of the gyro"
+        " less that of the encoder; spread: variance of that delay, 0 where both are only late;"
+        " low_pass: time constant of first order with that variance, where it is certain;"
+        " dead_time: delay less low_pass; sine, cosine: error of the encoder with its angle"
+        " times order; ripple: amplitude in the course of the encoder at the steady rate",
+    ),
+    optional_number("order", "1", "periods in a turn; none: not periodic"),
+    number("value", "as unit", "its value"),
+    number("sigma", "as unit", "its sigma, enlarged where the residuals exceed noise"),
+    text("unit", "unit of value and sigma"),
+    optional_number(
+        "p_value", "1", "of a ripple, without one; of all turns, that they have the value in common"
     ),
 )
-BANDWIDTHS = Table(
+BANDWIDTHS = table(
     "bandwidths",
     1,
-    (
-        Column("id", TEXT, "", "stable identifier: studies/sensor/bandwidth_axis/by"),
-        MOUNT,
-        SENSOR,
-        AXIS,
-        Column(
-            "by",
-            TEXT,
-            "",
-            "encoder: ramps of the rate against the encoder of the table, the response of the gyro"
-            " to rates; ramps: as the gyro alone reads them, response of gyro and drive together;"
-            " noise: at rest, bandwidth of its white noise and not the response to an input",
-        ),
-        optional("value", DOUBLE, "Hz", "of a first-order low pass, where it is certain"),
-        optional("sigma", DOUBLE, "Hz", "its standard deviation"),
-        optional(
-            "lower", DOUBLE, "Hz", "lower limit, one-sided 95 %; by ramps that of the gyro alone"
-        ),
-        Column("turns", INTEGER, "1", "turns, each with two ramps; 0 by noise"),
-        Column("reason", SENTENCE, "", "why there is neither a value nor a limit"),
+    text("id", "stable identifier: studies/sensor/bandwidth_axis/by"),
+    MOUNT,
+    SENSOR,
+    AXIS,
+    text(
+        "by",
+        "encoder: ramps of the rate against the encoder of the table, the response of the gyro"
+        " to rates; ramps: as the gyro alone reads them, response of gyro and drive together;"
+        " noise: at rest, bandwidth of its white noise and not the response to an input",
     ),
+    optional_number("value", "Hz", "of a first-order low pass, where it is certain"),
+    optional_number("sigma", "Hz", "its standard deviation"),
+    optional_number("lower", "Hz", "lower limit, one-sided 95 %; by ramps that of the gyro alone"),
+    integer("turns", "turns, each with two ramps; 0 by noise"),
+    sentence("reason", "why there is neither a value nor a limit"),
 )
-NOT_STUDIED = Table(
+NOT_STUDIED = table(
     "not_studied",
     2,
-    (
-        Column("study", TEXT, "", "rests, or turns"),
-        MOUNT,
-        Column("subject", SENTENCE, "", "manoeuvres or parameters, in words"),
-        Column("reason", SENTENCE, "", "why there is nothing of it"),
-    ),
+    text("study", "rests, or turns"),
+    MOUNT,
+    sentence("subject", "manoeuvres or parameters, in words"),
+    sentence("reason", "why there is nothing of it"),
 )

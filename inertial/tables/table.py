@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -47,6 +48,41 @@ def optional(
 ) -> Column:
     """A column that may be null: not known, not tested, or not applicable."""
     return Column(name, type, unit, meaning, frame, nullable=True)
+
+
+def text(name: str, meaning: str, frame: str = "", *, nullable: bool = False) -> Column:
+    """A column of texts, which have no unit."""
+    return Column(name, TEXT, "", meaning, frame, nullable)
+
+
+def sentence(name: str, meaning: str, *, nullable: bool = False) -> Column:
+    """A column of sentences for a person."""
+    return Column(name, SENTENCE, "", meaning, nullable=nullable)
+
+
+def truth(name: str, meaning: str, *, nullable: bool = False) -> Column:
+    """A column of yes or no."""
+    return Column(name, TRUTH, "", meaning, nullable=nullable)
+
+
+def integer(name: str, meaning: str, *, nullable: bool = False) -> Column:
+    """A column of counts and numbers in an order, of unit 1."""
+    return Column(name, INTEGER, "1", meaning, nullable=nullable)
+
+
+def number(
+    name: str, unit: str, meaning: str, frame: str = "", *, nullable: bool = False
+) -> Column:
+    """A column of measured or estimated numbers."""
+    return Column(name, DOUBLE, unit, meaning, frame, nullable)
+
+
+# The same where they may be null.
+optional_text = partial(text, nullable=True)
+optional_sentence = partial(sentence, nullable=True)
+optional_truth = partial(truth, nullable=True)
+optional_integer = partial(integer, nullable=True)
+optional_number = partial(number, nullable=True)
 
 
 @dataclass(frozen=True)
@@ -104,6 +140,11 @@ class Table:
         return frame
 
 
+def table(name: str, version: int, *columns: Column) -> Table:
+    """The contract with these columns."""
+    return Table(name, version, columns)
+
+
 # ---- What many tables share: types, axes, channels, and columns that come together.
 
 # Lists, for pandas takes a tuple as one name.
@@ -120,26 +161,21 @@ OF_TRIAD = "accelerometer triad"
 
 
 def vector(stem: str, unit: str, meaning: str) -> list[Column]:
-    return [optional(f"{stem}_{axis}", DOUBLE, unit, f"{meaning}, {axis}", BODY) for axis in AXES]
+    return [optional_number(f"{stem}_{axis}", unit, f"{meaning}, {axis}", BODY) for axis in AXES]
 
 
 def channels(meaning: str, *, prefix: str = "") -> list[Column]:
     return [
-        optional(f"{prefix}{channel}", DOUBLE, UNITS[channel[:-2]], f"{meaning}, {channel}", BODY)
+        optional_number(f"{prefix}{channel}", UNITS[channel[:-2]], f"{meaning}, {channel}", BODY)
         for channel in CHANNELS
     ]
 
 
-LOG = Column(
-    "log", TEXT, "", "file name; with ':' and the format's name where it is read in several"
-)
-RECORDS = (
-    Column("from_record", INTEGER, "1", "first record"),
-    Column("to_record", INTEGER, "1", "record after the last"),
-)
-SENSOR = Column("sensor", TEXT, "", "accel or gyro")
-AXIS = Column("axis", TEXT, "", "x, y or z, of the body")
+LOG = text("log", "file name; with ':' and the format's name where it is read in several")
+RECORDS = integer("from_record", "first record"), integer("to_record", "record after the last")
+SENSOR = text("sensor", "accel or gyro")
+AXIS = text("axis", "x, y or z, of the body")
 AS_CHANNEL = "m/s² of accel, rad/s of gyro"
-MOUNT = Column("mount", TEXT, "", "of the plan; empty where the campaign has a single one")
-METHOD = Column("method", TEXT, "", "method of estimation")
-QUANTITY = Column("quantity", TEXT, "", "name of the parameter, such as bias_x")
+MOUNT = text("mount", "of the plan; empty where the campaign has a single one")
+METHOD = text("method", "method of estimation")
+QUANTITY = text("quantity", "name of the parameter, such as bias_x")

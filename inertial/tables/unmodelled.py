@@ -3,365 +3,281 @@
 from inertial.tables.recorded import FINDINGS
 from inertial.tables.table import (
     BODY,
-    DOUBLE,
-    INTEGER,
     LOG,
     MOUNT,
     PHASES,
-    SENTENCE,
-    TEXT,
-    TRUTH,
-    Column,
-    Table,
     channels,
-    optional,
+    integer,
+    number,
+    optional_integer,
+    optional_number,
+    optional_sentence,
+    optional_text,
+    optional_truth,
+    sentence,
+    table,
+    text,
+    truth,
 )
 
 # ---- The simulated readings and their residuals.
 
-SIMULATED = Table(
+SIMULATED = table(
     "simulated",
     1,
-    (
-        Column("manoeuvre", TEXT, "", "a whole turn, or a rest in blocks"),
-        Column("phase", TEXT, "", PHASES),
-        LOG,
-        Column("record", INTEGER, "1", "record of the log; of a block the first"),
-        optional("time", DOUBLE, "s", "as in samples; of a block its middle"),
-        *channels("what the IMU should have read"),
-        *channels("read less simulated", prefix="residual_"),
-    ),
+    text("manoeuvre", "a whole turn, or a rest in blocks"),
+    text("phase", PHASES),
+    LOG,
+    integer("record", "record of the log; of a block the first"),
+    optional_number("time", "s", "as in samples; of a block its middle"),
+    *channels("what the IMU should have read"),
+    *channels("read less simulated", prefix="residual_"),
 )
-FIDELITY = Table(
+FIDELITY = table(
     "fidelity",
     2,
-    (
-        MOUNT,
-        Column("manoeuvre", TEXT, "", "as in manoeuvres"),
-        Column("channel", TEXT, "", "one of the six channels"),
-        Column("profile", TEXT, "", "trapezoid; as the gyros have it; or at rest"),
-        Column("residual_rms", DOUBLE, "rad/s, m/s²", "root mean square of the residuals"),
-        Column(
-            "noise_rms", DOUBLE, "rad/s, m/s²", "what white noise, and quantisation, would give"
-        ),
-        Column("samples", INTEGER, "1", "number of samples, or of blocks of a rest"),
-    ),
+    MOUNT,
+    text("manoeuvre", "as in manoeuvres"),
+    text("channel", "one of the six channels"),
+    text("profile", "trapezoid; as the gyros have it; or at rest"),
+    number("residual_rms", "rad/s, m/s²", "root mean square of the residuals"),
+    number("noise_rms", "rad/s, m/s²", "what white noise, and quantisation, would give"),
+    integer("samples", "number of samples, or of blocks of a rest"),
 )
 
 
 # ---- Unmodelled effects: findings, scores, parameters, detection limits, and structure.
 
-FINDING = optional("finding", TEXT, "", "id of the finding that names it")
+FINDING = optional_text("finding", "id of the finding that names it")
 
-EFFECT_FINDINGS = Table(
+EFFECT_FINDINGS = table(
     "effect_findings",
     5,
-    (
-        *FINDINGS.columns,
-        optional("verdict", TEXT, "", "found, one_of_class, law, unknown_structure"),
-        optional(
-            "statistic", DOUBLE, "1", "reduction of chi-squared by it beside the other causes"
-        ),
-        optional("degrees", INTEGER, "1", "degrees of freedom of the statistic"),
-        optional(
-            "threshold",
-            DOUBLE,
-            "1",
-            "the statistic from which an effect is named; none where it was not selected by it",
-        ),
-        optional("snr", DOUBLE, "1", "signal-to-noise ratio: √(statistic − degrees)"),
-        optional(
-            "moves",
-            DOUBLE,
-            "1",
-            "largest shift of a parameter by it, in sigma of that parameter, where it is known",
-        ),
-        optional(
-            "split_manoeuvre",
-            TEXT,
-            "",
-            "the further manoeuvre that best distinguishes the members of its class",
-        ),
-        optional(
-            "split_snr",
-            DOUBLE,
-            "1",
-            "signal-to-noise ratio with which that manoeuvre would distinguish them",
-        ),
-        optional(
-            "split_stated",
-            TRUTH,
-            "",
-            "whether the action states that manoeuvre, with the ratio if there is one",
-        ),
-        optional(
-            "predictor",
-            TEXT,
-            "",
-            "temperature: of means at several temperatures; none: of readings over time",
-        ),
+    *FINDINGS.columns,
+    optional_text("verdict", "found, one_of_class, law, unknown_structure"),
+    optional_number("statistic", "1", "reduction of chi-squared by it beside the other causes"),
+    optional_integer("degrees", "degrees of freedom of the statistic"),
+    optional_number(
+        "threshold",
+        "1",
+        "the statistic from which an effect is named; none where it was not selected by it",
+    ),
+    optional_number("snr", "1", "signal-to-noise ratio: √(statistic − degrees)"),
+    optional_number(
+        "moves",
+        "1",
+        "largest shift of a parameter by it, in sigma of that parameter, where it is known",
+    ),
+    optional_text(
+        "split_manoeuvre", "the further manoeuvre that best distinguishes the members of its class"
+    ),
+    optional_number(
+        "split_snr", "1", "signal-to-noise ratio with which that manoeuvre would distinguish them"
+    ),
+    optional_truth(
+        "split_stated", "whether the action states that manoeuvre, with the ratio if there is one"
+    ),
+    optional_text(
+        "predictor", "temperature: of means at several temperatures; none: of readings over time"
     ),
 )
-MEMBERS = Table(
+MEMBERS = table(
     "members",
     1,
-    (
-        Column("finding", TEXT, "", "id of the finding"),
-        MOUNT,
-        Column("rank", INTEGER, "1", "1 for the most probable effect of the class"),
-        Column("effect", TEXT, "", "name in the catalogue of an effect that it may be"),
-        optional(
-            "probability",
-            DOUBLE,
-            "1",
-            "posterior probability, every effect being equally probable beforehand; none where"
-            " probabilities were not compared",
-        ),
-        optional(
-            "captured",
-            DOUBLE,
-            "1",
-            "share of the signal of the effect of rank 1 that this one can mimic",
-        ),
+    text("finding", "id of the finding"),
+    MOUNT,
+    integer("rank", "1 for the most probable effect of the class"),
+    text("effect", "name in the catalogue of an effect that it may be"),
+    optional_number(
+        "probability",
+        "1",
+        "posterior probability, every effect being equally probable beforehand; none where"
+        " probabilities were not compared",
+    ),
+    optional_number(
+        "captured", "1", "share of the signal of the effect of rank 1 that this one can mimic"
     ),
 )
-CAUSE_POSITIONS = Table(
+CAUSE_POSITIONS = table(
     "cause_positions",
     1,
-    (
-        Column("finding", TEXT, "", "id of a finding about an effect of a single position"),
-        MOUNT,
-        Column("rank", INTEGER, "1", "1 for the most likely position"),
-        Column("position", TEXT, "", "as in manoeuvres: a position that the effect may be at"),
-        Column("statistic", DOUBLE, "1", "reduction of chi-squared by the effect at this position"),
-    ),
+    text("finding", "id of a finding about an effect of a single position"),
+    MOUNT,
+    integer("rank", "1 for the most likely position"),
+    text("position", "as in manoeuvres: a position that the effect may be at"),
+    number("statistic", "1", "reduction of chi-squared by the effect at this position"),
 )
-STRUCTURE_MANOEUVRES = Table(
+STRUCTURE_MANOEUVRES = table(
     "structure_manoeuvres",
     1,
-    (
-        Column("finding", TEXT, "", "id of a finding about a structure that few manoeuvres carry"),
-        MOUNT,
-        Column("rank", INTEGER, "1", "1 for the one that contributes most"),
-        Column("manoeuvre", TEXT, "", "as in manoeuvres: without all of them no test detects any"),
-    ),
+    text("finding", "id of a finding about a structure that few manoeuvres carry"),
+    MOUNT,
+    integer("rank", "1 for the one that contributes most"),
+    text("manoeuvre", "as in manoeuvres: without all of them no test detects any"),
 )
-DETECTION_LIMITS = Table(
+DETECTION_LIMITS = table(
     "detection_limits",
     2,
-    (
-        MOUNT,
-        Column("effect", TEXT, "", "name in the catalogue"),
-        Column("parameter", TEXT, "", "name within the effect"),
-        optional("limit", DOUBLE, "as unit", "size that is detected with 5 sigma"),
-        optional(
-            "smallest",
-            DOUBLE,
-            "as unit",
-            "the limit at that value of the scanned variable at which it is smallest",
-        ),
-        optional("largest", DOUBLE, "as unit", "and where it is largest"),
-        Column("unit", TEXT, "", "unit of the limits"),
-        optional(
-            "moves",
-            DOUBLE,
-            "1",
-            "by how many sigma an effect of the size `limit`, not named, moves a parameter at most",
-        ),
-        optional("moved_sensor", TEXT, "", "which one: its sensor, gyro or accel"),
-        optional("moved_parameter", TEXT, "", "and its name, such as bias_x"),
-        Column(
-            "reason",
-            TEXT,
-            "",
-            "visible; or why there is none: not_excited, absorbed, only_together",
-        ),
-        optional("explanation", SENTENCE, "", "why there is none, in words"),
-        optional("remark", SENTENCE, "", "what else to know of it, in words"),
-        Column("sentence", SENTENCE, "", "all of this in words"),
+    MOUNT,
+    text("effect", "name in the catalogue"),
+    text("parameter", "name within the effect"),
+    optional_number("limit", "as unit", "size that is detected with 5 sigma"),
+    optional_number(
+        "smallest",
+        "as unit",
+        "the limit at that value of the scanned variable at which it is smallest",
     ),
+    optional_number("largest", "as unit", "and where it is largest"),
+    text("unit", "unit of the limits"),
+    optional_number(
+        "moves",
+        "1",
+        "by how many sigma an effect of the size `limit`, not named, moves a parameter at most",
+    ),
+    optional_text("moved_sensor", "which one: its sensor, gyro or accel"),
+    optional_text("moved_parameter", "and its name, such as bias_x"),
+    text("reason", "visible; or why there is none: not_excited, absorbed, only_together"),
+    optional_sentence("explanation", "why there is none, in words"),
+    optional_sentence("remark", "what else to know of it, in words"),
+    sentence("sentence", "all of this in words"),
 )
-SCORES = Table(
+SCORES = table(
     "scores",
     3,
-    (
-        MOUNT,
-        Column("effect", TEXT, "", "name in the catalogue"),
-        Column("cause", SENTENCE, "", "its physical cause"),
-        Column("sought_in", TEXT, "", "blocks, spectrum, noise or quality"),
-        FINDING,
-        optional(
-            "statistic",
-            DOUBLE,
-            "1",
-            "reduction of chi-squared by it beside the named effects; none where it is not tested",
-        ),
-        optional(
-            "degrees",
-            INTEGER,
-            "1",
-            "degrees of freedom of the statistic; none where it is not tested",
-        ),
-        optional(
-            "p_value",
-            DOUBLE,
-            "1",
-            "probability of such a statistic by noise alone, all searches accounted for; none"
-            " where it is not tested",
-        ),
-        Column("named", TRUTH, "", "whether the effect is named"),
-        Column(
-            "verdict", TEXT, "", "found, one_of_class, law, unknown_structure; empty: not needed"
-        ),
-        optional("snr", DOUBLE, "1", "signal-to-noise ratio of a named effect"),
-        optional(
-            "scan_value",
-            DOUBLE,
-            "as scan_unit",
-            "value of the scanned variable at which the statistic is largest",
-        ),
-        optional("scan_unit", TEXT, "", "unit of the scanned variable"),
-        Column("sentence", SENTENCE, "", "the verdict in words"),
+    MOUNT,
+    text("effect", "name in the catalogue"),
+    sentence("cause", "its physical cause"),
+    text("sought_in", "blocks, spectrum, noise or quality"),
+    FINDING,
+    optional_number(
+        "statistic",
+        "1",
+        "reduction of chi-squared by it beside the named effects; none where it is not tested",
     ),
+    optional_integer("degrees", "degrees of freedom of the statistic; none where it is not tested"),
+    optional_number(
+        "p_value",
+        "1",
+        "probability of such a statistic by noise alone, all searches accounted for; none"
+        " where it is not tested",
+    ),
+    truth("named", "whether the effect is named"),
+    text("verdict", "found, one_of_class, law, unknown_structure; empty: not needed"),
+    optional_number("snr", "1", "signal-to-noise ratio of a named effect"),
+    optional_number(
+        "scan_value",
+        "as scan_unit",
+        "value of the scanned variable at which the statistic is largest",
+    ),
+    optional_text("scan_unit", "unit of the scanned variable"),
+    sentence("sentence", "the verdict in words"),
 )
-EFFECTS = Table(
+EFFECTS = table(
     "effects",
     3,
-    (
-        Column("id", TEXT, "", "stable identifier of a number; no code reads anything from it"),
-        MOUNT,
-        FINDING,
-        Column("effect", TEXT, "", "name in the catalogue"),
-        Column("parameter", TEXT, "", "name within the effect"),
-        optional(
-            "value",
-            DOUBLE,
-            "as unit",
-            "estimate, fitted with all named effects; of those less what they are on average too"
-            " large for having been selected by their size",
-        ),
-        optional("sigma", DOUBLE, "as unit", "its standard deviation"),
-        optional(
-            "least_squares",
-            DOUBLE,
-            "as unit",
-            "the estimate without that correction, where it is by least squares",
-        ),
-        optional("detection_limit", DOUBLE, "as unit", "size that is detected with 5 sigma"),
-        Column("unit", TEXT, "", "unit of value, sigma and detection limit"),
-        Column("meaning", SENTENCE, "", "what it is"),
+    text("id", "stable identifier of a number; no code reads anything from it"),
+    MOUNT,
+    FINDING,
+    text("effect", "name in the catalogue"),
+    text("parameter", "name within the effect"),
+    optional_number(
+        "value",
+        "as unit",
+        "estimate, fitted with all named effects; of those less what they are on average too"
+        " large for having been selected by their size",
     ),
+    optional_number("sigma", "as unit", "its standard deviation"),
+    optional_number(
+        "least_squares",
+        "as unit",
+        "the estimate without that correction, where it is by least squares",
+    ),
+    optional_number("detection_limit", "as unit", "size that is detected with 5 sigma"),
+    text("unit", "unit of value, sigma and detection limit"),
+    sentence("meaning", "what it is"),
 )
-LINES = Table(
+LINES = table(
     "lines",
     3,
-    (
-        Column("manoeuvre", TEXT, "", "as in manoeuvres"),
-        MOUNT,
-        Column("axis", TEXT, "", "gyro axis, of the case", BODY),
-        Column("frequency", DOUBLE, "Hz", "of the strongest spectral line, or an alias of it"),
-        Column("frequency_sigma", DOUBLE, "Hz", "its standard deviation"),
-        Column(
-            "amplitude",
-            DOUBLE,
-            "rad/s",
-            "of the rate, corrected for averaging over a sample interval",
-        ),
-        Column("amplitude_sigma", DOUBLE, "rad/s", "its standard deviation"),
-        Column(
-            "p_value",
-            DOUBLE,
-            "1",
-            "probability of such a peak by noise alone, the search accounted for",
-        ),
-        optional("order", DOUBLE, "1", "periods per revolution of the table"),
-        FINDING,
-        optional("effect", TEXT, "", "effect that causes it; none: not significant"),
-    ),
+    text("manoeuvre", "as in manoeuvres"),
+    MOUNT,
+    text("axis", "gyro axis, of the case", BODY),
+    number("frequency", "Hz", "of the strongest spectral line, or an alias of it"),
+    number("frequency_sigma", "Hz", "its standard deviation"),
+    number("amplitude", "rad/s", "of the rate, corrected for averaging over a sample interval"),
+    number("amplitude_sigma", "rad/s", "its standard deviation"),
+    number("p_value", "1", "probability of such a peak by noise alone, the search accounted for"),
+    optional_number("order", "1", "periods per revolution of the table"),
+    FINDING,
+    optional_text("effect", "effect that causes it; none: not significant"),
 )
-RANDOM_WALKS = Table(
+RANDOM_WALKS = table(
     "random_walks",
     1,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column(
-            "value",
-            DOUBLE,
-            "as unit",
-            "random walk of the biases beside the named effects, beyond that by noise/terms",
-        ),
-        optional("sigma", DOUBLE, "as unit", "its standard deviation, where it is known"),
-        Column("unit", TEXT, "", "rad/s/√s or m/s²/√s"),
-        Column("finding", TEXT, "", "id of the finding that reports it"),
+    MOUNT,
+    text("sensor", "gyro or accel"),
+    number(
+        "value",
+        "as unit",
+        "random walk of the biases beside the named effects, beyond that by noise/terms",
     ),
+    optional_number("sigma", "as unit", "its standard deviation, where it is known"),
+    text("unit", "rad/s/√s or m/s²/√s"),
+    text("finding", "id of the finding that reports it"),
 )
-DRIFTS_AT_REST = Table(
+DRIFTS_AT_REST = table(
     "drifts_at_rest",
     1,
-    (
-        MOUNT,
-        Column("sensor", TEXT, "", "gyro or accel, where noise/levels has a drift of its biases"),
-        Column(
-            "kept",
-            TRUTH,
-            "",
-            "whether it is in the equations; else effects are likelier or few manoeuvres show it",
-        ),
+    MOUNT,
+    text("sensor", "gyro or accel, where noise/levels has a drift of its biases"),
+    truth(
+        "kept",
+        "whether it is in the equations; else effects are likelier or few manoeuvres show it",
     ),
 )
-STRUCTURES = Table(
+STRUCTURES = table(
     "structures",
     2,
-    (
-        MOUNT,
-        Column(
-            "kind",
-            TEXT,
-            "",
-            "what the residuals are tested against: time, angle, rate, attitude, temperature, or"
-            " change in time",
-        ),
-        optional("sensor", TEXT, "", "gyro or accel, where it is clearest"),
-        optional("axis", TEXT, "", "axis where it is clearest", BODY),
-        optional(
-            "scan_value",
-            DOUBLE,
-            "as scan_unit",
-            "time of a change, frequency of an oscillation, or order of a ripple",
-        ),
-        optional("scan_unit", TEXT, "", "s, Hz, or cycles per revolution"),
-        optional(
-            "statistic",
-            DOUBLE,
-            "1",
-            "reduction of chi-squared by the functions of the test; none where it is not possible",
-        ),
-        optional("degrees", INTEGER, "1", "degrees of freedom of the statistic"),
-        optional(
-            "p_value",
-            DOUBLE,
-            "1",
-            "probability by noise alone, the search over channels and scan accounted for",
-        ),
-        Column("detected", TRUTH, "", "below the significance level that all tests share"),
+    MOUNT,
+    text(
+        "kind",
+        "what the residuals are tested against: time, angle, rate, attitude, temperature, or"
+        " change in time",
     ),
+    optional_text("sensor", "gyro or accel, where it is clearest"),
+    optional_text("axis", "axis where it is clearest", BODY),
+    optional_number(
+        "scan_value",
+        "as scan_unit",
+        "time of a change, frequency of an oscillation, or order of a ripple",
+    ),
+    optional_text("scan_unit", "s, Hz, or cycles per revolution"),
+    optional_number(
+        "statistic",
+        "1",
+        "reduction of chi-squared by the functions of the test; none where it is not possible",
+    ),
+    optional_integer("degrees", "degrees of freedom of the statistic"),
+    optional_number(
+        "p_value",
+        "1",
+        "probability by noise alone, the search over channels and scan accounted for",
+    ),
+    truth("detected", "below the significance level that all tests share"),
 )
-STRUCTURE_POINTS = Table(
+STRUCTURE_POINTS = table(
     "structure_points",
     2,
-    (
-        MOUNT,
-        Column("kind", TEXT, "", "as in structures"),
-        Column("sensor", TEXT, "", "gyro or accel"),
-        Column("axis", TEXT, "", "axis of the sensor", BODY),
-        Column("x", DOUBLE, "as x_unit", "mean of a bin of what the residuals are tested against"),
-        Column("x_unit", TEXT, "", "unit of x"),
-        Column("residual", DOUBLE, "as unit", "mean residual in the bin, all else as fitted"),
-        Column("sigma", DOUBLE, "as unit", "its standard deviation"),
-        Column("structure", DOUBLE, "as unit", "the same by the functions of the test, fitted"),
-        Column("unit", TEXT, "", "rad/s or m/s²"),
-    ),
+    MOUNT,
+    text("kind", "as in structures"),
+    text("sensor", "gyro or accel"),
+    text("axis", "axis of the sensor", BODY),
+    number("x", "as x_unit", "mean of a bin of what the residuals are tested against"),
+    text("x_unit", "unit of x"),
+    number("residual", "as unit", "mean residual in the bin, all else as fitted"),
+    number("sigma", "as unit", "its standard deviation"),
+    number("structure", "as unit", "the same by the functions of the test, fitted"),
+    text("unit", "rad/s or m/s²"),
 )
 
 
@@ -369,37 +285,31 @@ STRUCTURE_POINTS = Table(
 
 EFFECT_COLUMN = (
     MOUNT,
-    Column("effect", TEXT, "", "name in the catalogue, of an effect without a scan"),
-    Column("parameter", TEXT, "", "name within the effect"),
+    text("effect", "name in the catalogue, of an effect without a scan"),
+    text("parameter", "name within the effect"),
 )
-SCORE_VECTOR = Table(
+SCORE_VECTOR = table(
     "score_vector",
     1,
-    (
-        *EFFECT_COLUMN,
-        Column("unit", TEXT, "", "unit of the parameter, SI"),
-        Column(
-            "score",
-            DOUBLE,
-            "1/unit",
-            "b, derivative of the log-likelihood by the parameter where all effects are zero: of"
-            " all sensors, parameters and errors fitted, and named effects that are not in this"
-            " table; b ~ N(F β, F) for effects of size β",
-        ),
+    *EFFECT_COLUMN,
+    text("unit", "unit of the parameter, SI"),
+    number(
+        "score",
+        "1/unit",
+        "b, derivative of the log-likelihood by the parameter where all effects are zero: of"
+        " all sensors, parameters and errors fitted, and named effects that are not in this"
+        " table; b ~ N(F β, F) for effects of size β",
     ),
 )
-INFORMATION_MATRIX = Table(
+INFORMATION_MATRIX = table(
     "information_matrix",
     1,
-    (
-        *EFFECT_COLUMN,
-        Column("with_effect", TEXT, "", "of the column; rows and columns as in score_vector"),
-        Column("with_parameter", TEXT, "", "of the column; the upper triangle is stored"),
-        Column(
-            "information",
-            DOUBLE,
-            "1/(unit of row · unit of column)",
-            "entry of F, the Fisher information; those that are missing are zero",
-        ),
+    *EFFECT_COLUMN,
+    text("with_effect", "of the column; rows and columns as in score_vector"),
+    text("with_parameter", "of the column; the upper triangle is stored"),
+    number(
+        "information",
+        "1/(unit of row · unit of column)",
+        "entry of F, the Fisher information; those that are missing are zero",
     ),
 )

@@ -1,7 +1,5 @@
 """The names of causes and effects as they are read."""
 
-from __future__ import annotations
-
 from inertial.text.messages import _
 from inertial.text.numbers import shortened
 

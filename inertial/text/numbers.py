@@ -1,7 +1,5 @@
 """How a number is written: as many digits as its sigma allows, digits under digits."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 from math import floor, isfinite, log10

@@ -1,7 +1,5 @@
 """The units of the laboratory and of the campaign file, beside those of the SI."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

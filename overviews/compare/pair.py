@@ -1,7 +1,5 @@
 """The parameters and effects of two results, each with difference, sigma and p."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import sqrt

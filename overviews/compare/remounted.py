@@ -4,8 +4,6 @@ An IMU that is turned by θ against the case reads M exp(−θ×) · truth. So w
 of each sensor differ by may be one vector, the same in both sensors.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 

@@ -6,8 +6,6 @@ has the variance
     σ₁² + σ₂² − 2 Σ s₁ s₂ σ_e²        over the shared references, see `references`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from math import sqrt

@@ -1,13 +1,10 @@
 """What a page of a fleet reads of each campaign. It loads no library."""
 
 from inertial import tables
-from inertial.tables.declared import From
+from inertial.tables.declared import From, of_stage
 
 READ = {
-    "campaign": From("plan", tables.CAMPAIGN),
-    "inputs": From("plan", tables.INPUTS),
-    "known": From("plan", tables.KNOWN),
-    "manoeuvres": From("plan", tables.MANOEUVRES),
+    **of_stage("plan", tables.CAMPAIGN, tables.INPUTS, tables.KNOWN, tables.MANOEUVRES),
     "score": From("criticism", tables.SCORE_VECTOR),
     "information": From("criticism", tables.INFORMATION_MATRIX),
     "result": From("diagnosis", tables.PARAMETERS, "result"),

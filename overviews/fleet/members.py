@@ -1,7 +1,5 @@
 """The campaigns of a fleet: what each says of effects, and the parameters that it found."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path

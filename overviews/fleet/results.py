@@ -1,10 +1,8 @@
 """What the campaigns of a fleet show together, as rows of its tables."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from math import atanh, sqrt
+from dataclasses import dataclass, replace
+from math import atanh, hypot, sqrt
 
 import numpy as np
 
@@ -12,6 +10,7 @@ from inertial.campaign.records import Row
 from inertial.estimation.consistency import normal_p_value
 from inertial.estimation.fleet_components import LEVELS, shares
 from inertial.estimation.type_population import of_new_imu, type_population
+from inertial.model_selection.common_scale import TABLE, Comparison, TableDifference, comparisons
 from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
 from inertial.model_selection.fleet_search import (
     FleetEffect,
@@ -20,9 +19,9 @@ from inertial.model_selection.fleet_search import (
     fleet_law,
     smallest_of,
 )
-from inertial.sensors import unit_of
+from inertial.sensors import SENSORS, unit_of
 from inertial.tables.fleet import FLEET
-from overviews.fleet.between_tables import between_tables, difference_rows
+from inertial.text.messages import listed
 from overviews.fleet.members import (
     PARAMETERS,
     Member,
@@ -30,6 +29,7 @@ from overviews.fleet.members import (
     campaigns_of_type,
     evidence_of,
     of_references,
+    scale_factors_of,
 )
 
 Rows = dict[str, list[Row]]
@@ -215,3 +215,103 @@ def _levels(levels: Sequence[str]) -> str:
 
 def _place(kind: str, place: Place) -> Row:
     return {"instrument": kind, "sensor": place[0], "parameter": place[1]}
+
+
+# ---- What tables do to all gyros, or all accelerometers, alike.
+
+# What is a scale factor of all gyros alike, by how their turns were recorded.
+OF_TURNS = {"steady": "table_speed_error", "whole": "table_angle_scale"}
+REFERENCE = {"table_speed_error": "rate", "table_angle_scale": "angle", "gravity_error": "gravity"}
+OF_ACCELEROMETERS = ("gravity_error", "clock_scale")
+
+
+@dataclass(frozen=True)
+class BetweenTables:
+    """The search in one sensor; `effects`: of the catalogue, that scale all its axes alike."""
+
+    sensor: str
+    effects: tuple[str, ...]
+    comparison: Comparison
+
+    @property
+    def hypotheses(self) -> int:
+        """How many are searched."""
+        return len(self.comparison.hypotheses)
+
+
+def between_tables(members: Sequence[Member]) -> list[BetweenTables]:
+    """The tables that can be compared, for IMUs were on several of them."""
+    return [
+        BetweenTables(sensor, _scaled_alike(sensor, members, comparison), comparison)
+        for sensor in SENSORS
+        for comparison in comparisons(scale_factors_of(members, sensor))
+    ]
+
+
+def _scaled_alike(
+    sensor: str, members: Sequence[Member], comparison: Comparison
+) -> tuple[str, ...]:
+    if sensor == "accel":
+        return OF_ACCELEROMETERS
+    turns = {how for m in members if m.table in comparison.tables for how in m.references.turns}
+    return tuple(effect for how, effect in OF_TURNS.items() if how in turns)
+
+
+def difference_rows(
+    searches: Sequence[BetweenTables], members: Sequence[Member], law: FleetLaw, already: int
+) -> Iterator[tuple[str, Row]]:
+    """Rows of the tables by name; `already`: how many effects are found by other searches."""
+    for search in searches:
+        if not search.effects:
+            continue
+        for one in search.comparison.found(law.share, already):
+            already += 1
+            identifier = "/".join((search.effects[0], TABLE, *one.more, "-", *one.less))
+            yield "findings", _finding(identifier, search, one, law)
+            for effect in search.effects:
+                row: Row = {"finding": identifier, "effect": effect}
+                yield "members", row | {"probability": 1 / len(search.effects)}
+            for level, probability in one.sharings.items():
+                row = {"finding": identifier, "level": level, "probability": probability}
+                yield "sharings", row | {"possible": level in one.possible}
+            row = {
+                "finding": identifier,
+                "sensor": search.sensor,
+                "more": listed(one.more),
+                "less": listed(one.less),
+                "value": one.value,
+                "sigma": one.sigma,
+                "stated": _stated(search, one, members),
+                "imus": one.imus,
+                "axes": one.axes,
+            }
+            yield "table_differences", row
+
+
+def _finding(identifier: str, search: BetweenTables, one: TableDifference, law: FleetLaw) -> Row:
+    return {
+        "finding": identifier,
+        "effect": search.effects[0],
+        "level": TABLE,
+        "group": None,
+        "statistic": (one.value / one.sigma) ** 2,
+        "degrees": 1,
+        "p_value": law.of_any(one.chance),
+    }
+
+
+def _stated(search: BetweenTables, one: TableDifference, members: Sequence[Member]) -> float | None:
+    """Sigma of the difference by what is stated of both sides, the error of each table being one.
+
+    The largest of several statements; None where one side states nothing.
+    """
+    key = REFERENCE[search.effects[0]]
+    sides = [
+        [
+            m.references.sigmas[key]
+            for m in members
+            if m.table in side and key in m.references.sigmas
+        ]
+        for side in (one.more, one.less)
+    ]
+    return hypot(*map(max, sides)) if all(sides) else None

@@ -1,8 +1,7 @@
 """The page of all campaigns: IMUs with their due dates, campaigns with verdict, cause, sigmas."""
 
-from __future__ import annotations
-
 import json
+from argparse import Namespace
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,8 +13,10 @@ from inertial.text.messages import _, plural
 from inertial.text.parameters import PARTS
 from inertial.text.typography import capital
 from inertial.text.units import Unit, quantity
-from overviews.tables_of import RESULT, files_of, made_from
-from overviews.units import Imu
+from overviews.known import serials, with_result
+from overviews.tables_of import RESULT, files_of, made_from, tables_of
+from overviews.units import Imu, imus_of
+from stages import ORDER
 from stages.report import outline
 from stages.report.page import page
 from stages.report.sections.findings import causes, harmless, title_of
@@ -33,6 +34,32 @@ class Without:
 
     campaign: str
     said: str
+
+
+def documents(given: Namespace, code: str) -> dict[str, str]:
+    """reports/index.html, of the campaigns named."""
+    names = with_result(given.names, given.derived)
+    settings = {"tolerance": {}} | given.settings["history"]
+    html = index_page(
+        {name: tables_of(given.derived / name, RESULT) for name in names},
+        [Without(n, last_words(given.derived / n)) for n in given.names if n not in names],
+        {
+            folder: imus_of(given.archive, folder, given.derived, **settings)
+            for folder in serials(given.archive)
+        },
+        (given.derived, given.reports),
+        code,
+    )
+    return {"index.html": html}
+
+
+def last_words(derived: Path) -> str:
+    """What the first stage that failed said."""
+    for stage in ORDER:
+        log = derived / stage / "stage.log"
+        if log.is_file() and (said := log.read_text("utf-8", "replace").split()):
+            return " ".join(said)
+    return ""
 
 
 def index_page(

@@ -1,5 +1,5 @@
 """What the stage reads and writes."""
 
-from inertial.tables.campaign_inputs import ESTIMATION
+from inertial.tables.declared import ESTIMATION
 
 DECLARED = ESTIMATION

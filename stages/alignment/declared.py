@@ -1,16 +1,13 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import RECORDED
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import RECORDED, Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
         "purposes": From("plan", tables.PURPOSES),
-        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
-        "masks": From("segment", tables.MASKS),
-        "segments": From("segment", tables.SEGMENTS),
+        **of_stage("segment", tables.CHANNEL_REPAIRS, tables.MASKS, tables.SEGMENTS),
         **RECORDED,
         "result": From("diagnosis", tables.PARAMETERS, "result"),
     },

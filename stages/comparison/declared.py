@@ -1,18 +1,15 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import Declared, From, of_stage, of_stages
 
 DECLARED = Declared(
     reads={
-        "blocks": From("segment", tables.BLOCKS),
-        "manoeuvres": From("segment", tables.MANOEUVRES),
-        "performed": From("segment", tables.PERFORMED),
+        **of_stage("segment", tables.BLOCKS, tables.MANOEUVRES, tables.PERFORMED),
         "levels": From("noise", tables.LEVELS),
         "known": From("plan", tables.KNOWN),
         "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
-        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
-        "gyroscope_fit": From("gyroscope", tables.FIT),
+        **of_stages(["gyroscope"], tables.PARAMETERS, tables.FIT),
     },
     writes={
         "differences": tables.DIFFERENCES,

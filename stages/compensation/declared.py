@@ -1,20 +1,15 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import FITTED, RECORDED
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import FITTED, RECORDED, Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
-        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
-        "traces": From("segment", tables.TRACES),
+        **of_stage("segment", tables.CHANNEL_REPAIRS, tables.TRACES, tables.MASKS, tables.SEGMENTS),
         "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
-        "ranges": From("plan", tables.RANGES),
-        "masks": From("segment", tables.MASKS),
-        "segments": From("segment", tables.SEGMENTS),
+        **of_stage("plan", tables.RANGES, tables.CAMPAIGN),
         **RECORDED,
-        "campaign": From("plan", tables.CAMPAIGN),
         **FITTED,
         "extended_fit": From("extension", tables.FIT),
         "result": From("diagnosis", tables.PARAMETERS, "result"),

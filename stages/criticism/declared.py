@@ -1,8 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import FITTED, RECORDED
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import FITTED, RECORDED, Declared, From
 
 DECLARED = Declared(
     reads={

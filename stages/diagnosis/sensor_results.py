@@ -1,7 +1,5 @@
 """What counts of each sensor: the chosen result, its rivals, and what each effect moves."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

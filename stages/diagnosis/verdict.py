@@ -1,7 +1,5 @@
 """The verdict of a sensor, no better than its worst cause allows."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial

@@ -85,9 +85,8 @@ PX4 = Autopilot(
     },
     (
         _(
-            "To be loaded by QGroundControl. PX4 corrects the accelerometers as (reading - "
-            "offset) * scale and the gyros as reading - offset, each axis by itself, m/s^2 "
-            "and rad/s."
+            "To be loaded by QGroundControl. PX4 corrects the accelerometers as (reading - offset) "
+            "* scale and the gyros as reading - offset, each axis by itself, m/s^2 and rad/s."
         ),
         "",
         _("To be filled in and checked before you load it:"),

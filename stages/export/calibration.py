@@ -48,10 +48,9 @@ MAX_CONDITION = 1e6  # condition number of M; that of three good sensors is 1.01
 INSTANT = 1e-6  # s, duration of a sample that has none
 NOT_USABLE = "not_usable"
 COMPENSATED = _(
-    "The campaign says that the errors were taken out of its logs already. Its "
-    "parameters are what that first compensation has left over, not those of the "
-    "IMU, and would be wrong for its raw readings. To export a calibration, give "
-    "the raw logs."
+    "The campaign says that the errors were taken out of its logs already. Its parameters are what "
+    "that first compensation has left over, not those of the IMU, and would be wrong for its raw "
+    "readings. To export a calibration, give the raw logs."
 )
 
 

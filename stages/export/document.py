@@ -58,9 +58,8 @@ EQUATION = {
         "scale_x is M_xx − 1, cross_xy is M_xy."
     ),
     "signs": _(
-        "Specific force: the axis that points up reads +g at rest. Angular rate: "
-        "right-hand rule; it contains the earth's rate, so a corrected gyro at rest "
-        "reads that and not zero."
+        "Specific force: the axis that points up reads +g at rest. Angular rate: right-hand rule; "
+        "it contains the earth's rate, so a corrected gyro at rest reads that and not zero."
     ),
 }
 FRAMES = {

@@ -21,8 +21,6 @@ same Allan deviation at T, and a ramp R by 3 R² T / 4, of the same integral. Qu
 out: its integral does not grow with time.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt

@@ -179,10 +179,9 @@ def explanation(
         "of {rate:g} deg/s rms about and {force:g} m/s^2 rms along each axis, which changes within "
         "{correlation:g} s, and for gravity in any direction (section export of config.yaml). What "
         "is constant (bias, gravity times scale factor and cross-axis errors) is added to the "
-        "random walk of the bias, what follows the motion to the density, such that "
-        "density^2 T + walk^2 T^3 / 3 is the variance of the integral at T. A bias instability "
-        "that was measured is added to the random walk, as the one of the same Allan deviation "
-        "at T.",
+        "random walk of the bias, what follows the motion to the density, such that density^2 T + "
+        "walk^2 T^3 / 3 is the variance of the integral at T. A bias instability that was measured "
+        "is added to the random walk, as the one of the same Allan deviation at T.",
         errors=errors,
         seconds=use.seconds,
         rate=degrees(use.rate_rms),

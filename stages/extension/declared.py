@@ -1,23 +1,25 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import FITTED, RECORDED
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import (
+    ESTIMATING,
+    FITTED,
+    RECORDED,
+    Declared,
+    From,
+    of_stage,
+    of_stages,
+)
 
 DECLARED = Declared(
     reads={
         "simulated": From("simulation", tables.SIMULATED),
         "criticism_findings": From("criticism", tables.EFFECT_FINDINGS, "findings"),
-        "members": From("criticism", tables.MEMBERS),
-        "effects": From("criticism", tables.EFFECTS),
-        "structure_manoeuvres": From("criticism", tables.STRUCTURE_MANOEUVRES),
-        "cause_positions": From("criticism", tables.CAUSE_POSITIONS),
-        "random_walks": From("criticism", tables.RANDOM_WALKS),
-        "drifts_at_rest": From("criticism", tables.DRIFTS_AT_REST),
+        **of_stage("criticism", tables.MEMBERS, tables.EFFECTS, tables.STRUCTURE_MANOEUVRES),
+        **of_stage("criticism", tables.CAUSE_POSITIONS, tables.RANDOM_WALKS, tables.DRIFTS_AT_REST),
         **RECORDED,
         **FITTED,
-        "accelerometer_fit_manoeuvres": From("accelerometer", tables.FIT_MANOEUVRES),
-        "gyroscope_fit_manoeuvres": From("gyroscope", tables.FIT_MANOEUVRES),
+        **of_stages(ESTIMATING, tables.FIT_MANOEUVRES),
     },
     writes={
         "parameters": tables.PARAMETERS,

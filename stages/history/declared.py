@@ -1,26 +1,19 @@
 """What the stage reads and writes, and the folder of the archive."""
 
 from inertial import tables
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import ESTIMATING, Declared, From, of_stage, of_stages
 
 DECLARED = Declared(
     reads={
-        "campaign": From("plan", tables.CAMPAIGN),
-        "inputs": From("plan", tables.INPUTS),
-        "accelerometer_parameters": From("accelerometer", tables.PARAMETERS),
-        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
-        "accelerometer_fit": From("accelerometer", tables.FIT),
-        "gyroscope_fit": From("gyroscope", tables.FIT),
+        **of_stage("plan", tables.CAMPAIGN, tables.INPUTS, tables.ALLOWED_CHANGES),
+        **of_stage("plan", tables.PUBLISHED, tables.KNOWN),
+        **of_stages(ESTIMATING, tables.PARAMETERS, tables.FIT),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "covariance": From("diagnosis", tables.COVARIANCE),
         "verdict": From("diagnosis", tables.VERDICTS, "verdict"),
-        "allowed_changes": From("plan", tables.ALLOWED_CHANGES),
-        "published": From("plan", tables.PUBLISHED),
         "growing": From("studies", tables.WINDOWS, "growing"),
         "motions": From("studies", tables.MOTIONS),
-        "blocks": From("segment", tables.BLOCKS),
-        "known": From("plan", tables.KNOWN),
-        "manoeuvres": From("segment", tables.MANOEUVRES),
+        **of_stage("segment", tables.BLOCKS, tables.MANOEUVRES),
         "uncertainty_budget": From("compensation", tables.UNCERTAINTY_BUDGET),
     },
     writes={

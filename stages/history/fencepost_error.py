@@ -114,9 +114,8 @@ def _words(
     )
     factor = f"{fixed(result.cause.amount, 2)} ± {fixed(result.cause.sigma, 2)}"
     sentence = _(
-        "fencepost: the published ones differ from ours by {ratios} ppm, {factor} "
-        "samples of their windows, as if {each} had been summed; a window of N samples "
-        "has N + 1 edges",
+        "fencepost: the published ones differ from ours by {ratios} ppm, {factor} samples of their "
+        "windows, as if {each} had been summed; a window of N samples has N + 1 edges",
         ratios=ratios,
         factor=factor,
         each=each,

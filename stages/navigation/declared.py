@@ -1,22 +1,18 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import RECORDED
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import ESTIMATING, RECORDED, Declared, From, of_stage, of_stages
 
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
         "compensated": From("compensation", tables.COMPENSATED),
-        "campaign": From("plan", tables.CAMPAIGN),
-        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
-        "segments": From("segment", tables.SEGMENTS),
+        **of_stage("plan", tables.CAMPAIGN, tables.PUBLISHED),
+        **of_stage("segment", tables.CHANNEL_REPAIRS, tables.SEGMENTS),
         **RECORDED,
-        "published": From("plan", tables.PUBLISHED),
         "result": From("diagnosis", tables.PARAMETERS, "result"),
         "covariance": From("diagnosis", tables.COVARIANCE),
-        "accelerometer_fit": From("accelerometer", tables.FIT),
-        "gyroscope_fit": From("gyroscope", tables.FIT),
+        **of_stages(ESTIMATING, tables.FIT),
     },
     writes={
         "navigation_errors": tables.NAVIGATION_ERRORS,

@@ -4,8 +4,6 @@ The page brings its figures and fonts along; nothing else is fetched, neither
 from the network nor from the disk. Its numbers as data are attached.
 """
 
-from __future__ import annotations
-
 import gc
 import importlib
 import io

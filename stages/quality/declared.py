@@ -1,18 +1,13 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
-        "samples": From("decode", tables.SAMPLES),
-        "clocks": From("decode", tables.CLOCKS),
-        "imu_types": From("decode", tables.IMU_TYPES),
-        "campaign": From("plan", tables.CAMPAIGN),
-        "known": From("plan", tables.KNOWN),
+        **of_stage("decode", tables.SAMPLES, tables.CLOCKS, tables.IMU_TYPES),
+        **of_stage("plan", tables.CAMPAIGN, tables.KNOWN, tables.RANGES, tables.COUNT_SIZES),
         "gravity_repairs": From("plan", tables.REPAIRS),
-        "ranges": From("plan", tables.RANGES),
-        "count_sizes": From("plan", tables.COUNT_SIZES),
     },
     writes={
         "findings": tables.FINDINGS,

@@ -5,8 +5,6 @@ matplotlib's own DejaVu Sans, which the page brings along, and neither a date no
 a random identifier enters.
 """
 
-from __future__ import annotations
-
 import io
 import re
 import warnings
@@ -14,10 +12,12 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
@@ -28,11 +28,6 @@ from inertial.text.messages import language
 from inertial.text.typography import typeset
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, MILLIMETRES, Unit
 from stages.report.tables import Record
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-
 
 Array = NDArray[np.float64]
 
@@ -160,13 +155,16 @@ def side_by_side(
     return figure, axes
 
 
+GRID_MARGINS = Margins(left=0.45, across=0.5, down=0.3)
+
+
 def grid(
     names: Sequence[str],
     draw: Callable[[Axes, str], None],
     height: float,
-    margins: Margins,
     label: str,
     key: str,
+    margins: Margins = GRID_MARGINS,
 ) -> str:
     """A panel for each name, three in a row, `label` below the lowest of each column."""
     lines = -(-len(names) // GRID_COLUMNS)
@@ -188,6 +186,13 @@ def band(
 ) -> None:
     """The area from `low` to `high`."""
     panel.fill_between(x, low, high, color=colour, **{"linewidth": 0.5} | look)
+
+
+def around(
+    panel: Axes, x: Sequence[float] | Array, value: Array, sigma: Array, colour: str, alpha: float
+) -> None:
+    """The area within ± σ of a value."""
+    band(panel, x, value - sigma, value + sigma, colour, alpha=alpha, linewidth=0)
 
 
 def ticks(panel: Axes, y: int, x: int | None = None) -> None:

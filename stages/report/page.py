@@ -4,13 +4,10 @@ The letters are matplotlib's DejaVu fonts, cut to those that are used. They trav
 page, so that it looks the same on every machine, without network and installed fonts.
 """
 
-from __future__ import annotations
-
 import base64
 import io
 import re
 import string
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from html import unescape
@@ -84,12 +81,9 @@ def page(report: Report) -> str:
     fonts = _fonts("".join(sorted(letters)))
     whole = template.render(report=report, style=style, script=script, fonts=fonts)
     head, main, body = whole.partition("<main>")
-    return head + main + SENTENCE.sub(_with_indices, body)
-
-
-def _with_indices(text: re.Match[str]) -> str:
-    """A text between tags, the indices of symbols in it below the line, as in tables."""
-    return SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", text[0])
+    # The indices of symbols in sentences are below the line, as in tables.
+    below = SENTENCE.sub(lambda text: SYMBOL.sub(r"<i>\1</i><sub>\2</sub>", text[0]), body)
+    return head + main + below
 
 
 def _long(text: str, kind: str) -> bool:
@@ -108,13 +102,10 @@ class Font:
 
 
 @lru_cache(maxsize=4)
-def _fonts(letters: str) -> tuple[Font, ...]:
-    return tuple(_subsets(letters))
-
-
-def _subsets(letters: str) -> Iterator[Font]:
+def _fonts(letters: str) -> list[Font]:
     """Each font with these letters only."""
     folder = Path(mpl.get_data_path()) / "fonts" / "ttf"
+    fonts = []
     for family, weight, style, file in FONTS:
         options = Options(flavor="woff2", layout_features=["kern"])
         options.name_IDs = [1, 2]
@@ -127,4 +118,6 @@ def _subsets(letters: str) -> Iterator[Font]:
             font.flavor = "woff2"
             written = io.BytesIO()
             font.save(written)
-        yield Font(family, weight, style, base64.b64encode(written.getvalue()).decode())
+        data = base64.b64encode(written.getvalue()).decode()
+        fonts.append(Font(family, weight, style, data))
+    return fonts

@@ -1,7 +1,5 @@
 """The calibration report: the result, how sure it is, and where every number comes from."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import count
 from string import ascii_uppercase
@@ -13,26 +11,24 @@ from inertial.text.numbers import shortened
 from inertial.text.typography import typeset
 from inertial.text.units import written_in
 from stages.report.declared import DECLARED
-from stages.report.origins import origins
 from stages.report.outline import Chapter, Report, Section
 from stages.report.page import page
+from stages.report.results import origins
 from stages.report.sections import (
-    alignment,
     averaging,
     basis,
     certificate,
     characteristics,
     comparisons,
     compensation,
-    final_residuals,
     findings,
-    ideal_triad,
     navigation,
     noise,
     noise_by_manoeuvre,
     parameters,
     raw_data,
     repeatability,
+    residual_figures,
     residuals,
     studies,
     temperature,
@@ -47,12 +43,12 @@ EVIDENCE = (
     certificate.SECTION,
     verdict.SECTION,
     noise.SECTION,
-    final_residuals.SECTION,
+    residual_figures.SECTION,
     unmodelled_effects.SECTION,
     comparisons.COMPARISONS,
     compensation.SECTION,
     navigation.SECTION,
-    alignment.SECTION,
+    navigation.ALIGNMENT,
     uncertainty_budget.SECTION,
     temperature.SECTION,
     comparisons.HISTORY,
@@ -72,7 +68,7 @@ ANNEXES = (
     raw_data.SECTION,
     noise_by_manoeuvre.SECTION,
     basis.KNOWN,
-    ideal_triad.SECTION,
+    basis.IDEAL,
     basis.ACCOUNT,
     basis.PROVENANCE,
 )

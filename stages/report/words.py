@@ -1,7 +1,5 @@
 """Names of sensors, mounts and counts, and how they stand in a sentence."""
 
-from __future__ import annotations
-
 import re
 from math import pi
 

@@ -1,24 +1,16 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
-        "samples": From("decode", tables.SAMPLES),
-        "campaign": From("plan", tables.CAMPAIGN),
-        "known": From("plan", tables.KNOWN),
+        **of_stage("decode", tables.SAMPLES, tables.CLOCKS, tables.IMU_TYPES),
+        **of_stage("plan", tables.CAMPAIGN, tables.KNOWN, tables.ACCEPTED, tables.RANGES),
+        **of_stage("plan", tables.COUNT_SIZES, tables.MANOEUVRES),
         "gravity_repairs": From("plan", tables.REPAIRS),
-        "accepted": From("plan", tables.ACCEPTED),
-        "ranges": From("plan", tables.RANGES),
-        "count_sizes": From("plan", tables.COUNT_SIZES),
-        "manoeuvres": From("plan", tables.MANOEUVRES),
-        "clocks": From("decode", tables.CLOCKS),
-        "imu_types": From("decode", tables.IMU_TYPES),
-        "gaps": From("quality", tables.GAPS),
-        "masks": From("quality", tables.MASKS),
+        **of_stage("quality", tables.GAPS, tables.MASKS, tables.CHANNEL_STATISTICS),
         "quality_findings": From("quality", tables.FINDINGS),
-        "channel_statistics": From("quality", tables.CHANNEL_STATISTICS),
     },
     writes={
         "manoeuvres": tables.MANOEUVRES,

@@ -1,15 +1,13 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import ESTIMATED, RECORDED
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import ESTIMATED, RECORDED, Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
-        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
+        **of_stage("segment", tables.CHANNEL_REPAIRS, tables.SEGMENTS),
         **RECORDED,
-        "segments": From("segment", tables.SEGMENTS),
         **ESTIMATED,
     },
     writes={

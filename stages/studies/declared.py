@@ -1,19 +1,15 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.campaign_inputs import RECORDED
-from inertial.tables.declared import Declared, From
+from inertial.tables.declared import RECORDED, Declared, From, of_stage, of_stages
 
 DECLARED = Declared(
     reads={
         "samples": From("decode", tables.SAMPLES),
-        "channel_repairs": From("segment", tables.CHANNEL_REPAIRS),
-        "masks": From("segment", tables.MASKS),
+        **of_stage("segment", tables.CHANNEL_REPAIRS, tables.MASKS, tables.SEGMENTS),
         **RECORDED,
-        "segments": From("segment", tables.SEGMENTS),
         "spectra": From("noise", tables.SPECTRA),
-        "gyroscope_parameters": From("gyroscope", tables.PARAMETERS),
-        "gyroscope_fit": From("gyroscope", tables.FIT),
+        **of_stages(["gyroscope"], tables.PARAMETERS, tables.FIT),
     },
     writes={
         "epochs": tables.EPOCHS,

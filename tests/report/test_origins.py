@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.text.statements import NO_TABLE
-from stages.report.origins import origins
+from stages.report.results import origins
 from stages.report.sections.basis import known_parts
 from tests.report import synthetic
 from tests.report.synthetic_values import Held

@@ -7,11 +7,11 @@ import pytest
 
 from stages.report.sections import (
     basis,
-    final_residuals,
     navigation,
     noise,
     noise_by_manoeuvre,
     periodic_figures,
+    residual_figures,
 )
 from tests.report import synthetic
 
@@ -20,8 +20,8 @@ def test_a_histogram_reaches_as_far_as_the_residuals() -> None:
     """Of a second mode at 3.5 σ with a spread of its own 99.9 % are below 3.5 + 3.09."""
     random = np.random.default_rng(4)
     values = np.concatenate([random.normal(size=10_000), random.normal(3.5, 1, 20_000)])
-    assert final_residuals.reach_of(values) == pytest.approx(7, abs=0.5)
-    assert final_residuals.reach_of(values[:10_000]) == 4.5
+    assert residual_figures.reach_of(values) == pytest.approx(7, abs=0.5)
+    assert residual_figures.reach_of(values[:10_000]) == 4.5
 
 
 @pytest.mark.parametrize(

@@ -17,13 +17,13 @@ import pytest
 
 from inertial.tables import CERTIFICATE
 from inertial.text.units import DEGREES_PER_HOUR
-from stages.report import origins
+from stages.report import results
 from stages.report.outline import Heading, Paragraph, Part, Section, Table
 from stages.report.sections import (
+    basis,
     certificate,
     certified_values,
     characteristics,
-    ideal_triad,
     uncertainty_budget,
     unmodelled_effects,
 )
@@ -556,7 +556,7 @@ def test_earlier_calibrations_and_the_archive_are_named() -> None:
 
 def test_ideal_readings_stand_in_both_frames() -> None:
     """At 30.5278°: 15.0411 °/h times cosine and sine; S0 has g = 9.7936174 m/s² there."""
-    html = synthetic.section_on(synthetic.campaign(()), ideal_triad.SECTION)
+    html = synthetic.section_on(synthetic.campaign(()), basis.IDEAL)
     cells = (re.findall(r"<td[^>]*>([^<]*)</td>", line) for line in html.split("<tr"))
     ned, enu = ([number(cell) for cell in own[1:]] for own in cells if own[:1] == [AT_REST])
     assert ned == pytest.approx([12.9561, 0, -7.6402, 0, 0, -9.793617], abs=6e-5)
@@ -744,7 +744,7 @@ def write(tables: dict[str, Any], derived: Path) -> None:
 def test_a_section_reads_no_table_but_those_it_declares() -> None:
     made = synthetic.campaign(logs=("z-backward.asc",))
     read = {name for section in (*EVIDENCE, *ANNEXES) for name in section.reads}
-    assert read | set(origins.READS) == set(STAGE.reads)
+    assert read | set(results.READS) == set(STAGE.reads)
     for section in (*EVIDENCE, *ANNEXES):
         own = {name: made[name] for name in (*section.reads, "provenance")}
         assert list(section.parts(synthetic.tables_of(own))), section.key

@@ -11,9 +11,9 @@ from inertial import tables
 from stages.report.outline import Figure, Paragraph, Part, Section, Sentences, Table
 from stages.report.sections import (
     averaging,
+    basis,
     characteristics,
     comparisons,
-    ideal_triad,
     residuals,
     studies,
 )
@@ -115,7 +115,7 @@ def test_where_nothing_could_be_studied_one_sentence_says_so():
     followed = [f"{stage}_{name}" for stage in STAGES for name in ("averaging", "wanted")]
     (said,) = without(averaging.SECTION, *followed)
     assert said.text == "None: the parameters were not followed over the averaging time."
-    assert not without(ideal_triad.SECTION, "ideal_readings")
+    assert not without(basis.IDEAL, "ideal_readings")
 
 
 def test_what_is_missing_for_one_reason_is_one_sentence():

@@ -1,7 +1,5 @@
 """Parameters against averaging time: as more of each rest is used, and epoch by epoch."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import hypot, sqrt
 
@@ -39,7 +37,7 @@ def parts(tables: Tables) -> Iterator[outline.Part]:
         yield outline.Heading(name)
         groups = _curves(tables.rows(f"{stage}_averaging"))
         for number, (group, curves) in enumerate(groups.items(), 1):
-            units = {name: quantity(name, _unit(stage, name)).shown for name in curves}
+            units = {name: quantity(name, unit_of(SENSOR_OF[stage], name)).shown for name in curves}
             yield _figure(group, f"averaging-{stage}-{number}", curves, units)
         if not groups:
             yield outline.Paragraph(
@@ -56,9 +54,8 @@ SECTION = outline.Section(
         "only, relative to its final value; the joint fit is that without effects."
     ),
     _(
-        "The band is value ± σ. Where it narrows about zero, longer static positions "
-        "would still help; where the line leaves the band and stays outside, something "
-        "drifts."
+        "The band is value ± σ. Where it narrows about zero, longer static positions would still "
+        "help; where the line leaves the band and stays outside, something drifts."
     ),
     tuple(f"{stage}_{table}" for stage in SENSOR_OF for table in ("averaging", "wanted")),
     parts,
@@ -67,10 +64,13 @@ SECTION = outline.Section(
 
 def _curves(rows: Sequence[Record]) -> dict[Group, dict[str, list[Record]]]:
     """The rows by group and by parameter, the biases first."""
-    groups: dict[Group, dict[str, list[Record]]] = {_group(row): {} for row in rows}
-    for row in by_kind(row | {"parameter": row["quantity"]} for row in rows):
-        groups[_group(row)].setdefault(row["quantity"], []).append(row)
-    return groups
+    return {
+        group: grouped(
+            by_kind(row | {"parameter": row["quantity"]} for row in own),
+            lambda row: str(row["quantity"]),
+        )
+        for group, own in grouped(rows, _group).items()
+    }
 
 
 def _group(row: Record) -> Group:
@@ -82,10 +82,6 @@ def _estimate(group: Group) -> Estimate:
     return Estimate(STAGES[sensor], method, mount)
 
 
-def _unit(stage: str, parameter: str) -> str:
-    return unit_of(SENSOR_OF[stage], parameter)
-
-
 def _figure(
     group: Group, key: str, curves: Mapping[str, Sequence[Record]], units: Mapping[str, Unit]
 ) -> outline.Figure:
@@ -94,9 +90,7 @@ def _figure(
         seconds, value, sigma = arrays(rows, "seconds", "value", "sigma")
         away, sigma = (value - value[-1]) / units[name].size, sigma / units[name].size
         panel.axhline(0, color=drawing.INK, linewidth=0.6)
-        drawing.band(
-            panel, seconds, away - sigma, away + sigma, _colour(name), alpha=0.22, linewidth=0
-        )
+        drawing.around(panel, seconds, away, sigma, _colour(name), 0.22)
         panel.plot(seconds, away, color=_colour(name), marker="o", markersize=1.8)
         panel.set_xscale("log")
         drawing.plain_numbers(panel.xaxis)
@@ -106,7 +100,6 @@ def _figure(
     title = _estimate(group).name
     drawn = [name for name, rows in curves.items() if _shortens(rows)] or list(curves)
     shown = drawn[:MOST_PANELS]
-    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
     rest = outline.more(len(drawn) - len(shown), _(" in the averaging table"))
     if len(drawn) < len(curves):
         rest = _("Parameters whose σ does not depend on it are not drawn. {rest}", rest=rest)
@@ -116,7 +109,7 @@ def _figure(
             title=title,
             rest=rest,
         ).rstrip(),
-        drawing.grid(shown, panel_of, 0.95, margins, _("Time per static position, s"), key),
+        drawing.grid(shown, panel_of, 0.95, _("Time per static position, s"), key),
         _(
             "{counted} of {title}, each within its band of sigma.",
             counted=counted(len(shown), "curve"),
@@ -208,7 +201,7 @@ def _epochs(group: Group, key: str, curves: Mapping[str, Sequence[Record]]) -> o
         final, colour = rows[-1]["running_mean"] / unit.size, _colour(name)
         panel.plot(seconds, single - final, color=drawing.QUIET, linewidth=0.35, alpha=0.6)
         away = running - final
-        drawing.band(panel, seconds, away - sigma, away + sigma, colour, alpha=0.25, linewidth=0)
+        drawing.around(panel, seconds, away, sigma, colour, 0.25)
         panel.plot(seconds, away, color=colour, linewidth=0.9)
         height = SHOWN_SIGMAS * rows[0]["single_sigma"] / unit.size
         if height > 0:
@@ -219,7 +212,6 @@ def _epochs(group: Group, key: str, curves: Mapping[str, Sequence[Record]]) -> o
 
     shown = list(curves)[:MOST_EPOCH_PANELS]
     first = next(iter(curves.values()))[0]["seconds"]
-    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
     return outline.Figure(
         _(
             "{sensor}: by single epochs of {first} s (grey) and by running means (colour, "
@@ -228,7 +220,7 @@ def _epochs(group: Group, key: str, curves: Mapping[str, Sequence[Record]]) -> o
             sensor=_estimate(group).sensor,
             first=significant(first, 3),
         ),
-        drawing.grid(shown, panel_of, 0.78, margins, _("Time per static position, s"), key),
+        drawing.grid(shown, panel_of, 0.78, _("Time per static position, s"), key),
         _(
             "{counted} against the time per static position.",
             counted=counted(len(shown), "parameter"),
@@ -257,11 +249,9 @@ def _scatter(rows: Sequence[Record]) -> outline.Figure:
         drawn = drawing.svg(figure, "spreads")
     return outline.Figure(
         _(
-            "Standard deviation of the values by single epochs over what white noise "
-            "gives, against "
-            "the length of an epoch; band: ± 2 σ of chance alone. A rise with the "
-            "length is drift; a "
-            "fall to 1 is an oscillation that averages out."
+            "Standard deviation of the values by single epochs over what white noise gives, "
+            "against the length of an epoch; band: ± 2 σ of chance alone. A rise with the length "
+            "is drift; a fall to 1 is an oscillation that averages out."
         ),
         drawn,
         _("Scatter of single epochs in units of that of white noise."),
@@ -272,9 +262,7 @@ def _scatter_panel(panel: Axes, rows: Sequence[Record]) -> None:
     lengths = sorted({row["seconds"]: row["epochs"] for row in rows}.items())
     seconds, epochs = (np.array(each) for each in zip(*lengths, strict=True))
     chance = 1 / np.sqrt(2.0 * np.maximum(epochs - 1, 1))
-    drawing.band(
-        panel, seconds, 1 - 2 * chance, 1 + 2 * chance, drawing.QUIET, alpha=0.18, linewidth=0
-    )
+    drawing.around(panel, seconds, np.ones(len(chance)), 2 * chance, drawing.QUIET, 0.18)
     panel.axhline(1, color=drawing.INK, linewidth=0.6)
     for mount, name in dict.fromkeys((row["mount"], row["quantity"]) for row in rows):
         own = [row for row in rows if (row["mount"], row["quantity"]) == (mount, name)]

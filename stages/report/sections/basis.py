@@ -1,6 +1,4 @@
-"""What a calibration rests on: the manoeuvres and bytes recorded, known quantities, provenance."""
-
-from __future__ import annotations
+"""What a calibration rests on: manoeuvres and bytes recorded, known quantities, ideal readings."""
 
 import json
 from collections import Counter
@@ -23,6 +21,7 @@ from stages.report.outline import (
     Table,
     Tone,
     columns,
+    head,
     more,
     table_row,
     value_and_sigma,
@@ -60,9 +59,8 @@ RECORDED = Section(
     _("Every manoeuvre of the plan, and what its log contains of it."),
     _(
         "✓ recorded from rest to rest as planned, or its rests found where their attitudes are "
-        "unknown, of which the plan states no time; ◐ incomplete; ✗ not found. Angle and "
-        "rate are about the axis of the turn, right-hand rule; the angle is a sum of "
-        "increments."
+        "unknown, of which the plan states no time; ◐ incomplete; ✗ not found. Angle and rate are "
+        "about the axis of the turn, right-hand rule; the angle is a sum of increments."
     ),
     ("manoeuvres", "performed"),
     recorded_parts,
@@ -275,10 +273,9 @@ KNOWN = Section(
     _("Known quantities"),
     _("The quantities that were given to the estimation."),
     _(
-        "The σ of the parameters include those of these quantities; one without σ is "
-        "taken as exact. "
-        "Stated: by the campaign file; computed: from what is stated; assumed: by the pipeline, "
-        "in the absence of a statement."
+        "The σ of the parameters include those of these quantities; one without σ is taken as "
+        "exact. Stated: by the campaign file; computed: from what is stated; assumed: by the "
+        "pipeline, in the absence of a statement."
     ),
     ("known",),
     known_parts,
@@ -354,9 +351,8 @@ PROVENANCE = Section(
     _("Provenance"),
     _("The inputs, and per stage its settings and the hash of its code."),
     _(
-        "The same inputs, settings and code give this report again, byte for byte. A "
-        "hash is SHA-256; that of a stage covers every module it uses and the lock file "
-        "of the libraries."
+        "The same inputs, settings and code give this report again, byte for byte. A hash is "
+        "SHA-256; that of a stage covers every module it uses and the lock file of the libraries."
     ),
     ("inputs",),
     provenance_parts,
@@ -368,3 +364,91 @@ def _settings(settings: object) -> str:
         return _("none")
     stated = "; ".join(f"{name}: {json.dumps(value)}" for name, value in settings.items())
     return numbers.shortened(stated, 400)
+
+
+# ---- Annex: what ideal sensors would read at the site of the campaign.
+
+FRAMES = {
+    "NED": _("North, east, down (NED; body axes forward, right, down)"),
+    "ENU": _("East, north, up (ENU; body axes right, forward, up)"),
+}
+SITUATIONS = {
+    "at_rest": _("at rest on the level"),
+    "in_free_fall": _("in free fall"),
+    "at_equator": _("at rest at the equator"),
+    "at_pole": _("at rest at the pole of this hemisphere"),
+    "under_way_north": _("{speed:g} m/s to the north at {height:g} m"),
+    "under_way_east": _("{speed:g} m/s to the east at {height:g} m"),
+}
+
+
+def ideal_parts(tables: Tables) -> Iterator[Part]:
+    """One table in both frames, and how gravity of the site compares."""
+    readings = tables.rows("ideal_readings")
+    if not readings:
+        return
+    site = readings[0]
+    yield Table(
+        _(
+            "Ideal readings at latitude {latitude}° and height {height} m; the equator and the "
+            "pole at the same height.",
+            latitude=numbers.fixed(units.DEGREES.of(site["latitude"]), 4),
+            height=numbers.fixed(site["height"], 0),
+        ),
+        (
+            Column(_("Situation")),
+            *columns("number", "1", "2", "3", group=_("Gyros, °/h")),
+            *columns("number", "1", "2", "3", group=_("Accelerometers, m/s²")),
+        ),
+        list(_ideal_rows(readings)),
+        note=_(
+            "Under way: at a steady speed, the triad on the level and to the north. In free fall "
+            "accelerometers read zero however fast the fall becomes."
+        ),
+    )
+    for gravity in tables.rows("known"):
+        if gravity["quantity"] != "gravity":
+            continue
+        value, sigma = numbers.with_own_sigma(gravity["value"], gravity["sigma"])
+        yield Paragraph(
+            _(
+                "Normal gravity of the site is {normal} m/s²; the calibration takes gravity as "
+                "{value} ± {sigma} m/s² ({origin}).",
+                normal=numbers.fixed(-site["down"], 6),
+                value=value,
+                sigma=sigma,
+                origin=numbers.shortened(gravity["origin"], 300),
+            )
+        )
+
+
+IDEAL = Section(
+    "ideal",
+    _("Ideal readings at the site"),
+    _("What sensors without errors would read, by the earth's rate, gravity and the speed alone."),
+    _(
+        "1, 2, 3: the axes in the order of the frame. Gyros read the rate against inertial space, "
+        "accelerometers specific force, acceleration less gravity: at rest the axis that points up "
+        "reads +g, the one that points down −g."
+    ),
+    ("ideal_readings", "known"),
+    ideal_parts,
+)
+
+
+def _ideal_rows(readings: list[Record]) -> Iterator[Row]:
+    """A row per situation, for the accelerometers and the gyros of one stand one after another."""
+    for frame, name in FRAMES.items():
+        yield head(name)
+        for accel, gyro in zip(readings[::2], readings[1::2], strict=True):
+            rates = (each / units.DEGREE_PER_HOUR for each in _in_frame(gyro, frame))
+            yield table_row(
+                SITUATIONS[gyro["situation"]].format(**gyro),
+                *(numbers.fixed(each, 4) for each in rates),
+                *(numbers.fixed(each, 6) for each in _in_frame(accel, frame)),
+            )
+
+
+def _in_frame(reading: Record, frame: str) -> tuple[float, float, float]:
+    north, east, down = (reading[name] for name in ("north", "east", "down"))
+    return (north, east, down) if frame == "NED" else (east, north, -down)

@@ -1,7 +1,5 @@
 """The certificate on pages one and two, with the items of ISO/IEC 17025:2017, 7.8."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
@@ -112,7 +110,12 @@ def parts(tables: Tables) -> Iterator[Part]:
     """What 7.8 asks for: who, what, how, with which standards; then results and statements."""
     word, tone, meaning = LEVELS[worst(tables)]
     yield Level(word, tone, meaning)
-    yield Sentences((*verdict_sentences(tables), *_misfits(tables)))
+    misfits = (
+        f"{capital(result.sensor)}: {result.fit_in_words()[0]}."
+        for result in final_results(tables)
+        if result.misfit
+    )
+    yield Sentences((*verdict_sentences(tables), *misfits))
     if guesses := [term(row["part"]) for row in tables.rows("guesses")]:
         yield Paragraph(GUESSES.format(guesses=listed(guesses)), "fair")
     yield Facts(tuple(_facts(tables)))
@@ -298,17 +301,6 @@ def _known(tables: Tables) -> Iterator[tuple[str, str, str]]:
             spread = numbers.significant(unit.of(COVERAGE_FACTOR * row["sigma"]), 2)
             text = _("as set, U = {spread} {unit}", spread=spread, unit=unit.name)
             yield capital(basis.NAME[quantity]), text, row["origin"]
-
-
-# ---- The results with U.
-
-
-def _misfits(tables: Tables) -> Iterator[str]:
-    """What the model of a result that counts leaves beyond noise."""
-    for result in final_results(tables):
-        if result.misfit:
-            words, _tone = result.fit_in_words()
-            yield f"{capital(result.sensor)}: {words}."
 
 
 # ---- Statements.

@@ -1,7 +1,5 @@
 """The values of a certificate with their expanded uncertainty, and how they changed."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
 from inertial.campaign.records import grouped

@@ -1,9 +1,8 @@
 """The figures by which the standards describe a sensor, over the inputs that were applied."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
+from inertial.campaign.records import grouped
 from inertial.sensors import SINGULAR
 from inertial.text import numbers
 from inertial.text.messages import _, listed
@@ -89,7 +88,16 @@ def _bandwidths(rows: Sequence[Record]) -> Iterator[Part]:
                 "not what is before its source."
             ),
         )
-    if missing := [_no_bandwidth(axes, row) for axes, row in _by_reason(rows)]:
+    missing = [
+        _(
+            "{axis} {sensor}, bandwidth: not determined, for {reason}.",
+            axis=axes,
+            sensor=SINGULAR[row["sensor"]],
+            reason=row["reason"],
+        )
+        for axes, row in _by_reason(rows)
+    ]
+    if missing:
         yield Sentences(tuple(missing))
 
 
@@ -117,22 +125,12 @@ def _bandwidth_rows(rows: Sequence[Record]) -> Iterator[Row]:
 
 def _by_reason(rows: Sequence[Record]) -> Iterator[tuple[str, Record]]:
     """The axes for which a quantity of a sensor is missing for the same reason, and one of them."""
-    alike: dict[tuple[str, str, str], list[Record]] = {}
-    for row in rows:
-        if row["reason"]:
-            what = row["quantity"] if "quantity" in row else row["by"]
-            alike.setdefault((row["sensor"], what, row["reason"]), []).append(row)
+    alike = grouped(
+        (row for row in rows if row["reason"]),
+        lambda row: (row["sensor"], row.get("quantity") or row["by"], row["reason"]),
+    )
     for own in alike.values():
         yield ", ".join(dict.fromkeys(row["axis"] for row in own)), own[0]
-
-
-def _no_bandwidth(axes: str, row: Record) -> str:
-    return _(
-        "{axis} {sensor}, bandwidth: not determined, for {reason}.",
-        axis=axes,
-        sensor=SINGULAR[row["sensor"]],
-        reason=row["reason"],
-    )
 
 
 SECTION = Section(
@@ -211,11 +209,9 @@ def between(row: Record, unit: Unit) -> str:
 
 def _missing(rows: Sequence[Record]) -> Iterator[str]:
     """What is not determined, all that is missing for the same reason in one sentence."""
-    alike: dict[tuple[str, str, str], list[str]] = {}
-    for axes, row in _by_reason(rows):
-        name = NAMES[row["quantity"]].partition(",")[0].lower()
-        alike.setdefault((axes, row["sensor"], row["reason"]), []).append(name)
-    for (axes, sensor, reason), names in alike.items():
+    alike = grouped(_by_reason(rows), lambda each: (each[0], each[1]["sensor"], each[1]["reason"]))
+    for (axes, sensor, reason), own in alike.items():
+        names = [NAMES[row["quantity"]].partition(",")[0].lower() for _axes, row in own]
         yield _(
             "{axis} {sensor}, {quantity}: not determined, for {reason}.",
             axis=axes,

@@ -1,7 +1,5 @@
 """Results against each other; the one that counts against published and earlier ones."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import floor, hypot, log10
 
@@ -48,10 +46,14 @@ def comparison_parts(tables: Tables) -> Iterator[outline.Part]:
     """Every difference in units of its sigma with the verdict in words, the weightiest first."""
     rows = _weightiest_first(tables, tables.rows("differences"))
     yield from _judged(rows, _effects_of(tables, rows))
+    static_scale = any(
+        row["kind"] == "static_against_turns" and kind_of(row["quantity"]) == "scale"
+        for row in rows
+    )
     yield _differences(
         rows,
         _("None: no parameter was estimated in two ways that could be compared."),
-        STATIC_SCALE if any(map(_of_static_scale, rows)) else "",
+        STATIC_SCALE if static_scale else "",
     )
     yield outline.Heading(_("Published values against the final result"))
     published = _weightiest_first(tables, tables.rows("published_differences"))
@@ -99,14 +101,13 @@ COMPARISONS = outline.Section(
     _(
         "First what differs by more than chance; then, in steps of ten, what is compared most "
         "sharply, by the σ of the difference over that of the result; within, the largest "
-        "difference in units of its σ. p is the probability of a "
-        "difference this large if the two are equal; among many comparisons some are "
-        "large by chance, which the verdict takes into account. Two methods that use the same "
-        "data are correlated: the variance of their difference is the difference of their "
-        "variances, where the joint estimate is the better one throughout, and else their sum. "
-        "Static against rotation is judged by the σ of noise, table and site alone. The "
-        "σ of the methods in “Parameters” also contain the scatter between manoeuvres and are "
-        "therefore larger."
+        "difference in units of its σ. p is the probability of a difference this large if the two "
+        "are equal; among many comparisons some are large by chance, which the verdict takes into "
+        "account. Two methods that use the same data are correlated: the variance of their "
+        "difference is the difference of their variances, where the joint estimate is the better "
+        "one throughout, and else their sum. Static against rotation is judged by the σ of noise, "
+        "table and site alone. The σ of the methods in “Parameters” also contain the scatter "
+        "between manoeuvres and are therefore larger."
     ),
     ("differences", "published_differences", *RESULT_TABLES),
     comparison_parts,
@@ -132,11 +133,6 @@ def _weightiest_first(tables: Tables, rows: Sequence[Record]) -> list[Record]:
         return *place, -abs(size or 0.0), row["id"]
 
     return sorted(rows, key=order)
-
-
-def _of_static_scale(row: Record) -> bool:
-    """Whether a scale factor of a gyro is compared that static positions alone gave."""
-    return row["kind"] == "static_against_turns" and kind_of(row["quantity"]) == "scale"
 
 
 def _fencepost(row: Record) -> bool:
@@ -179,12 +175,10 @@ def _differences(rows: Sequence[Record], none: str, remark: str = "") -> outline
 
 def _not_compared(rows: Sequence[Record]) -> str:
     """What has two values that were not compared, by the reason."""
-    by_reason: dict[str, list[str]] = {}
-    for row in rows:
-        what, _colon, reason = str(row["sentence"]).partition(": ")
-        by_reason.setdefault(reason, []).append(what)
+    said = (str(row["sentence"]).partition(": ") for row in rows)
     each = (
-        f"{capital(reason).rstrip('.')}: {', '.join(own)}." for reason, own in by_reason.items()
+        f"{capital(reason).rstrip('.')}: {', '.join(what for what, _colon, _reason in own)}."
+        for reason, own in grouped(said, lambda parts: parts[2]).items()
     )
     return _("Not compared. {each}", each=numbers.shortened(" ".join(each), 900)) if rows else ""
 

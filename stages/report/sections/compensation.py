@@ -1,7 +1,5 @@
 """The corrected readings: before and after, and against what is known."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import sqrt

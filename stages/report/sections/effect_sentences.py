@@ -1,7 +1,5 @@
 """Effects in sentences: how certain the name is, what an effect in the model improves."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import inf, pi
@@ -159,7 +157,7 @@ def summary(rows: Sequence[Record]) -> Iterator[str]:
     """The unmodelled effects, a sentence for each degree of certainty; none where none are."""
     groups = {kind: [row for row in rows if kind_of(row) == kind] for kind in GRADES}
     if own := groups["found"]:
-        yield _("Detected: {names}.", names=_names(own))
+        yield _("Detected: {names}.", names=_distinct(map(name_of, own)))
     for row in groups["class"]:
         either = _or(name_of(row), row)
         yield _("Detected: {either}, which this campaign cannot distinguish.", either=either)
@@ -189,10 +187,6 @@ def summary(rows: Sequence[Record]) -> Iterator[str]:
 
 def _distinct(names: Iterable[str]) -> str:
     return listed(list(dict.fromkeys(names)))
-
-
-def _names(rows: Sequence[Record]) -> str:
-    return _distinct(map(name_of, rows))
 
 
 def _or(name: str, row: Record) -> str:
@@ -235,9 +229,8 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
             )
             yield (
                 _(
-                    "The residuals of the {gyro} fall from {before} {unit} to {after} "
-                    "{unit} rms in "
-                    "held-out turns.",
+                    "The residuals of the {gyro} fall from {before} {unit} to {after} {unit} rms "
+                    "in held-out turns.",
                     gyro=gyro,
                     before=before,
                     unit=shortened(unit.name, 20),

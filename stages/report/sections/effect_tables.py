@@ -1,7 +1,5 @@
 """Effects as tables: their parameters, the extended result, detection limits, structure tests."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 
@@ -264,9 +262,7 @@ def shifts_beyond(
 
     The second number: of how many it is known.
     """
-    by_effect: dict[Effect, list[Record]] = {}
-    for row in visible_limits(rows, tested):
-        by_effect.setdefault(_effect(row), []).append(row)
+    by_effect = grouped(visible_limits(rows, tested), _effect)
     most = [limit["moves"] for own in by_effect.values() if (limit := moves_most(own))]
     return sum(moves > sigmas for moves in most), len(most)
 
@@ -344,14 +340,13 @@ def _sizes(rows: Sequence[Record]) -> tuple[str, str, str]:
 
 def _hidden(rows: Sequence[Record], every: Sequence[Record]) -> Iterator[outline.Row]:
     """Effects that are not seen for the same reason in one row; `every`: all limits."""
-    by_reason: dict[str, dict[Effect, list[str]]] = {}
-    for row in rows:
-        reason = capital(numbers.shortened(row["explanation"] or "", 300))
-        effects = by_reason.setdefault(reason, {})
-        effects.setdefault(_effect(row), []).append(row["parameter"])
-    for reason, effects in by_reason.items():
-        names = [_named(name, own, every) for name, own in effects.items()]
-        yield outline.table_row(reason, f"{capital('; '.join(names))}.")
+    by_reason = grouped(rows, lambda row: numbers.shortened(row["explanation"] or "", 300))
+    for reason, own in by_reason.items():
+        names = [
+            _named(effect, [row["parameter"] for row in concerned], every)
+            for effect, concerned in grouped(own, _effect).items()
+        ]
+        yield outline.table_row(capital(reason), f"{capital('; '.join(names))}.")
 
 
 def _named(effect: Effect, own: Sequence[str], every: Sequence[Record]) -> str:
@@ -410,9 +405,8 @@ def _tests(rows: Sequence[Record], where: str) -> outline.Table:
     """The tests, the significant ones first."""
     return outline.Table(
         _(
-            "{count_} tests for structure in the residuals of the model with the "
-            "identified effects{where}. By chance one of them is significant in "
-            "one campaign of a hundred.",
+            "{count_} tests for structure in the residuals of the model with the identified "
+            "effects{where}. By chance one of them is significant in one campaign of a hundred.",
             count_=_count(rows),
             where=where,
         ),

@@ -1,7 +1,5 @@
 """Effects of the catalogue as terms: their equations, their constants, what a parameter is."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """What shows each cause: pictures, and the findings that are behind it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -179,13 +177,9 @@ def parts(tables: Tables) -> Iterator[Part]:
     for row in (row for row in rows if row["id"] in own):
         yield Heading(title_of(tables, row), f"evidence/{row['id']}")
         for finding in own[row["id"]][:MOST_SHOWN]:
-            yield from _shown(finding, shown)
+            if finding["stage"] != MODEL:  # whose own section shows it
+                yield from shown[finding["id"]]
         yield _table(own[row["id"]])
-
-
-def _shown(finding: Record, shown: dict[str, list[Figure | Table]]) -> Iterator[Part]:
-    if finding["stage"] != MODEL:  # its own section shows it
-        yield from shown[finding["id"]]
 
 
 def _table(findings: list[Record]) -> Table:

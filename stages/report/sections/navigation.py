@@ -1,8 +1,7 @@
-"""What the calibration is worth in free inertial navigation, and what limits it."""
-
-from __future__ import annotations
+"""What the calibration is worth in navigation: free, after alignment, and with rotation."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import groupby
 from math import sqrt
 
 import numpy as np
@@ -10,12 +9,12 @@ from matplotlib.axes import Axes
 
 from inertial.campaign.records import grouped
 from inertial.sensors import SENSORS, SINGULAR
-from inertial.text import numbers
+from inertial.text import numbers, units
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, listed
 from inertial.text.units import DEGREES, Unit
 from stages.report import drawing, outline
-from stages.report.tables import Record, Tables
+from stages.report.tables import Record, Tables, arrays
 from stages.report.words import with_mount
 
 QUANTITIES = {
@@ -43,11 +42,7 @@ Key = tuple[str, str, float | None]  # mount, motion, seconds; none: turns
 def parts(tables: Tables) -> Iterator[outline.Part]:
     """A table of the errors, the longest course as a figure, a table of the shares."""
     rows = tables.rows("navigation_errors")
-    groups: dict[Key, list[Record]] = {}
-    for row in rows:
-        if row["predicted"] is not None:
-            seconds = None if row["motion"] == "turn" else row["seconds"]
-            groups.setdefault((row["mount"], row["motion"], seconds), []).append(row)
+    groups = grouped((row for row in rows if row["predicted"] is not None), _key)
     if not groups:
         yield from (outline.Paragraph(f"{row['reason']}.") for row in rows[:1] if row["reason"])
         return
@@ -76,11 +71,10 @@ SECTION = outline.Section(
     ),
     _(
         "Errors are root mean squares over the manoeuvres, of all three axes; that of the attitude "
-        "is its drift since the start. Predicted is what "
-        "the covariance of the result and the noise lead to; in brackets its part by the "
-        "parameters alone, which were estimated from these same data, so that the error found "
-        "may be smaller. Where the campaign states power cycles, it contains that a bias differs "
-        "from switch-on to switch-on."
+        "is its drift since the start. Predicted is what the covariance of the result and the "
+        "noise lead to; in brackets its part by the parameters alone, which were estimated from "
+        "these same data, so that the error found may be smaller. Where the campaign states power "
+        "cycles, it contains that a bias differs from switch-on to switch-on."
     ),
     ("navigation_errors", "navigation_courses", "navigation_shares"),
     parts,
@@ -126,6 +120,10 @@ def _errors(groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
             "to be below 1."
         ),
     )
+
+
+def _key(row: Record) -> Key:
+    return row["mount"], row["motion"], None if row["motion"] == "turn" else row["seconds"]
 
 
 def _order(key: Key) -> tuple[str, str, float]:
@@ -200,8 +198,7 @@ def _drawn(rows: Sequence[Record], key: str) -> str:
         panel.set_ylim(bottom=0)
         drawing.ticks(panel, 4)
 
-    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
-    return drawing.grid(list(QUANTITIES), panel_of, 1.05, margins, _("Time, s"), key)
+    return drawing.grid(list(QUANTITIES), panel_of, 1.05, _("Time, s"), key)
 
 
 def _shares(tables: Tables, groups: Mapping[Key, Sequence[Record]]) -> outline.Table:
@@ -249,3 +246,151 @@ def _family(row: Record) -> str:
         said = name.startswith(SINGULAR[sensor])  # as that of an effect of the sensor does
         return name if said else f"{SINGULAR[sensor]}: {name}"
     return OTHERS[f"{row['family']} {row['source']}"]
+
+
+# ---- Alignment at rest, and how far the attitude errs afterwards, with rotation and without.
+
+MOST_FIGURES = 4
+MARGINS = drawing.Margins(left=0.5, across=0.5)
+ARC_MINUTE = units.Unit("arcmin", units.DEGREE / 60)
+METHODS = {"static": _("means at rest"), "rotation": _("the turn that follows")}
+UNITS = {"rad": units.DEGREES, "rad/s": units.DEGREES_PER_HOUR}
+
+
+def alignment_parts(tables: Tables) -> Iterator[outline.Part]:
+    """Nothing where the campaign has no alignment."""
+    rows = tables.rows("alignments")
+    if not rows:
+        return
+    yield outline.Table(
+        _("Alignment by the means at rest and, where a turn follows, by that turn."),
+        (
+            *outline.columns("text", _("Alignment"), _("By"), _("Readings"), _("Quantity")),
+            outline.Column(_("value"), "number"),
+            outline.Column("± σ", "sigma"),
+            outline.Column(_("known"), "number"),
+            outline.Column(_("unit"), "unit"),
+        ),
+        [_row(row) for row in rows],
+        note=_(
+            "Tilt: at rest of the case, with the biases of the accelerometers in it; by a turn of "
+            "the axis it is about. The level rate is the horizontal part of the earth's rate."
+        ),
+    )
+    if wrong := [row for row in rows if row["method"] == "static" and row["per_bias"]]:
+        per_hour = wrong[0]["per_bias"] * units.DEGREE_PER_HOUR / units.DEGREE
+        yield outline.Paragraph(
+            _(
+                "At rest a bias of the gyros to the east of 1 °/h turns the azimuth by {turned}°, "
+                "and nothing there tells the two apart. A turn does: the bias turns with the case, "
+                "the earth's rate does not.",
+                turned=numbers.significant(per_hour, 2),
+            )
+        )
+    curves = tables.rows("attitude_errors")
+    kinds = [(key, list(own)) for key, own in groupby(curves, key=_case)]
+    for number, (key, own) in enumerate(kinds[:MOST_FIGURES]):
+        yield _figure(number, key, own)
+    yield from (outline.Paragraph(_gain(row)) for row in tables.rows("modulation_gains"))
+
+
+ALIGNMENT = outline.Section(
+    "alignment",
+    _("Alignment and rotation modulation"),
+    _(
+        "The attitude found at rest, and the integral of the rate that remains after it: over a "
+        "turn about the vertical and at rest."
+    ),
+    _(
+        "What is fixed in the case, the bias and the cross terms of the rate, goes round with "
+        "it, so its integral in the level frame is bounded; at rest it grows with time. Along the "
+        "vertical nothing is modulated, and the scale factor's error times the angle remains."
+    ),
+    ("alignments", "attitude_errors", "modulation_gains"),
+    alignment_parts,
+)
+
+
+def _row(row: Record) -> outline.Row:
+    unit = UNITS[row["unit"]]
+    if row["quantity"].startswith("tilt"):
+        unit = units.SECONDS_OF_ARC
+    value, sigma = unit.of(row["value"]), unit.of(row["sigma"])
+    decimals = numbers.decimals_of(sigma)
+    quantity = str(row["quantity"]).replace("_", " ")
+    if row["direction"]:
+        quantity = _("azimuth of {direction}", direction=row["direction"])
+    known = "" if row["known"] is None else numbers.fixed(unit.of(row["known"]), decimals or 0)
+    return outline.table_row(
+        numbers.shortened(row["alignment"], 60),
+        METHODS[row["method"]],
+        row["readings"],
+        quantity,
+        *numbers.with_sigma(value, sigma, decimals),
+        known,
+        unit.name,
+    )
+
+
+def _case(row: Record) -> tuple[str, str, str]:
+    return row["mount"], row["alignment"], row["readings"]
+
+
+def _figure(number: int, key: tuple[str, str, str], rows: Sequence[Record]) -> outline.Figure:
+    """The level error against time with its prediction, and the error about the vertical."""
+    with drawing.style():
+        figure, [axes] = drawing.panels(1, 2, 1.6, MARGINS)
+        runs = {name: list(own) for name, own in groupby(rows, key=lambda row: row["manoeuvre"])}
+        for name, own in runs.items():
+            colour = drawing.AXIS_COLOUR["z" if own[0]["modulated"] else "x"]
+            seconds, sigma = arrays(own, "seconds", "sigma")
+            for panel, level in zip(axes, (True, False), strict=True):
+                measured, predicted = (_size(own, prefix, level) for prefix in ("", "predicted_"))
+                reach = sigma / ARC_MINUTE.size
+                drawing.band(panel, seconds, measured - reach, measured + reach, colour, alpha=0.2)
+                panel.plot(seconds, measured, color=colour, label=numbers.shortened(name, 24))
+                panel.plot(seconds, predicted, color=drawing.INK, linewidth=0.6, linestyle="--")
+        for panel, title in zip(axes, (_("levels"), _("about the vertical")), strict=True):
+            panel.set_title(f"{title}, {ARC_MINUTE.name}", pad=3)
+            panel.set_xlabel(_("Time, s"))
+        axes[0].legend(loc="upper left")
+        drawn = drawing.svg(figure, f"alignment-{number}")
+    _mount, alignment, readings = key
+    return outline.Figure(
+        _(
+            "Attitude error after {alignment}, readings {readings}: the integral of the rate that "
+            "remains ± σ of white noise; dashed: as predicted from what is fixed in the case.",
+            alignment=numbers.shortened(alignment, 60),
+            readings=readings,
+        ),
+        drawn,
+        _("Attitude error against time with rotation and without."),
+    )
+
+
+def _size(rows: Sequence[Record], prefix: str, level: bool) -> drawing.Array:
+    """The error of the levels, or that about the vertical, arc minutes."""
+    if not level:
+        return arrays(rows, f"{prefix}up")[0] / ARC_MINUTE.size
+    east, north = arrays(rows, f"{prefix}east", f"{prefix}north")
+    return np.asarray(np.hypot(east, north) / ARC_MINUTE.size)
+
+
+def _gain(row: Record) -> str:
+    factor, sigma = numbers.with_own_sigma(row["factor"], row["factor_sigma"])
+    still, modulated = (
+        numbers.significant(ARC_MINUTE.of(row[key]), 3)
+        for key in ("still_error", "modulated_error")
+    )
+    return _(
+        "Readings {readings}: within {seconds} s the levels err by up to {still} arcmin at rest "
+        "and by {modulated} arcmin under rotation, {factor} ± {sigma} times less; what is fixed in "
+        "the case explains {predicted} times.",
+        readings=row["readings"],
+        seconds=numbers.fixed(row["seconds"], 0),
+        still=still,
+        modulated=modulated,
+        factor=factor,
+        sigma=sigma,
+        predicted=numbers.significant(row["predicted_factor"], 3),
+    )

@@ -1,7 +1,5 @@
 """The noise of every channel: Allan deviation, spectrum, and the terms that describe both."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Sequence
 
 from inertial.sensors import PLURAL

@@ -1,7 +1,5 @@
 """The white noise of every channel in every manoeuvre, beside the data sheet."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from statistics import median
 

@@ -1,7 +1,5 @@
 """The two figures of the noise: Allan deviation, and root of the power density, log-log."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 

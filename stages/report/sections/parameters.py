@@ -1,7 +1,5 @@
 """The parameters by result and method, each with its sigma, and what could not be determined."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -70,9 +68,8 @@ def parts(tables: Tables) -> Iterator[Part]:
     yield Equation(
         _("reading = M · truth + bias"),
         _(
-            "M = I + S + N: scale errors sₓ… on the diagonal; off the diagonal, the "
-            "cross-axis term m with indices i, j is the response of sensor i to an input "
-            "along axis j."
+            "M = I + S + N: scale errors sₓ… on the diagonal; off the diagonal, the cross-axis "
+            "term m with indices i, j is the response of sensor i to an input along axis j."
         ),
     )
     correction = _("truth = M⁻¹ · (reading − bias)")

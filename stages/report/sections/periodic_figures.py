@@ -1,7 +1,5 @@
 """Periodic effects of turns: an oscillation over one second, a ripple over the table's angle."""
 
-from __future__ import annotations
-
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees, pi

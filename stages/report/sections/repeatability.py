@@ -1,7 +1,5 @@
 """How well the calibrations of this IMU repeat, its jumps, and what the next may find."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from inertial.sensors import SINGULAR
@@ -97,13 +95,12 @@ def _components(rows: Sequence[Record]) -> outline.Table:
         lines,
         note=_(
             "Repeatability is the standard deviation of all values (IEEE Std 528; for gyros JJF "
-            "1535-2015, 3.2). "
-            "A component is value ± σ by restricted likelihood, the sigmas within campaigns taken "
-            "off, or below its 95 % limit. Gravity and latitude that calibrations share are the "
-            "same error in all of them, so these are in no difference and in no σ here. Components "
-            "joined by + divide these calibrations in the same way, so they are one number. "
-            "Campaigns that share a mounting or a switch-on say so in their files; parts of one "
-            "campaign are those between its power cycles."
+            "1535-2015, 3.2). A component is value ± σ by restricted likelihood, the sigmas within "
+            "campaigns taken off, or below its 95 % limit. Gravity and latitude that calibrations "
+            "share are the same error in all of them, so these are in no difference and in no σ "
+            "here. Components joined by + divide these calibrations in the same way, so they are "
+            "one number. Campaigns that share a mounting or a switch-on say so in their files; "
+            "parts of one campaign are those between its power cycles."
         ),
     )
 

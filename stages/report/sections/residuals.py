@@ -1,7 +1,5 @@
 """Residuals of the joint fit: whole turns sample by sample, and their size over the noise."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple

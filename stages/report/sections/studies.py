@@ -1,13 +1,12 @@
 """Studies: what a longer rest, another window or a larger angle changes, and the table."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from math import degrees
 
 import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.campaign.records import grouped
 from inertial.text import numbers
 from inertial.text.messages import _
 from inertial.text.units import DEGREES_PER_HOUR, PPM
@@ -91,9 +90,8 @@ SECTION = Section(
     "studies",
     _("Studies"),
     _(
-        "The parameters by single epochs and running means of static positions, by a "
-        "window that slides through the turns and by one that grows, and the angle of "
-        "the table against time."
+        "The parameters by single epochs and running means of static positions, by a window that "
+        "slides through the turns and by one that grows, and the angle of the table against time."
     ),
     _(
         "A window of N samples lies between N + 1 edges and lasts N sample intervals: "
@@ -142,10 +140,7 @@ def _wholes(tables: Tables) -> dict[Pair, Record]:
 
 
 def _by_time(rows: Sequence[Record], wholes: Wholes, by: str = "set rate") -> By:
-    by_pair: By = {}
-    for row in rows:
-        if row["by"] == by and _pair(row) in wholes:
-            by_pair.setdefault(_pair(row), []).append(row)
+    by_pair = grouped((row for row in rows if row["by"] == by and _pair(row) in wholes), _pair)
     return dict(list(by_pair.items())[:MOST_PAIRS])
 
 
@@ -164,10 +159,9 @@ def _sliding(slides: By, wholes: Wholes) -> Figure:
     count = numbers.whole(next(iter(slides.values()))[0]["samples"])
     return Figure(
         _(
-            "Windows of 180° by time ({count_} samples at the set rate) against "
-            "where they start: over the steady part, its first second close up, and "
-            "the bias. Coloured band: ± σ of noise and oscillation, without the "
-            "table's speed; grey: the whole turn ± σ. {ALIAS}",
+            "Windows of 180° by time ({count_} samples at the set rate) against where they start: "
+            "over the steady part, its first second close up, and the bias. Coloured band: ± σ of "
+            "noise and oscillation, without the table's speed; grey: the whole turn ± σ. {ALIAS}",
             count_=count,
             ALIAS=ALIAS,
         ),
@@ -218,7 +212,7 @@ def _panel(
     axis, unit = whole_turn["axis"], UNIT[key]
     value, sigma = (column / unit.size for column in arrays(rows, key, SIGMA[key]))
     colour = drawing.AXIS_COLOUR.get(axis, drawing.INK)
-    drawing.band(panel, place, value - sigma, value + sigma, colour, alpha=0.2, linewidth=0)
+    drawing.around(panel, place, value, sigma, colour, 0.2)
     panel.plot(place, value, color=colour, linewidth=0.8)
     drawing.ticks(panel, 4)
     panel.yaxis.get_major_formatter().set_useOffset(False)  # type: ignore[attr-defined]
@@ -244,11 +238,10 @@ def _on_place(rows: Sequence[Record], whole_turn: Record) -> str:
         )
     )
     return _(
-        "{axis} gyro, {whole_turn}: with the start of the 180° the scale factor varies "
-        "between {least} and {most} ppm, {rms} ppm rms about its mean, where noise and "
-        "the remainder of an oscillation over a window of this length allow {allowed} "
-        "ppm. Its mean differs by {off} ppm from that of the whole turn, whose σ is "
-        "{sigma} ppm.",
+        "{axis} gyro, {whole_turn}: with the start of the 180° the scale factor varies between "
+        "{least} and {most} ppm, {rms} ppm rms about its mean, where noise and the remainder of an "
+        "oscillation over a window of this length allow {allowed} ppm. Its mean differs by {off} "
+        "ppm from that of the whole turn, whose σ is {sigma} ppm.",
         axis=whole_turn["axis"],
         whole_turn=_names(whole_turn),
         least=least,
@@ -277,9 +270,8 @@ def _on_angle(rows: Sequence[Record], whole_turn: Record) -> str:
                 )
             )
     return _(
-        "{axis} gyro, {whole_turn}: the difference from the whole turn is "
-        "{differences}. The larger the angle, the smaller the effect of noise and of an "
-        "oscillation that is cut.",
+        "{axis} gyro, {whole_turn}: the difference from the whole turn is {differences}. The "
+        "larger the angle, the smaller the effect of noise and of an oscillation that is cut.",
         axis=whole_turn["axis"],
         whole_turn=_names(whole_turn),
         differences="; ".join(differences),
@@ -308,10 +300,9 @@ def _middles(tables: Tables) -> Table:
         [_middle(row, wholes[_pair(row)]) for row in tables.rows("middles")],
         _("None: no pair of whole turns forward and backward was recorded."),
         _(
-            "By time, σ includes that of the table's rate; the last column includes "
-            "only noise and the "
-            "remainder of an oscillation, so a difference far beyond it is due to "
-            "the table's speed."
+            "By time, σ includes that of the table's rate; the last column includes only noise and "
+            "the remainder of an oscillation, so a difference far beyond it is due to the table's "
+            "speed."
         ),
     )
 

@@ -1,7 +1,5 @@
 """Studies of the table: its encoder against the gyros, and its angle against time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from matplotlib.axes import Axes
@@ -115,6 +113,7 @@ def _row(row: Record) -> Row:
 # ---- time and angle
 
 MOST_TURNS = 9
+MARGINS = drawing.Margins(left=0.45, across=0.4, down=0.3)
 COLOUR = "#0072b2"
 RAMPS = ((_("Spin-up"), "spin-up"), (_("Spin-down"), "spin-down"))
 SET = (
@@ -124,11 +123,10 @@ SET = (
 )
 LIMITS = (
     _(
-        "Use: the function gives the motion of the table between its ends, so its real "
-        "speed and its ramps, for other gyros, for other turns and for marks at fixed "
-        "angles. With the speed from turns about other axes the middle 180° become as "
-        "good as their noise, whatever the set rate, if the table keeps the same speed "
-        "in all turns."
+        "Use: the function gives the motion of the table between its ends, so its real speed and "
+        "its ramps, for other gyros, for other turns and for marks at fixed angles. With the speed "
+        "from turns about other axes the middle 180° become as good as their noise, whatever the "
+        "set rate, if the table keeps the same speed in all turns."
     ),
     _(
         "Limits: with the angle of its own turn a window gives the scale factor of the "
@@ -156,7 +154,6 @@ def time_and_angle(tables: Tables) -> Iterator[Part]:
 
     names = list(turns)[:MOST_TURNS]
     rest = more(len(turns) - len(names), _(" in the table time_angle"))
-    margins = drawing.Margins(left=0.45, across=0.4, down=0.3)
     yield Figure(
         _(
             "Angle of the table less that of the set trapezoid, which is laid through the "
@@ -165,7 +162,7 @@ def time_and_angle(tables: Tables) -> Iterator[Part]:
             "faster than the line resolves. {rest}",
             rest=rest,
         ).rstrip(),
-        drawing.grid(names, draw, 0.95, margins, _("Time, s"), "time-angle"),
+        drawing.grid(names, draw, 0.95, _("Time, s"), "time-angle", MARGINS),
         _("The table's angle against time, less the trapezoid that was set."),
     )
     yield from map(Paragraph, _sentences(turns, tables.rows("motions")))
@@ -180,8 +177,8 @@ def _angle(panel: Axes, name: str, rows: Sequence[Record]) -> None:
         values / SECONDS_OF_ARC.size for values in (angle - set_angle, sigma, swing)
     )
     panel.axhline(0, color=drawing.INK, linewidth=0.6)
-    drawing.band(panel, time, -sigma, sigma, drawing.QUIET, alpha=0.25, linewidth=0)
-    drawing.band(panel, time, off - swing, off + swing, COLOUR, alpha=0.3, linewidth=0)
+    drawing.around(panel, time, 0 * sigma, sigma, drawing.QUIET, 0.25)
+    drawing.around(panel, time, off, swing, COLOUR, 0.3)
     panel.plot(time, off, color=COLOUR, linewidth=0.7)
     panel.set_title(numbers.shortened(name, 30), pad=3)
     drawing.ticks(panel, 4)

@@ -1,12 +1,10 @@
 """Parameters as functions of the temperature: curves with sigma, knots, range, warm-up."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 
-import numpy as np
 from matplotlib.axes import Axes
 
+from inertial.campaign.records import grouped
 from inertial.sensors import PLURAL
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
@@ -14,7 +12,7 @@ from inertial.text.typography import capital
 from inertial.text.units import ICE_POINT, quantity
 from stages.report import drawing, outline
 from stages.report.results import symbol
-from stages.report.tables import Record, Tables
+from stages.report.tables import Record, Tables, arrays
 from stages.report.words import plain, with_mount
 
 SAME = 0.99  # share of its span that the two ends of a curve without a turn differ by
@@ -26,11 +24,9 @@ Curves = Mapping[str, Sequence[Record]]  # by parameter
 
 def parts(tables: Tables) -> Iterator[outline.Part]:
     """A figure for each sensor and mount, a table of the curves; nothing where there is none."""
-    groups: dict[tuple[str, str], dict[str, list[Record]]] = {}
-    for row in tables.rows("temperature_curves"):
-        group = groups.setdefault((row["mount"], row["sensor"]), {})
-        group.setdefault(row["parameter"], []).append(row)
-    for number, ((mount, sensor), curves) in enumerate(groups.items(), 1):
+    groups = grouped(tables.rows("temperature_curves"), lambda row: (row["mount"], row["sensor"]))
+    for number, ((mount, sensor), own) in enumerate(groups.items(), 1):
+        curves = grouped(own, lambda row: str(row["parameter"]))
         yield _figure(with_mount(PLURAL[sensor], mount), f"temperature-{number}", curves)
         yield _table(with_mount(PLURAL[sensor], mount), curves)
     if sentences := [row["sentence"] for row in tables.rows("warm_up")]:
@@ -54,13 +50,10 @@ def _figure(title: str, key: str, curves: Curves) -> outline.Figure:
     def panel_of(panel: Axes, name: str) -> None:
         rows = curves[name]
         unit = quantity(name, rows[0]["unit"]).shown
-        at, value, sigma = (
-            np.array([row[of] for row in rows], np.float64)
-            for of in ("temperature", "value", "sigma")
-        )
+        at, value, sigma = arrays(rows, "temperature", "value", "sigma")
         at, value, sigma = at - ICE_POINT, value / unit.size, sigma / unit.size
         colour = drawing.AXIS_COLOUR[name.partition("_")[2][0]]
-        drawing.band(panel, at, value - sigma, value + sigma, colour, alpha=0.22, linewidth=0)
+        drawing.around(panel, at, value, sigma, colour, 0.22)
         panel.plot(at, value, color=colour)
         if rows[0]["knot"] is not None:
             panel.axvline(rows[0]["knot"] - ICE_POINT, color=drawing.INK, dashes=(3, 2), lw=0.6)
@@ -68,10 +61,9 @@ def _figure(title: str, key: str, curves: Curves) -> outline.Figure:
         drawing.ticks(panel, 4)
 
     shown = list(curves)[:MOST_PANELS]
-    margins = drawing.Margins(left=0.45, across=0.5, down=0.3)
     return outline.Figure(
         _("{title}: value ± σ against temperature.", title=capital(title)),
-        drawing.grid(shown, panel_of, 0.95, margins, _("Temperature, °C"), key),
+        drawing.grid(shown, panel_of, 0.95, _("Temperature, °C"), key),
         _(
             "{curves} of the {title}, each within its band of sigma.",
             curves=counted(len(shown), "curve"),

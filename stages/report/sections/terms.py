@@ -1,7 +1,5 @@
 """The terms that a report uses, at its end: in the words of docs/glossary.md, shortened."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass

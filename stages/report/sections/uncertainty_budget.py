@@ -1,7 +1,5 @@
 """Where the uncertainties of the result come from, and how they belong together."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Unmodelled effects: each with its certainty, what it does and what to do; detection limits."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from inertial.campaign.records import grouped, sizes_of_result

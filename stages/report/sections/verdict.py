@@ -1,7 +1,5 @@
 """The verdict of each sensor in a sentence, and one card for each cause."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator
 from math import degrees
