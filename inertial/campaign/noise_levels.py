@@ -173,6 +173,10 @@ class NoiseLevels:
         found = [row.get("quantisation") or 0.0 for row in self._of_axes(sensor)]
         return np.nan_to_num(np.array(found, np.float64))
 
+    def delay(self, sensor: str) -> float:
+        """By how much the slowest low pass of a sensor delays slow changes, s; 0: none is seen."""
+        return max((row.get("delay") or 0.0 for row in self._of_axes(sensor)), default=0.0)
+
     def rounded(self, sensor: str) -> int:
         """How many means of the channels of a sensor are off by rounding of coarse counts."""
         own = (row for key, row in self._rows.items() if key[-1].startswith(sensor))

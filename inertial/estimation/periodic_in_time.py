@@ -109,6 +109,7 @@ def line_at(
     split = without_line(record, rate, frequency)
     bins, noise = _spectrum(split.less(split.amplitude), rate)
     inside = (bins >= lowest) & (bins < rate / 2) & shape.loud(bins)
+    inside = inside if inside.any() else (bins > 0) & shape.loud(bins)
     flat = noise[inside] / shape.at(bins[inside]) ** 2
     per_sample = float(np.sqrt(np.median(flat) / np.log(2) * rate / 2) * shape.at(frequency))
     # Rife & Boorstyn, IEEE Trans. Inform. Theory 20 (1974) 591: bounds of both.
@@ -225,7 +226,8 @@ def pooled(
     record may be so in all common. The p-value is not corrected for the search.
 
     Returns frequencies, Hz, drop of chi-squared, and natural logarithm of its p-value, (m,) each;
-    0 at sidelobes of what is below `lowest`, as in `strongest`.
+    0 at sidelobes of what is below `lowest`, as in `strongest`. None where all is faint: behind a
+    filter that leaves next to nothing there is no line either, and no level to judge it by.
 
     Parameters
     ----------
@@ -239,7 +241,8 @@ def pooled(
     frequency = np.arange(lowest, min(rates) / 2, step)
     drop, tapered, leakage = np.zeros((3, len(frequency)))
     noise, loud = shape.at(frequency) ** 2, shape.loud(frequency)
-    loud |= not loud.any()
+    if not loud.any():
+        return np.zeros(0), np.zeros(0), np.zeros(0)
     for record, rate in zip(records, rates, strict=True):
         place = np.arange(len(record))
         level = record - np.polyval(np.polyfit(place, record, 1), place)

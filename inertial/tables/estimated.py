@@ -101,7 +101,7 @@ NOISE_TERMS = Table(
 )
 LEVELS = Table(
     "levels",
-    6,
+    7,
     (
         optional("manoeuvre", TEXT, "", "as in noise; none: all that have no row"),
         optional("phase", TEXT, "", "rest or steady; none as manoeuvre"),
@@ -136,6 +136,13 @@ LEVELS = Table(
             DOUBLE,
             "rad/s/√s, m/s²/√s",
             "K of its bias by terms, or the likeliest; none: does not enter",
+        ),
+        optional(
+            "delay",
+            DOUBLE,
+            "s",
+            "of slow changes, by the slow low pass behind which the noise at rest of a common"
+            " level's channel is; none: none is seen",
         ),
         optional("data_sheet", DOUBLE, "rad/s, m/s²", "B of the data sheet, of a common level"),
         optional(
