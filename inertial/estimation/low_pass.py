@@ -66,7 +66,7 @@ class LowPass:
     def of_lowest(self, lowest: Lowest, highest: float) -> Lowest | None:
         """The same of the lowest coefficients, those up to a frequency, Hz; None of none."""
         count = int(min(highest / lowest.spacing, len(lowest.ramp)))
-        amplitude = np.sqrt(self.power(lowest.spacing * np.arange(1, count + 1)))
+        amplitude = np.sqrt(self.power(lowest.spacing * np.arange(1.0, count + 1)))
         power = np.where(THROUGH[:, None, None], np.outer(amplitude, amplitude), 1.0)
         used = replace(
             lowest,

@@ -140,7 +140,7 @@ def _of_channel(bins: Bins, lowest: Sequence[Lowest], channel: int) -> NoiseTerm
         float(bins.frequency[within].max()),
         _ranges(bins, lines),
         misfit,
-        passed and passed.low_pass,
+        None if passed is None else passed.low_pass,
     )
 
 
