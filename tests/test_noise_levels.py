@@ -59,3 +59,13 @@ def test_of_short_rests_no_level_is_its_own_by_chance():
         common.append(levels["white_noise"].iloc[0])
     assert np.sum(own) <= 2  # of 4000, where 3.5 % are below the mean by three sigma of their own
     assert np.mean(common) == pytest.approx(TRUE, rel=0.012)  # a mean of roots is 2.5 % too low
+
+
+def test_a_manoeuvre_without_a_level_of_a_channel_that_stands_still_has_the_largest_of_it():
+    nothing = pd.DataFrame(
+        columns=["manoeuvre", "phase", "channel", "white_noise", "sigma", "per_sample"]
+    )
+    rounding = {(f"m{i}", "rest", "gyro_x"): 1e-4 * i for i in (2, 3, 1)}
+    levels = NoiseLevels(effective_levels(nothing, rounding=rounding))
+    assert levels.of("m1", "rest", ["gyro_x"])[0] == pytest.approx(1e-4)
+    assert levels.of("m1", "steady", ["gyro_x"])[0] == pytest.approx(3e-4)

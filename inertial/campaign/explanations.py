@@ -21,6 +21,7 @@ from inertial.campaign.where_causes_act import (
     RESTARTS,
     Where,
     anywhere,
+    as_large,
     at_the_gaps,
     by_single_readings,
     is_of_step,
@@ -195,10 +196,10 @@ EXPLANATIONS = (
     ),
     # Whenever a counter begins again, what it counts is cut.
     Explanation(("time_backwards",), ("short_rest",), same_log),
-    Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), anywhere),
+    Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), as_large),
     Explanation(("encoder_scale", "encoder_scale_or_eccentricity"), ("rate_off",), anywhere),
     Explanation(("encoder_angles",), (*BY_ANGLES_OF_TURNS, *MISFITS), same_sensor),
-    Explanation(("clock_scale", "rate_off"), ("table_rate_off",), anywhere),
+    Explanation(("clock_scale", "rate_off"), ("table_rate_off",), as_large),
     Explanation(("table_rate_off",), ("wrong_rate",), anywhere),
     Explanation(
         ("wrong_time_unit",),

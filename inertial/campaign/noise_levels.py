@@ -17,6 +17,7 @@ they enter the covariance of every estimate, and from nowhere else.
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
+from operator import itemgetter
 
 import numpy as np
 import pandas as pd
@@ -79,7 +80,8 @@ def effective_levels(
 
     `drifts`: see `drift_of`, and the quantisation, by channel; `rounding`: what coarse counts add,
     by manoeuvre, phase and channel; a channel that stands still in a manoeuvre has no level there,
-    but this. One that stands still in all has no noise that its counts would show, and this alone.
+    but this. One that stands still in all has no noise that its counts would show, and this alone;
+    the largest is that of a manoeuvre that has none.
 
     The common variance is the mean of theirs, weighted with w = (N/σ)², their relative precision,
     for else a level that came out low would weigh more for it. Then the common level has the
@@ -119,6 +121,8 @@ def effective_levels(
             place = dict(zip(("manoeuvre", "phase", "channel"), key, strict=True))
             rows.append(place | common | {"rounding": rounding.pop(key)})
     still = {"white_noise": 0.0, "sigma": 0.0, "source": COMMON, "degrees": np.inf}
+    most = {channel: size for (*_, channel), size in sorted(rounding.items(), key=itemgetter(1))}
+    rows += [still | {"channel": channel, "white_noise": size} for channel, size in most.items()]
     for (manoeuvre, phase, channel), size in rounding.items():
         place = {"manoeuvre": manoeuvre, "phase": phase, "channel": channel}
         rows.append(place | still | {"rounding": size})
@@ -172,6 +176,10 @@ class NoiseLevels:
         """The white noise of the integral of each channel of a sensor, (3,), rad or m/s."""
         found = [row.get("quantisation") or 0.0 for row in self._of_axes(sensor)]
         return np.nan_to_num(np.array(found, np.float64))
+
+    def delay(self, sensor: str) -> float:
+        """By how much the slowest low pass of a sensor delays slow changes, s; 0: none is seen."""
+        return max((row.get("delay") or 0.0 for row in self._of_axes(sensor)), default=0.0)
 
     def rounded(self, sensor: str) -> int:
         """How many means of the channels of a sensor are off by rounding of coarse counts."""

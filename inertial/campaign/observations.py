@@ -58,6 +58,7 @@ def campaign_of(data: CampaignData) -> Campaign:
     for position in statics:
         force = (position.manoeuvre.name, position.force(), motions.at_rest(position))
         static_forces.append(force)
+    late = abs(data.noise.delay("accel") - data.noise.delay("gyro"))
     for recorded, turn in zip(inputs.whole_turns, inputs.turns, strict=True):
         if solution.gyro is None:
             break
@@ -69,6 +70,7 @@ def campaign_of(data: CampaignData) -> Campaign:
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
             clock = data.clocks.get(recorded.plan.log)
             early = 0.0 if clock is None or clock.averaged else clock.step / np.sqrt(12)
+            early = float(np.hypot(early, late))
             walk = 0.0 if turn.course is not None else turn.angle_walk
             parts = _turning(recorded.plan, recorded.blocks, motion, noise, edges, early, walk)
             stretches = _stretches(turn.stretch, [at for _, _, at in parts], drifts["accel"])
@@ -152,7 +154,8 @@ def _turning(
     stops the larger white one: what shakes the rest after a turn may begin before it is at rest.
     `early`: sigma of the time of a sample against that of the gyros, s. By it a mean is off in
     proportion to the change from its start to its end, of specific force that does not turn with
-    the table: that of a lever arm in a ramp. `walk`: as in `turn_errors`.
+    the table: that of a lever arm in a ramp. The delay by a slow low pass of one of the sensors is
+    in it. `walk`: as in `turn_errors`.
     """
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused

@@ -11,6 +11,8 @@ MAX_APART_SIGMAS = 3.0  # of two times of one event
 MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with any other
 MAX_ANGLE_RATIO = 2.0  # of one rotation as two stages have it: a rest shows two components of three
 MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
+CLOCK = "clock_scale"  # in ppm
+MAX_RATIO_OF_TIMES = 2.0  # of what a clock is off by, as two stages have it
 
 Where = Callable[[Hypothesis, Hypothesis], bool]
 
@@ -23,6 +25,19 @@ def anywhere(cause: Hypothesis, other: Hypothesis) -> bool:
 def same_sensor(cause: Hypothesis, other: Hypothesis) -> bool:
     """In the sensor that the other finding concerns, or either is not about one alone."""
     return None in (cause.sensor, other.sensor) or cause.sensor == other.sensor
+
+
+def as_large(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In the whole campaign, where a time is off by as much as the other finding shows it."""
+    shown, own = _share_of_time(other), _share_of_time(cause)
+    return not own or shown <= MAX_RATIO_OF_TIMES * own
+
+
+def _share_of_time(finding: Hypothesis) -> float:
+    """By which share times are off, by a ratio or by ppm; 0 where that is not known."""
+    if not finding.size:
+        return 0.0
+    return 1e-6 * finding.size if finding.cause == CLOCK else abs(finding.size - 1)
 
 
 def where_unresolved(cause: Hypothesis, other: Hypothesis) -> bool:

@@ -103,7 +103,7 @@ class ClockScale(Detector):
                 start,
                 end,
                 away / (1 + reference) * 1e6,
-                sensor=_concerned(log) if whole else None,
+                sensor=_concerned(log) if whole or log.recorded_on is None else None,
                 facts=_Facts(
                     here=log.interval * (1 + part.mean),
                     usual=log.interval * (1 + reference),

@@ -13,7 +13,7 @@ Each level gives the frequencies below an eighth of its sampling rate, the first
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import numpy as np
@@ -58,9 +58,11 @@ class Lowest:
     """The lowest cosine coefficients of stretches that are equally long.
 
     count: stretches; shapes: (4, k, k), their covariance by the stochastic terms with coefficients
-    of 1; ramp: (k,), their value by a drift of 1 U/s; sums: (c, k); products: (c, k, k).
+    of 1; ramp: (k,), their value by a drift of 1 U/s; sums: (c, k); products: (c, k, k); spacing:
+    Hz, frequency of the first, by which they are apart.
     """
 
+    spacing: float
     count: int
     shapes: Array
     ramp: Array
@@ -158,13 +160,14 @@ class Powers:
         known = self._lowest.get(key)
         if known is None:
             shapes, ramp = lowest_shapes(count, step * mean_of, lowest)
-            known = Lowest(0, shapes, ramp, np.zeros_like(kept), np.zeros((len(kept), lowest, 1)))
-        self._lowest[key] = Lowest(
-            known.count + 1,
-            known.shapes,
-            known.ramp,
-            known.sums + kept,
-            known.products + kept[:, :, None] * kept[:, None, :],
+            sums, products = np.zeros_like(kept), np.zeros((len(kept), lowest, 1))
+            spacing = 1 / (2 * count * step * mean_of)
+            known = Lowest(spacing, 0, shapes, ramp, sums, products)
+        self._lowest[key] = replace(
+            known,
+            count=known.count + 1,
+            sums=known.sums + kept,
+            products=known.products + kept[:, :, None] * kept[:, None, :],
         )
         squares = dct(_without_trend(values[None])[0], axis=0, norm="ortho") ** 2
         self._collect(self._bins, number, lowest + 1, squares, 1)

@@ -11,9 +11,10 @@ has an upper limit, and the model contains the likeliest.
 
 Oscillations, bins that stand significantly above both their neighbours and the model, are marked
 and not fitted. What the terms cannot describe, the fall of a sensor's own low-pass filter, is left
-out from the lowest frequency at which it shows. Quantisation comes after every filter, so it is no
-larger than what is left out allows: what rises with the frequency within the band, and falls beyond
-it, as a hand does that trembles, is none.
+out from the lowest frequency at which it shows; where the terms behind one of the usual filters
+describe it, that filter is in the model (`low_pass`). Quantisation comes after every filter, so it
+is no larger than what is left out allows: what rises with the frequency within the band, and falls
+beyond it, as a hand does that trembles, is none.
 """
 
 from collections.abc import Sequence
@@ -23,6 +24,7 @@ from functools import cached_property
 import numpy as np
 
 from inertial.arrays import Array, Booleans, Integers
+from inertial.estimation.low_pass import WHITE, LowPass, likeliest
 from inertial.estimation.multiresolution import BINS_PER_OCTAVE, Bins, Lowest, Powers
 from inertial.estimation.noise_likelihood import Fit, Likelihood
 from inertial.estimation.noise_model import STOCHASTIC, TERMS, NoiseModel
@@ -77,7 +79,8 @@ class NoiseTerms:
     terms: by name, in the order of TERMS; model: all that is in the data, of a class the likeliest
     (its ramp with sign); covariance: (5, 5), of the coefficients in the model; highest: Hz, the
     highest frequency that was fitted; lines: (l, 2), Hz, from and to, of oscillations; misfit:
-    mean square of what is left over its expectation, 1 where the model describes the data.
+    mean square of what is left over its expectation, 1 where the model describes the data;
+    low_pass: behind which all terms but the quantisation are, where one is seen.
     """
 
     terms: dict[str, Term]
@@ -86,6 +89,15 @@ class NoiseTerms:
     highest: float
     lines: Array
     misfit: float
+    low_pass: LowPass | None = None
+
+    def density(self, frequency: Array, interval: float) -> Array:
+        """That of both sides of the sampled rate, see `NoiseModel.density`, behind the low pass."""
+        if self.low_pass is None:
+            return self.model.density(frequency, interval)
+        through = replace(self.model, quantisation=0.0).density(frequency, interval)
+        after = NoiseModel(self.model.quantisation).density(frequency, interval)
+        return np.asarray(through * self.low_pass.power(frequency) + after)
 
 
 def noise_terms(powers: Powers) -> list[NoiseTerms | None]:
@@ -103,18 +115,32 @@ def _of_channel(bins: Bins, lowest: Sequence[Lowest], channel: int) -> NoiseTerm
     if not len(density) or (density <= ROUNDING * density.max()).any():
         return None
     lines, leaked, within = _usable(bins, lowest, channel)
+    passed = likeliest(bins, lowest, channel, lines)
+    if passed is not None:
+        own, beside, worst = _lines(passed.bins, passed.lowest, channel, passed.within)
+        if worst <= 1:
+            bins, lowest, lines, leaked, within = (
+                *(passed.bins, passed.lowest),
+                *(own, beside, passed.within),
+            )
+        else:
+            passed = None
     used = ~leaked & within
     likelihood = Likelihood.of(bins, lowest, channel, used)
     likelihood, misfit = _widened(likelihood, bins.frequency[used])
     beyond = ~within & ~lines
     chosen = _Selection(likelihood, _largest_quantisation(bins, channel, beyond)).chosen()
+    covariance = chosen.covariance
+    if passed is not None:
+        covariance[WHITE, WHITE] += (passed.spread * chosen.model.white_noise) ** 2
     return NoiseTerms(
         {name: chosen.term(name) for name in TERMS},
         chosen.model,
-        chosen.covariance,
+        covariance,
         float(bins.frequency[within].max()),
         _ranges(bins, lines),
         misfit,
+        None if passed is None else passed.low_pass,
     )
 
 

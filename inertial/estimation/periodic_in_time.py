@@ -8,13 +8,15 @@ from scipy.linalg import pinvh
 from scipy.optimize import minimize_scalar
 
 from inertial.arrays import Array, Booleans
-from inertial.estimation.probability import chi2_logsf
+from inertial.estimation.probability import chi2_isf, chi2_logsf
 from inertial.estimation.spectrum import WHITE, NoiseShape
 
 MIN_SAMPLES = 64  # in which a line can be distinguished from noise
 OVERSAMPLING = 2  # the search steps by half a bin, so that no line lies between two
 MAX_LEAKAGE = 0.05  # of the amplitude of a removed line, one bin away from it
 MIN_TAPERED = 0.4  # least ratio of peak powers, less the noise, with and without a Hann window
+MIN_LOUD_BINS = 12  # behind a filter, that tell the level of the noise
+BESIDE_BINS = 3  # on each side, that show how loud filtered noise is; a line fills one or two
 HANN_NOISE = 1.5  # its equivalent noise bandwidth, bins (Harris 1978)
 MAX_SIDELOBE = 8.0  # power a bin away from what is below, to its peak: 1/π² of a sine, 8 of a decay
 
@@ -79,7 +81,7 @@ def strongest(
     density = density / noise
     loud = inside & shape.loud(frequency)
     level = float(np.median(density[loud]) / np.log(2)) if loud.any() else 0.0
-    if level <= 0:
+    if level <= 0 or loud.sum() < min(MIN_LOUD_BINS * OVERSAMPLING, inside.sum()):
         return None
     tapered = _spectrum(record, rate, tapered=True)[1] / noise
     candidates = inside & _not_sidelobes(density, tapered, level, leakage)
@@ -109,6 +111,7 @@ def line_at(
     split = without_line(record, rate, frequency)
     bins, noise = _spectrum(split.less(split.amplitude), rate)
     inside = (bins >= lowest) & (bins < rate / 2) & shape.loud(bins)
+    inside = inside if inside.any() else (bins > 0) & shape.loud(bins)
     flat = noise[inside] / shape.at(bins[inside]) ** 2
     per_sample = float(np.sqrt(np.median(flat) / np.log(2) * rate / 2) * shape.at(frequency))
     # Rife & Boorstyn, IEEE Trans. Inform. Theory 20 (1974) 591: bounds of both.
@@ -131,7 +134,21 @@ def _spectrum(record: Array, rate: float, *, tapered: bool = False) -> tuple[Arr
     return rfftfreq(count, 1 / rate), density
 
 
-def _not_sidelobes(density: Array, tapered: Array, noise: float, leakage: Array) -> Booleans:
+def _louder(power: Array, degrees: int) -> Array:
+    """By how many times noise of a shape is louder beside each frequency than by the shape, (m,).
+
+    Between the zeros of a moving average it is, for its shape is known by cells that may be as wide
+    as they are apart. By the median of χ² of so many `degrees`; 1 at least.
+    """
+    side = BESIDE_BINS * OVERSAMPLING
+    about = np.pad(power, side, mode="reflect" if len(power) > side else "edge")
+    beside = np.median(np.lib.stride_tricks.sliding_window_view(about, 2 * side + 1), axis=1)
+    return np.asarray(np.maximum(beside / chi2_isf(0.5, degrees), 1.0))
+
+
+def _not_sidelobes(
+    density: Array, tapered: Array, noise: Array | float, leakage: Array
+) -> Booleans:
     """Where a peak would be no sidelobe of what is below the search, (m,).
 
     It is higher than such `leakage` may be, or as high in the tapered record; an oscillation that
@@ -225,7 +242,8 @@ def pooled(
     record may be so in all common. The p-value is not corrected for the search.
 
     Returns frequencies, Hz, drop of chi-squared, and natural logarithm of its p-value, (m,) each;
-    0 at sidelobes of what is below `lowest`, as in `strongest`.
+    0 at sidelobes of what is below `lowest`, as in `strongest`. None where nearly all is faint:
+    behind a filter that leaves next to nothing there is no level to judge a line by.
 
     Parameters
     ----------
@@ -239,7 +257,8 @@ def pooled(
     frequency = np.arange(lowest, min(rates) / 2, step)
     drop, tapered, leakage = np.zeros((3, len(frequency)))
     noise, loud = shape.at(frequency) ** 2, shape.loud(frequency)
-    loud |= not loud.any()
+    if loud.sum() < min(MIN_LOUD_BINS * OVERSAMPLING, len(loud)):
+        return np.zeros(0), np.zeros(0), np.zeros(0)
     for record, rate in zip(records, rates, strict=True):
         place = np.arange(len(record))
         level = record - np.polyval(np.polyfit(place, record, 1), place)
@@ -253,6 +272,8 @@ def pooled(
         leaks = _leakage(*_spectrum(record, rate), lowest, seconds, frequency) / noise
         leakage += leaks * rate * len(record) / 2 * unit
     degrees = 2 * len(records)
+    if shape is not WHITE:
+        drop, tapered, leakage = np.array([drop, tapered, leakage]) / _louder(drop, degrees)
     log_p = chi2_logsf(drop, degrees)
     lines = _not_sidelobes(drop, tapered, degrees, degrees + leakage)
     return frequency, drop, np.where(lines, log_p, 0.0)

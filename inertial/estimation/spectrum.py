@@ -265,7 +265,8 @@ def shape_of(frequencies: Sequence[Array], levels: Sequence[Array]) -> NoiseShap
     if chi2_sf(apart, len(found) - 1) > MAX_CHANCE:
         return WHITE
     about = np.pad(found, 1, mode="reflect", reflect_type="odd")
-    smooth = np.convolve(about, (0.25, 0.5, 0.25), "valid")
+    # Between two zeros of a moving average the noise is as loud as it is.
+    smooth = np.maximum(np.convolve(about, (0.25, 0.5, 0.25), "valid"), found)
     middle = (edges[1:] + edges[:-1]) / 2
     return NoiseShape(middle[: len(known)][known], np.exp(smooth / 2))
 

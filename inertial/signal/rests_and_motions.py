@@ -242,7 +242,8 @@ def steady_part(rate: Array) -> tuple[int, int]:
     A low pass of the gyro, or the drive, settles behind the ramp: rate = plateau (1 - c exp(-t/τ)).
     From the ramp to where that is within the scatter of the bins about the plateau it takes some
     time: in as much time again it becomes less by that factor once more. Where it is within it at
-    once, or never, nothing settles. Where the ramps meet there is no such part: it is empty.
+    once, or never, nothing settles. A low pass that rounds a corner has the other ramp begin as
+    gently. Where the ramps meet there is no such part: it is empty.
 
     Parameters
     ----------
@@ -262,10 +263,16 @@ def steady_part(rate: Array) -> tuple[int, int]:
     first, after = int(reached[0]) + 1, int(reached[-1])
     scatter = MAD_TO_SIGMA * float(np.median(np.abs(middle - plateau)))
     longest = int((after - first) * MAX_SETTLING_SHARE)
-    near = np.abs(rate[first : first + longest + SETTLED_BINS] - plateau) <= MAX_SETTLED * scatter
-    settled = np.convolve(near, np.ones(SETTLED_BINS), "valid") == SETTLED_BINS
-    bins = int(np.argmax(settled)) if settled.any() else 0
-    return first + min(2 * bins + (bins > 0), longest), after
+    near = np.abs(rate[first:after] - plateau) <= MAX_SETTLED * scatter
+    return first + _unsettled(near, longest), after - _unsettled(near[::-1], longest)
+
+
+def _unsettled(near: Booleans, longest: int) -> int:
+    """The bins from a ramp to where all are near the plateau, and as many again."""
+    bins = longest + SETTLED_BINS
+    settled = np.convolve(near[:bins], np.ones(SETTLED_BINS), "valid") == SETTLED_BINS
+    first = int(np.argmax(settled)) if settled.any() else 0
+    return min(2 * first + (first > 0), longest)
 
 
 def _short_plateau(speed: Array, level: float) -> tuple[int, int]:

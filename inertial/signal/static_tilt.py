@@ -121,7 +121,7 @@ class Resting:
         """The tilt by which the force changes between the records `first` and `after`.
 
         With it, how much of it the gyros turned meanwhile. Nothing else happens from `start` to
-        `stop`.
+        `stop`. A gyro whose bias changes, too, turned by an angle that depends on when it did.
         """
         side, beside = round(SIDE_S / self.interval), round(MOTION_S / self.interval)
         first, after = max(first - beside, start + 1), min(after + beside, stop - 1)
@@ -135,11 +135,13 @@ class Resting:
             return tilt, UNCONFIRMED
         if self.masked[first:after].any():
             return tilt, KNOCKED
-        usual = (self.rate[earlier].mean(axis=0) + self.rate[later].mean(axis=0)) / 2
-        turned = (self.rate[first:after] - usual).sum(axis=0) * self.interval
+        rates = [self.rate[own].mean(axis=0) for own in (earlier, later)]
+        turned = (self.rate[first:after] - np.mean(rates, axis=0)).sum(axis=0) * self.interval
         by_rate = float(np.max(self.mean_noise[3:])) * self.interval * np.sqrt(after - first)
+        seconds = (after - first) * self.interval
+        by_change = float(np.linalg.norm(rates[1] - rates[0])) * seconds / np.sqrt(12)
         shortest = min(first - earlier.start, later.stop - after)
-        sigma = float(np.hypot(by_rate, self.tilt_noise(shortest / 2)))
+        sigma = float(np.linalg.norm([by_rate, by_change, self.tilt_noise(shortest / 2)]))
         return tilt, Agreement(float(turned @ tilt) / size**2, sigma / size)
 
     def speeded(self, start: int, place: int, stop: int) -> Agreement:

@@ -79,7 +79,7 @@ NOISE_TERMS = table(
 )
 LEVELS = table(
     "levels",
-    6,
+    7,
     optional_text("manoeuvre", "as in noise; none: all that have no row"),
     optional_text("phase", "rest or steady; none as manoeuvre"),
     text("channel", "one of the six channels"),
@@ -108,6 +108,12 @@ LEVELS = table(
         "random_walk",
         "rad/s/√s, m/s²/√s",
         "K of its bias by terms, or the likeliest; none: does not enter",
+    ),
+    optional_number(
+        "delay",
+        "s",
+        "of slow changes, by the slow low pass behind which the noise at rest of a common"
+        " level's channel is; none: none is seen",
     ),
     optional_number("data_sheet", "rad/s, m/s²", "B of the data sheet, of a common level"),
     optional_number(

@@ -132,6 +132,7 @@ NAMES = {
     "turning_point_once": _("turning point of a tumble recorded once"),
     "sign_flip": _("reversed sign"),
     "size_effect": _("size effect of the accelerometers"),
+    "slow_low_pass": _("slow low pass"),
     "step_in_turn": _("step of the angle in one turn"),
     "status_invalid": _("invalid status"),
     "table_angle_scale": _("scale of the table's angle"),

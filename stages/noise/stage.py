@@ -14,6 +14,7 @@ from inertial.campaign.masked_samples import MaskedSamples, pieces
 from inertial.campaign.noise_levels import RESIDUALS, STATED, effective_levels
 from inertial.campaign.records import Clock, Row, clocks_of, rows_of
 from inertial.campaign.references import BY_HAND
+from inertial.estimation.low_pass import AVERAGE
 from inertial.sensors import COLUMNS, PLURAL
 from inertial.signal.scatter import smallest_step
 from inertial.tables.stage import Stage, Tables
@@ -23,7 +24,7 @@ from inertial.text.units import quantity
 from stages.noise.declared import DECLARED
 from stages.noise.rounding import Level, count_sizes, rounding_levels
 from stages.noise.spectra import Spectra, shapes_of
-from stages.noise.static_stretches import SensorNoise, StaticStretches
+from stages.noise.static_stretches import Filtered, SensorNoise, StaticStretches
 
 # ---- White noise at rest that is far above the data sheet's: the IMU is another one, or is shaken.
 
@@ -74,6 +75,51 @@ def louder(terms: Sequence[Row]) -> Iterator[Finding]:
         )
 
 
+# ---- A low pass behind which the noise at rest is, so slow that it delays what is read of a ramp.
+
+SLOW = "slow_low_pass"
+MIN_DELAY_S = 0.05  # a ramp of a table has corners no sharper than that
+SETTLED = 7.0  # delays, after which a thousandth is left behind a filter of first order
+
+
+def slow(sensor: str, filtered: Mapping[str, Filtered]) -> Iterator[Finding]:
+    """A finding for a sensor whose channels are late; `filtered`: of those that have a filter."""
+    late = {channel: own.low_pass for channel, own in filtered.items()}
+    late = {channel: own for channel, own in late.items() if own.delay > MIN_DELAY_S}
+    if not late:
+        return
+    most = max(late.values(), key=lambda own: own.delay)
+    yield Finding(
+        id=f"noise/{SLOW}/{sensor}",
+        cause=SLOW,
+        sensor=sensor,
+        size=most.delay,
+        unit="s",
+        severity=1,
+        sentence=_(
+            "The noise of the {sensors} {axes} at rest is that behind a low pass of {corner} Hz "
+            "({kind}): what they read of a motion is late by {delay} s.",
+            sensors=PLURAL[sensor],
+            axes=", ".join(channel[-1] for channel in late),
+            corner=significant(most.corner, 2),
+            kind=_("a moving average")
+            if most.order == AVERAGE
+            else _("of order {order}", order=most.order),
+            delay=significant(most.delay, 2),
+        ),
+        consequence=_(
+            "In ramps the two sensors do not read the same moment, which the sigmas there allow "
+            "for. After each motion the filter settles for {seconds} s, of which what begins "
+            "sooner contains a part.",
+            seconds=significant(SETTLED * most.delay, 2),
+        ),
+        action=_(
+            "Record without the filter, or with one of a higher frequency: means have as little "
+            "noise without it. Else rest for longer than it settles after each motion."
+        ),
+    )
+
+
 # ---- The stage.
 
 MAX_SAMPLES = 32768  # of one periodogram: bounds the memory of a long log
@@ -116,7 +162,8 @@ def noise(
         for (manoeuvre, phase), collected in spectra.items()
         for row in collected.rows(manoeuvre, phase, shapes)
     ]
-    measured = pd.DataFrame(rows) if rows else tables.NOISE.empty()
+    filtered = {channel: own for each in noises for channel, own in each.filtered.items()}
+    measured = pd.DataFrame(before_filters(rows, filtered)) if rows else tables.NOISE.empty()
     drifts = dict(chain.from_iterable(n.drifts(sheet) for n in noises))
     levels = effective_levels(measured, drifts, rounding_levels(spectra, counts))
     if of_means:
@@ -129,8 +176,37 @@ def noise(
         "allan": [row for each in noises for row in each.allan_rows()],
         "spectra": [row for each in noises for row in each.spectrum_rows()],
         "terms": terms,
-        "findings": table_of([] if by_hand else list(louder(terms))),
+        "findings": table_of(
+            [
+                *(one for each in noises for one in slow(each.sensor, each.filtered)),
+                *([] if by_hand else louder(terms)),
+            ]
+        ),
     }
+
+
+def before_filters(rows: Sequence[Row], filtered: Mapping[str, Filtered]) -> Iterator[Row]:
+    """The white noise of each manoeuvre as it is before the filter of its channel.
+
+    In the band of these levels a slow filter leaves a part of it, the same at rest and in motion.
+    """
+    usual = {
+        channel: own.white_noise
+        / float(
+            np.median(
+                [
+                    row["white_noise"]
+                    for row in rows
+                    if row["channel"] == channel and row["phase"] == "rest"
+                ]
+            )
+        )
+        for channel, own in filtered.items()
+    }
+    for row in rows:
+        factor = usual.get(row["channel"], 1.0)
+        scaled = {key: factor * row[key] for key in ("white_noise", "sigma")}
+        yield row | scaled
 
 
 def _without_quantisation(

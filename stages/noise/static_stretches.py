@@ -13,6 +13,7 @@ only if it drifts in the stretches in which it is upright, too; these are pooled
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from inertial.arrays import Array, Booleans, finite_or_none
 from inertial.campaign.noise_levels import DRIFTS, MAX_P_VALUE, drift_of
 from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
+from inertial.estimation.low_pass import LowPass
 from inertial.estimation.multiresolution import MIN_WHOLE, Powers, Spectrum, WelchSums, segment_for
 from inertial.estimation.noise_model import TERMS, NoiseModel
 from inertial.estimation.noise_terms import QUANTISATION, NoiseTerms, noise_terms
@@ -260,6 +262,13 @@ class StaticStretches:
                     yield _noise_of(pool, by_hand)
 
 
+class Filtered(NamedTuple):
+    """A low pass, and the white noise that it is given."""
+
+    low_pass: LowPass
+    white_noise: float
+
+
 @dataclass(frozen=True)
 class SensorNoise:
     """The noise of the c recorded channels of a sensor.
@@ -296,6 +305,15 @@ class SensorNoise:
             and terms.terms[QUANTISATION].p_value < MAX_P_VALUE
         }
 
+    @property
+    def filtered(self) -> dict[str, Filtered]:
+        """The low pass behind which the noise of channels is, and their white noise before it."""
+        return {
+            channel: Filtered(terms.low_pass, terms.model.white_noise)
+            for channel, terms in zip(self.channels, self.terms, strict=True)
+            if terms is not None and terms.low_pass is not None and terms.model.white_noise
+        }
+
     def drifts(
         self, sheet: Mapping[str, Mapping[str, float | None]]
     ) -> Iterator[tuple[str, dict[str, float | None]]]:
@@ -306,6 +324,8 @@ class SensorNoise:
             own = {**drift_of(shown, stated, self.seconds), "data_sheet": stated}
             if channel in self.quantised:
                 own["quantisation"] = self.quantised[channel].quantisation
+            if channel in self.filtered:
+                own["delay"] = self.filtered[channel].low_pass.delay
             yield channel, own
 
     def allan_rows(self) -> Iterator[Row]:
@@ -332,7 +352,7 @@ class SensorNoise:
         for i, (channel, terms) in enumerate(zip(self.channels, self.terms, strict=True)):
             if terms is None:
                 continue
-            model = terms.model.density(spectrum.frequency, self.interval)
+            model = terms.density(spectrum.frequency, self.interval)
             line = spectrum.in_ranges(terms.lines)
             for j, frequency in enumerate(spectrum.frequency.tolist()):
                 yield {

@@ -223,6 +223,14 @@ def test_a_warm_up_of_all_three_is_no_motion():
     assert seen(values) == []
 
 
+@pytest.mark.parametrize("late", [0, 50, 100])
+def test_biases_of_both_sensors_that_change_at_once_are_no_motion(late):
+    values = rest(N, 2)
+    values[K:, 0] += 5e-3  # m/s², as 105″ about y
+    values[K + late :, 4] += -60 * ARC_SECOND  # rad/s, so within 2 s as much, and on
+    assert all(name == "bias_jump" for name, _ in seen(values))
+
+
 def test_a_creep_within_the_uncertainty_of_the_position_is_not_told():
     assert seen(tilting(500), position=3600) == []
 

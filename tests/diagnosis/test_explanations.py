@@ -199,6 +199,14 @@ def test_a_clock_that_is_wrong_explains_what_is_in_proportion_and_laws(found, ex
     assert (found.cause not in causes(clock, found)) == explained
 
 
+@pytest.mark.parametrize(("ratio", "explained"), [(1.0004, True), (1.01, False)])
+def test_a_clock_explains_what_is_off_by_no_more_than_it_is(ratio, explained):
+    clock, turns = finding("quality", "clock_scale", "gyro"), finding("segment", "rate_off")
+    clock = replace(clock, row=clock.row | {"size": 350.0})  # ppm
+    turns = replace(turns, row=turns.row | {"size": ratio})
+    assert ("rate_off" not in causes(clock, turns)) == explained
+
+
 @pytest.mark.parametrize(("amplitude", "explained"), [(3e-5, True), (3e-3, False)])
 def test_coarse_counts_explain_an_oscillation_that_is_smaller_than_they_are(amplitude, explained):
     coarse, rings = finding("quality", "quantisation", "gyro"), effect("oscillation", "gyro")

@@ -52,6 +52,20 @@ def test_in_filtered_noise_the_p_values_are_about_those_of_chance():
     assert np.mean([line.p_value < 1e-4 for line in alone]) > 0.5
 
 
+@pytest.mark.parametrize("slow", ["filter", "average"])
+@pytest.mark.parametrize("seed", range(4))
+def test_behind_a_slow_filter_there_is_no_line(slow, seed):
+    records = filtered(seed, 24, 1.0, 700)
+    if slow == "average":
+        white = np.random.default_rng(seed).standard_normal((24, 750))
+        records = list(lfilter(np.ones(50) / 50, [1], white, axis=1)[:, 50:])
+    shape = noise_shape(records, RATE, 0.5)
+    frequency, _, log_p = pooled(records, [RATE] * len(records), 2.0, shape)
+    assert log_p.min(initial=0.0) + np.log(max(len(frequency), 1)) > np.log(1e-5)
+    if slow == "filter":  # of a single record the level between two zeros is not known so well
+        assert not any(strongest(record, RATE, 2.0, (), shape) for record in records)
+
+
 def test_a_line_in_filtered_noise_is_found_with_its_sigmas():
     time, pulls = np.arange(SAMPLES) / RATE, []
     records = filtered(3, 40)
