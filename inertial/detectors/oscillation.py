@@ -86,16 +86,15 @@ class Oscillation(Detector):
                 without[one.start : one.end] = np.nan
             inside = turning[tone.start : tone.end]
             known = inside[np.isfinite(inside)]
-            ringing = _by_circumstance(
-                Ringing(
-                    tone,
-                    besides,
-                    float(known.mean()) if len(known) else np.nan,
-                    int(np.count_nonzero(without == 0)) >= MIN_REST_BLOCKS * BLOCK_READINGS,
-                ),
-                turning,
+            of_its_time = Ringing(
+                tone,
+                besides,
+                float(known.mean()) if len(known) else np.nan,
+                int(np.count_nonzero(without == 0)) >= MIN_REST_BLOCKS * BLOCK_READINGS,
             )
-            if ringing.turning > MIN_MAJORITY and _is_tremor(tone, piece.values[:, 3:]):
+            ringing = _by_circumstance(of_its_time, turning)
+            in_motion = MIN_MAJORITY if ringing is not of_its_time else 1 - MIN_MAJORITY
+            if ringing.turning > in_motion and _is_tremor(tone, piece.values[:, 3:]):
                 continue
             yield piece.event(
                 tone.start,
