@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 from drafting import Document, comments, drafted, told, written
 from logs_by_hand import EIGHTEEN, by_hand_log
-from moved_by_hand import GRAVITY, RATE
+from moved_by_hand import FACES, GRAVITY, RATE
 
 from commands.check import no_results
 from commands.draft.__main__ import draft, main
@@ -147,6 +147,18 @@ def test_a_draft_judges_by_the_attitudes_that_it_found(ups, said, tmp_path):
     found = comments(drafted({"log.txt": text}, tmp_path))
     assert said in found and "Nothing is missing" not in found
     assert ("What is missing" in found) == (len(ups) < len(EIGHTEEN))
+
+
+def test_faces_by_hand_calibrate_the_gyros_by_the_motions_between(tmp_path):
+    """Twelve rests on six faces, no turn: as set positions they showed biases of gyros alone."""
+    log = by_hand_log(4, ups=np.repeat(FACES, 2, axis=0), degrees=1.0)
+    text = written([np.arange(len(log.force)) / RATE, log.force, log.rate])
+    folder = drafted({"log.txt": text}, tmp_path)
+    assert [m["do"] for m in told(folder)["plan"]] == ["positions"]
+    results = chain.run(folder, tmp_path / "derived")
+    gyro = results.parameters("gyroscope", "free_positions").loc[list(linear_names())]
+    right = log.imu.rates - np.append(np.eye(3).ravel(), np.zeros(3))
+    assert np.abs((gyro["value"] - right) / gyro["sigma"]).max() < MAX_SIGMA
 
 
 def test_a_draft_by_hand_is_calibrated_to_its_truth(tmp_path):

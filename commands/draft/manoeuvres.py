@@ -128,6 +128,7 @@ def rounded_rate(rate: float) -> float:
 MIN_POSITIONS = 3  # static positions, to be a session of them
 MIN_FACES, MIN_SESSION_TURNS = 5, 2  # of a session beside a journey
 MAX_LEANING = np.radians(25)  # of what is mounted, on slopes
+MIN_FREE = 10  # rests that determine scale factors, cross terms and biases by |f| = g
 MIN_ON_FACES = 0.85  # share of all time at rest on faces, to be a session of faces
 SHARE_OF_SHORTEST = 0.7  # of the shortest static position, from which on one counts
 MAX_BESIDE_S = 5.0  # s, of a rest beside a turn that belong to it
@@ -190,12 +191,17 @@ def _of_samples(kind: Kind) -> list[Manoeuvre]:
 
 
 def _manoeuvres(part: Part, own: Divided) -> Iterator[Manoeuvre]:
-    """What one recording holds: positions, faces and turns in order, or a single manoeuvre."""
+    """What one recording holds: positions, faces and turns in order, or a single manoeuvre.
+
+    Many faces without turns are positions: the motions from one to the next are all that shows M of
+    the gyros, and they need no attitude.
+    """
     rests = own.rests
     if len(rests) >= MIN_POSITIONS and len(own.series.accel):
         between = about_vertical(own)
         session = _session(rests, between)
-        if not session:
+        free = len(rests) >= MIN_FREE and not between and len(own.series.gyro) > 0
+        if not session or free:
             shortest = min(rest.seconds for rest in rests)
             seconds = max(np.floor(SHARE_OF_SHORTEST * shortest), MIN_REST_S)
             yield Manoeuvre("positions", part, seconds=float(seconds), count=len(rests))

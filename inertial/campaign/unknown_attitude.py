@@ -176,7 +176,7 @@ def fitted_to(data: "CampaignData", positions: Sequence[FreeStaticPosition]) -> 
     """
     gravity, rests = data.gravity, [position.rest for position in positions]
     fit = partial(free_positions, rests, gravity.number, gravity.scatter)
-    return with_scatter(fit, between=SCATTER_RANGE, noise_degrees=data.noise.degrees)
+    return with_scatter(fit, between=SCATTER_RANGE, noise_degrees=data.noise.degrees, tested=False)
 
 
 def add_free_accelerometers(estimates: Estimates, data: "CampaignData") -> list[Finding]:

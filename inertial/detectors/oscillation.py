@@ -20,6 +20,9 @@ MIN_WINDOWS = 3  # at rest, or in turns, by which its amplitude there is known
 MAX_ABSENT_SHARE = 0.2  # of its amplitude elsewhere: where it has less it is absent
 MAX_EQUAL_SHARE = 0.8  # the same: where it has more it is as large there
 MIN_PRESENT_SIGMAS = 3.0  # of its square, by noise
+MAX_TREMOR_HZ = 15.0  # of a hand; physiological tremor has 4 to 12 Hz (Elble & Koller 1990)
+MEAN_S = 0.3  # s, of whole periods, after which the mean rate is compared with that before
+MAX_STEADY_CHANGE = 0.1  # of it from one mean to the next: no table's steady turn changes by more
 
 WHILE_TURNING = _(
     "Nothing is changed: over many periods it averages out. On a table look for a loose screw, and "
@@ -60,7 +63,8 @@ class Oscillation(Detector):
     whole. Where several channels have it, the finding names the one with the largest amplitude, of
     the sensor with the best signal-to-noise ratio; coherent lines of others may be coupling.
     Motion by hand, ramps and coloured noise rise above their own spectrum on one side only, or
-    keep no phase.
+    keep no phase. The tremor of a hand may keep it over one motion: what has its frequency, and is
+    there only while the IMU turns at rates that change, as no table's do, is the motion itself.
 
     Cause: the case, a loose screw, the drive of the table or the electronics ring. Angles and means
     over part of a turn are off, and the noise level, if it counts as noise.
@@ -82,15 +86,16 @@ class Oscillation(Detector):
                 without[one.start : one.end] = np.nan
             inside = turning[tone.start : tone.end]
             known = inside[np.isfinite(inside)]
-            ringing = _by_circumstance(
-                Ringing(
-                    tone,
-                    besides,
-                    float(known.mean()) if len(known) else np.nan,
-                    int(np.count_nonzero(without == 0)) >= MIN_REST_BLOCKS * BLOCK_READINGS,
-                ),
-                turning,
+            of_its_time = Ringing(
+                tone,
+                besides,
+                float(known.mean()) if len(known) else np.nan,
+                int(np.count_nonzero(without == 0)) >= MIN_REST_BLOCKS * BLOCK_READINGS,
             )
+            ringing = _by_circumstance(of_its_time, turning)
+            in_motion = MIN_MAJORITY if ringing is not of_its_time else 1 - MIN_MAJORITY
+            if ringing.turning > in_motion and _is_tremor(tone, piece.values[:, 3:]):
+                continue
             yield piece.event(
                 tone.start,
                 tone.end,
@@ -251,6 +256,21 @@ def _turning(piece: Piece, log: Log) -> Array:
             away = float(np.linalg.norm(block.mean(axis=0) - rest))
             turning[start : start + BLOCK_READINGS] = away > MIN_TURN_RATE
     return turning
+
+
+def _is_tremor(tone: Tone, rates: Array) -> bool:
+    """Whether it is of a hand that turns the IMU, by the rates of the piece, (n, 3), rad/s."""
+    if tone.frequency > MAX_TREMOR_HZ:
+        return False
+    length = round(np.ceil(MEAN_S * tone.frequency) * tone.rate / tone.frequency)
+    inside = rates[tone.start : tone.end]
+    means = inside[: len(inside) // length * length].reshape(-1, length, 3).mean(axis=1)
+    larger = np.maximum(*(np.linalg.norm(each, axis=1) for each in (means[:-1], means[1:])))
+    turning = larger > MIN_TURN_RATE
+    if not turning.any():
+        return False
+    change = np.linalg.norm(np.diff(means, axis=0), axis=1)[turning] / larger[turning]
+    return float(np.median(change)) > MAX_STEADY_CHANGE
 
 
 def _apart(detected: Sequence[Tone]) -> Iterator[tuple[Tone, tuple[float, ...]]]:

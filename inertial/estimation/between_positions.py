@@ -120,7 +120,9 @@ def fit(
         data = _data(stops, [passages[i] for i in places], known)
         about = in_order(_solved(data, NONE, data.start), data.names)
         for _ in range(ROUNDS):
-            found, scatter = likeliest(_Linear.about(data, about).estimate, noise_degrees)
+            found, scatter = likeliest(
+                _Linear.about(data, about).estimate, noise_degrees, tested=False
+            )
             if scatter == NONE:
                 break
             estimate = _solved(data, scatter, about)

@@ -1,14 +1,16 @@
 """Differences between stretches beyond noise: scatter and random walk by restricted likelihood.
 
 Unmodelled effects make every stretch (a static position, a rate segment) differ from the others by
-more than the noise, and sigmas of noise alone would be too small. A scatter is an offset
-N(0, scatter²) of each stretch, independent of all others. A random walk moves the bias further the
-more time passes. The size of each is that of largest restricted likelihood (REML, Patterson &
-Thompson 1971), and each is included only if the deviance, −2 log likelihood, decreases by
-`MIN_DEVIANCE_DROP`. Stretches near in time are often alike for other reasons: at the same position
-or attitude, so that a sensor that responds to gravity resembles a random walk of its bias; and so
-does a steady drift. Where one of these alternatives is clearly more likely there is no random walk,
-and the stretches have a scatter.
+more than the noise, and sigmas of noise alone would be too small. A scatter is an offset N(0,
+scatter²) of each stretch, independent of all others. A random walk moves the bias further the more
+time passes. The size of each is that of largest restricted likelihood (REML, Patterson & Thompson
+1971), and each is included only if the deviance, −2 log likelihood, decreases by
+`MIN_DEVIANCE_DROP`: effects are sought beside no more than the data show. But the sigmas of
+positions by hand contain a scatter that no test shows, too: one as large as the noise of a position
+is not found in half of the sessions of 20 positions. Stretches near in time are often alike for
+other reasons: at the same position or attitude, so that a sensor that responds to gravity resembles
+a random walk of its bias; and so does a steady drift. Where one of these alternatives is clearly
+more likely there is no random walk, and the stretches have a scatter.
 """
 
 from collections.abc import Callable, Sequence
@@ -144,6 +146,8 @@ def with_scatter(
     between: tuple[float, float],
     noise_degrees: float,
     deviance: Deviance | None = None,
+    *,
+    tested: bool = True,
 ) -> ScatterFit:
     """The fit with a scatter where noise alone cannot explain the residuals.
 
@@ -156,11 +160,12 @@ def with_scatter(
     between : smallest and largest scatter, in the unit of the readings
     noise_degrees : see `Estimate.p_value`
     deviance : of the estimate, as a function of the scatter, where there is a shorter way to it
+    tested : else with the likeliest scatter, which may be 0, be it significant or not
     """
     deviance = deviance or (lambda scatter: fit(scatter).deviance)
     noise_only = fit(0.0)
     p_value = noise_only.p_value(noise_degrees)
-    if p_value >= MIN_CONSISTENT_P_VALUE:
+    if tested and p_value >= MIN_CONSISTENT_P_VALUE:
         return ScatterFit(noise_only, 0.0, p_value)
 
     grid = _grid(between)
@@ -170,7 +175,7 @@ def with_scatter(
         if deviances[-1] > min(deviances) + MAX_DEVIANCE_RISE:
             break
     scatter, smallest = _minimum(deviance, grid, int(np.argmin(deviances)))
-    if deviance(0.0) - smallest < MIN_DEVIANCE_DROP:
+    if deviance(0.0) - smallest < (MIN_DEVIANCE_DROP if tested else 0.0):
         return ScatterFit(noise_only, 0.0, p_value)
     return ScatterFit(fit(scatter), scatter, p_value)
 
@@ -364,17 +369,23 @@ class Scatter:
 
 
 def likeliest(
-    fit: Callable[[Scatter], Estimate], noise_degrees: float
+    fit: Callable[[Scatter], Estimate], noise_degrees: float, *, tested: bool = True
 ) -> tuple[ScatterFit, Scatter]:
-    """The scatters of largest restricted likelihood; `fit`: the estimate as a function of them."""
+    """The scatters of largest restricted likelihood; `fit`: the estimate as a function of them.
+
+    `tested`: as in `with_scatter`.
+    """
     found = Scatter()
     p_value = fit(found).p_value(noise_degrees)
     fitted: ScatterFit | None = None
     for _round in range(ROUNDS):
-        swung = with_scatter(_swinging(fit, found), SWING_RANGE, noise_degrees)
+        swung = with_scatter(_swinging(fit, found), SWING_RANGE, noise_degrees, tested=tested)
         found = replace(found, swing=swung.scatter)
         fits = [
-            (with_scatter(_resting(fit, found, sways), RATE_RANGE, noise_degrees), sways)
+            (
+                with_scatter(_resting(fit, found, sways), RATE_RANGE, noise_degrees, tested=tested),
+                sways,
+            )
             for sways in (False, True)
         ]
         before = fitted

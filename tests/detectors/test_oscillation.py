@@ -196,3 +196,15 @@ def test_the_chance_that_is_told_is_not_too_small():
     time = in_windows(np.arange(200_000.0))
     for _ in range(10):
         assert list(lines(windows(generator.standard_normal(200_000)), time)) == []
+
+
+@pytest.mark.parametrize(("frequency", "events"), [(6.0, 0), (25.0, 1)])
+def test_the_tremor_of_a_hand_is_motion(frequency, events):
+    """Of 6 Hz while the rate changes by as much as it is; a case that rings is no hand's tremor."""
+    values = rest(6000)
+    time = INTERVAL * np.arange(len(values))
+    inside = (time > 5) & (time < 25)
+    for channel, phase in ((3, 0.0), (4, 1.0)):
+        values[inside, channel] += np.sin(2 * np.pi * time[inside] / 7 + phase)
+    values = ringing(values, 3, frequency, 0.1, 700, 2300)
+    assert len(found(values)) == events

@@ -59,7 +59,7 @@ def test_a_parameter_that_no_row_shows_is_not_determined():
     assert fit.degrees == 4
 
 
-def scattered(size: float, seed: int):
+def scattered(size: float, seed: int, *, tested: bool = True):
     """Twelve groups of means with an offset each, and the fit of their common value."""
     rng = np.random.default_rng(seed)
     observed = 3 + size * rng.standard_normal(12) + 0.01 * rng.standard_normal(12)
@@ -70,7 +70,7 @@ def scattered(size: float, seed: int):
             np.ones((12, 1)), observed, sigma, np.zeros(1), np.full(1, VAGUE), parameters=1
         )
 
-    return with_scatter(fit, (1e-5, 10.0), np.inf)
+    return with_scatter(fit, (1e-5, 10.0), np.inf, tested=tested)
 
 
 def test_scatter_is_found_where_there_is_some_and_only_there():
@@ -81,6 +81,16 @@ def test_scatter_is_found_where_there_is_some_and_only_there():
     assert 0.7 < pulls.std() < 1.35
     silent = [scattered(0.0, seed) for seed in range(100)]
     assert sum(one.scatter > 0 for one in silent) <= 4  # 1 % is the bar
+
+
+@pytest.mark.parametrize("size", [0.0, 0.006, 0.01, 0.03])
+def test_a_scatter_that_is_not_significant_is_in_the_sigma(size):
+    """As large as the noise it is in no test of twelve: pulls were 1.3 without it."""
+    found = [scattered(size, seed, tested=False) for seed in range(500)]
+    pulls = [(one.estimate.values[0] - 3) / one.estimate.sigma[0] for one in found]
+    assert np.sqrt(np.mean(np.square(pulls))) == pytest.approx(1, abs=0.12)
+    sigma = np.mean([one.estimate.sigma[0] for one in found])
+    assert sigma == pytest.approx(np.hypot(0.01, size) / np.sqrt(12), rel=0.08)
 
 
 def test_columns_without_information_are_in_no_combination():
