@@ -213,6 +213,12 @@ EXPLANATIONS = (
         (*MISFITS, "accel_random_walk", "bias_jump", "table_moving", "position_not_kept"),
         anywhere,
     ),
+    # Behind it a rest after a motion begins with what is left of that.
+    Explanation(
+        ("slow_low_pass",),
+        (*MISFITS, "position_not_kept", "table_moving", "accel_random_walk"),
+        where_unresolved,
+    ),
     Explanation(("samples_lost",), MISFITS, same_sensor),
     Explanation(
         ("position_not_kept",),

@@ -82,8 +82,9 @@ MIN_DELAY_S = 0.05  # a ramp of a table has corners no sharper than that
 SETTLED = 7.0  # delays, after which a thousandth is left behind a filter of first order
 
 
-def slow(sensor: str, filtered: Mapping[str, Filtered]) -> Iterator[Finding]:
-    """A finding for a sensor whose channels are late; `filtered`: of those that have a filter."""
+def slow(noise_at_rest: SensorNoise) -> Iterator[Finding]:
+    """A finding for a sensor whose channels are late; where rests are over sooner, it spoils."""
+    sensor, filtered = noise_at_rest.sensor, noise_at_rest.filtered
     late = {channel: own.low_pass for channel, own in filtered.items()}
     late = {channel: own for channel, own in late.items() if own.delay > MIN_DELAY_S}
     if not late:
@@ -95,7 +96,7 @@ def slow(sensor: str, filtered: Mapping[str, Filtered]) -> Iterator[Finding]:
         sensor=sensor,
         size=most.delay,
         unit="s",
-        severity=1,
+        severity=3 if SETTLED * most.delay > noise_at_rest.usual else 1,
         sentence=_(
             "The noise of the {sensors} {axes} at rest is that behind a low pass of {corner} Hz "
             "({kind}): what they read of a motion is late by {delay} s.",
@@ -178,7 +179,7 @@ def noise(
         "terms": terms,
         "findings": table_of(
             [
-                *(one for each in noises for one in slow(each.sensor, each.filtered)),
+                *(one for each in noises for one in slow(each)),
                 *([] if by_hand else louder(terms)),
             ]
         ),

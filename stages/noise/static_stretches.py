@@ -273,9 +273,10 @@ class Filtered(NamedTuple):
 class SensorNoise:
     """The noise of the c recorded channels of a sensor.
 
-    `interval`: s, between samples; `seconds`: of the longest stretch; `stepped`: (c,), whether one
-    manoeuvre alone changes by a step at rest, so that what it shows as a drift is none; `of_bias`:
-    by which terms the biases drift, by hand without the support where that tilts.
+    `interval`: s, between samples; `seconds`: of the longest stretch; `usual`: of the median one;
+    `stepped`: (c,), whether one manoeuvre alone changes by a step at rest, so that what it shows as
+    a drift is none; `of_bias`: by which terms the biases drift, by hand without the support where
+    that tilts.
     """
 
     sensor: str
@@ -285,6 +286,7 @@ class SensorNoise:
     spectrum: Spectrum
     interval: float
     seconds: float
+    usual: float
     stepped: Booleans
     of_bias: list[NoiseTerms | None]
 
@@ -398,6 +400,7 @@ def _noise_of(pool: _Pool, by_hand: bool) -> SensorNoise:
         pool.welch.spectrum(),
         pool.interval,
         max(pool.powers.seconds),
+        float(np.median(pool.powers.seconds)),
         of_one_manoeuvre(pool.steps, len(pool.channels)),
         [_without_support(pool, i, t) for i, t in enumerate(terms)] if by_hand else terms,
     )
