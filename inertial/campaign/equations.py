@@ -9,6 +9,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.equations_by_hand import (
+    MIN_BENT,
     NO_TABLE,
     SWAYING,
     ByHand,
@@ -44,6 +45,7 @@ NO_GYROS = _(
     "their biases are determined"
 )
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
+NOTHING = np.zeros((1, 3))  # that changes a rest
 NOTHING_SHARED: Mapping[str, Sequence[Name]] = {}
 MAX_KEPT = 4  # equations with different effects
 
@@ -139,7 +141,7 @@ class Campaign:
             names = [*self._gyro_names, *(self.by_hand.moving if self.by_hand else ())]
             motions = self.gyro_motions
         else:
-            names = [name for name, _, _ in self.static_forces]
+            names = self._at_rest
             motions = [motion for _, _, motion in self.static_forces]
         each = zip(names, motions, strict=True)
         return [name for name, motion in each for _ in range(len(motion.rate))]
@@ -179,15 +181,67 @@ class Campaign:
         """The same with random walks of the gyro and accelerometer biases, rad/s/√s, m/s²/√s."""
         return replace(self, solution=replace(self.solution, random_walks=random_walks))
 
-    def about_leans(self, effects: Sequence[Effect], prior_sigma: float) -> "Campaign":
+    def about_effects(self, effects: Sequence[Effect], prior_sigma: float) -> "Campaign":
+        """The same, linear about the result with those effects; `prior_sigma`: as in `systems`."""
+        if self.by_hand:
+            return self._about_changes(self.by_hand, effects, prior_sigma)
+        return self._about_leans(effects, prior_sigma)
+
+    def _about_changes(
+        self, by_hand: ByHand, effects: Sequence[Effect], prior_sigma: float
+    ) -> "Campaign":
+        """By hand: about M and bias of the gyros, and directions at rest, that effects leave.
+
+        A bias that warms up bends M where it is taken as constant; and directions by accelerometers
+        that warm up are off alike from one position to the next, which is no scatter.
+        """
+        before, effects = self.solution.gyro, [e for e in effects if not self.excludes(e)]
+        gyro, accel = (self._changed(sensor, effects, prior_sigma) for sensor in SENSORS)
+        if not effects or before is None or gyro is None or accel is None:
+            return self
+        after, forces = gyro[0], dict(zip(self._at_rest, accel[1], strict=True))
+        stops = by_hand.handled.stops
+        changes = np.array([forces.get(stop.forces.name, NOTHING)[0] for stop in stops])
+        further = changes if by_hand.force_changes is None else changes - by_hand.force_changes
+        bent = max(
+            np.abs(after.matrix - before.matrix).max(),
+            np.abs(after.bias - before.bias).max(),
+            np.abs(further).max() / self.gravity.number,
+        )
+        if bent <= MIN_BENT:
+            return self
+        solution = replace(self.solution, gyro=after)
+        about = replace(by_hand, force_changes=changes)
+        return replace(self, by_hand=about, solution=solution, _known={}, _linear={})
+
+    @property
+    def _at_rest(self) -> list[str]:
+        """The manoeuvres of the accelerometers."""
+        return [name for name, _, _ in self.static_forces]
+
+    def _changed(
+        self, sensor: str, effects: Sequence[Effect], prior_sigma: float
+    ) -> tuple[Triad, list[Array]] | None:
+        """M and bias of a sensor with effects, and by how much these change each stretch of it."""
+        system = self.system(sensor, effects, prior_sigma)
+        estimate = system.solve_shared() if system else None
+        if estimate is None or not estimate.determined[:UNKNOWNS].all():
+            return None
+        unknowns = zip(estimate.names, estimate.values.tolist(), strict=True)
+        sizes = {name: value for (kind, name), value in unknowns if kind == "effect"}
+        answers = self._sensitivities(sensor, effects)
+        changes = [each.of([*sizes]) @ np.array([*sizes.values()]) for each in answers]
+        return accelerometers.triad_of(estimate), changes
+
+    def _about_leans(self, effects: Sequence[Effect], prior_sigma: float) -> "Campaign":
         """The same, its accelerometers linear about their result with those effects of a table.
 
         The tilt that a reading shows is by M and bias. A lean of all positions that is not among
-        the unknowns bends both, and a part of it is not seen. `prior_sigma`: as in `systems`.
+        the unknowns bends both, and a part of it is not seen.
         """
         leans = [effect for effect in effects if of_a_table(effect)]
         before = self.solution.accelerometer
-        if not leans or before is None or self.by_hand:
+        if not leans or before is None:
             return self
         system = self.system("accel", leans, prior_sigma)
         estimate = system.solve_shared() if system else None

@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
+from inertial.arrays import Array
 from inertial.campaign.motions import Merged
 from inertial.campaign.passages import Handled, RecordedPassage
 from inertial.campaign.records import Known
@@ -18,7 +19,7 @@ from inertial.campaign.solution import Solution
 from inertial.estimation import accelerometers, multi_position
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.attitude import integrate
-from inertial.estimation.between_positions import NONE, Prior
+from inertial.estimation.between_positions import NONE, Prior, Stop
 from inertial.estimation.carried_effects import Carried, CarriedEquations, carried_equations
 from inertial.estimation.drifting_equations import DriftingEquations
 from inertial.estimation.effect_information import NO_SENSITIVITIES, Sensitivities
@@ -33,6 +34,7 @@ from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
 MOST_SWAY = 0.02  # m/s, of a hand that holds still: some mm at 1 Hz, tenths of a mm at 10 Hz
+MIN_BENT = 2e-3  # of M, rad of a direction, rad/s: by less a motion of 3 rad is bent by 20 µrad
 NO_TABLE = _("No table takes part in a session by hand.")
 SWAYING = _("A hand that turns the IMU sways at rest too, more than this would change.")
 
@@ -48,9 +50,10 @@ class ByHand:
 
     `shared_clock`: as in `CampaignData`; `motions`: of each passage, in its stretches; `scatter`:
     of the gyros; `force_scatter`: of the accelerometers given the effects, m/s²;
-    `direction_scatter`: without, of the directions that the gyros are compared with; `degrees`:
+    `direction_scatter`: of the directions that the gyros are compared with; `degrees`:
     from which these were estimated, by sensor; `left_out`: by number, stops, then passages, whose
-    gyros are not used.
+    gyros are not used; `force_changes`: m/s², (n, 3), by effects, without which the specific force
+    of the stops is compared with the gyros.
     """
 
     handled: Handled
@@ -63,6 +66,7 @@ class ByHand:
     direction_scatter: float = 0.0
     degrees: Mapping[str, float] = field(default_factory=dict)
     left_out: frozenset[int] = frozenset()
+    force_changes: Array | None = None
 
     @property
     def scattering(self) -> tuple[str, ...]:
@@ -123,13 +127,24 @@ class ByHand:
         unknown = (NO_SENSITIVITIES, Stretch("unread"))
         rests = [at_rest.get(name, unknown) for name in self.names[: len(self.handled.stops)]]
         return carried_equations(
-            self.handled.stops,
+            self._corrected_stops,
             [each.passage for each in self.handled.passages],
             Prior(self.gravity.number, self.gravity.scatter, self.direction_scatter, self.earth),
             (gyro.matrix, gyro.bias, accelerometer.matrix, accelerometer.bias),
             Carried([own for own, _ in rests], moving, [s for _, s in rests] + self._stretches),
             prior_sigmas,
         )
+
+    @property
+    def _corrected_stops(self) -> list[Stop]:
+        """The stops with the specific force that effects leave."""
+        stops = self.handled.stops
+        if self.force_changes is None:
+            return stops
+        return [
+            replace(stop, forces=replace(stop.forces, mean=stop.forces.mean - change))
+            for stop, change in zip(stops, self.force_changes, strict=True)
+        ]
 
     def used(self, only: set[str] | None) -> list[bool]:
         """Of each stop, then of each passage, whether its gyros are used."""

@@ -55,7 +55,10 @@ def scattered(campaign: Campaign, effects: Sequence[Effect], noise_degrees: floa
 
 def _with_forces(campaign: Campaign, effects: Sequence[Effect], noise_degrees: float) -> Campaign:
     given = _forces(campaign, effects, noise_degrees)
-    plain = _forces(campaign, [], noise_degrees) if effects else given
+    by_hand = campaign.by_hand
+    assert by_hand is not None  # else there is no scatter
+    corrected = not effects or by_hand.force_changes is not None
+    plain = given if corrected else _forces(campaign, [], noise_degrees)
     return _with(
         campaign,
         force_scatter=given.scatter,

@@ -68,7 +68,8 @@ def select_with_scatter(
     for _round in range(MAX_ROUNDS):
         if not fitted:
             break
-        quiet = scattered(campaign, fitted, noise_degrees)
+        about = campaign.about_effects(fitted, NAMED_PRIOR_SIZE)
+        quiet = scattered(about, fitted, noise_degrees)
         selection = select_effects(quiet, effects, level, noise_degrees)
         before, fitted = fitted, selection.fitted
         if [effect.label for effect in fitted] == [effect.label for effect in before]:
@@ -188,7 +189,7 @@ def _select(
     for _round in range(MAX_ROUNDS):
         found = _about_what_was_found(named, families)
         there = [families[c.effect][c.value] for c in named.causes if c.effect in families]
-        about, campaign = campaign, campaign.about_leans(there, NAMED_PRIOR_SIZE)
+        about, campaign = campaign, campaign.about_effects(there, NAMED_PRIOR_SIZE)
         if not found and campaign is about:
             break
         families |= found

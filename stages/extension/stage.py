@@ -265,7 +265,7 @@ class Extension:
         known = [effect for effect in named if effect.scan is None or effect.at is not None]
         self.switch_ons = campaign.switch_ons(known)
         campaign = campaign.with_switch_ons(self.switch_ons)
-        campaign = campaign.about_leans(known, PRIOR_SIGMA)
+        campaign = campaign.about_effects(known, PRIOR_SIGMA)
         if campaign.by_hand:
             campaign = scattered(campaign, known, self.data.noise.degrees)
         if by_hand := campaign.by_hand:
