@@ -70,7 +70,7 @@ CHANNEL_REPAIRS = Table(
 
 CANDIDATES = Table(
     "candidates",
-    2,
+    3,
     (
         MOUNT,
         Column("sensor", TEXT, "", "gyro or accel"),
@@ -118,6 +118,13 @@ CANDIDATES = Table(
             "",
             "whether its laws of the rate, or of the attitude, have about as many terms as the plan"
             " has of these, so that no manoeuvre confirms their form",
+        ),
+        Column(
+            "saturated",
+            TRUTH,
+            "",
+            "whether its effects have a term for nearly every manoeuvre, so that none predicts"
+            " another",
         ),
         Column("sentence", SENTENCE, "", "the gain in words"),
     ),
