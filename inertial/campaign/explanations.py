@@ -23,6 +23,7 @@ from inertial.campaign.where_causes_act import (
     anywhere,
     as_large,
     at_the_gaps,
+    by_as_much,
     by_single_readings,
     is_of_step,
     is_same_event,
@@ -197,6 +198,8 @@ EXPLANATIONS = (
     # Whenever a counter begins again, what it counts is cut.
     Explanation(("time_backwards",), ("short_rest",), same_log),
     Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), as_large),
+    # Level turns show by gravity that it is the angle, neither the samples nor the speed.
+    Explanation(("table_angle_scale",), ("rate_off",), by_as_much),
     Explanation(("encoder_scale", "encoder_scale_or_eccentricity"), ("rate_off",), anywhere),
     Explanation(("encoder_angles",), (*BY_ANGLES_OF_TURNS, *MISFITS), same_sensor),
     Explanation(("clock_scale", "rate_off"), ("table_rate_off",), as_large),

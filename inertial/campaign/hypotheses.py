@@ -51,7 +51,8 @@ class Hypothesis:
     `repair`: the row of the repair that undoes it, if any; `rivals`: of repairs of which each
     would, so that none is applied; `masked`: whether its records are; `time`: s since the first
     sample of all logs, with its sigma, where it is one moment; `angle`: rad, by which it turns the
-    case, where it does.
+    case, where it does; `share`: by which the turns go further in their time than planned, if all
+    do.
     """
 
     id: str
@@ -66,6 +67,7 @@ class Hypothesis:
     masked: bool = False
     time: tuple[float, float] | None = None
     angle: float | None = None
+    share: float | None = None
 
     @property
     def sensor(self) -> str | None:
@@ -157,7 +159,7 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
     repair_of, without = _repairs(findings)
     positions = rows_of(findings.cause_positions)
     place = {row["finding"]: row["position"] for row in positions if row["rank"] == 1}
-    times, angles = _moments(findings), _angles(findings)
+    times, angles, shares = _moments(findings), _angles(findings), _shares(findings)
     touched, carrying = _touched(findings), dict[str, set[str]]()
     for row in rows_of(findings.structure_manoeuvres):
         carrying.setdefault(row["finding"], set()).add(row["manoeuvre"])
@@ -180,6 +182,7 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
                 masked=row["id"] in touched,
                 time=times.get(row["id"]),
                 angle=angles.get(row["id"]),
+                share=shares.get(row["id"]),
             )
     for row in without:
         cause = _CAUSE_OF_REPAIR[row["repair"]]
@@ -214,6 +217,21 @@ def _angles(findings: Findings) -> dict[str, float]:
         if row["cause"] in (TABLE_MOVING, STEP_IN_TURN) and row["size"] is not None:
             angles[row["id"]] = row["size"] * (ARC_SECOND if row["unit"] == "″" else 1.0)
     return angles
+
+
+def _shares(findings: Findings) -> dict[str, float]:
+    """By finding the share by which all turns go further in their time than planned."""
+    by_plan = {
+        row["id"]: row["size"] - 1
+        for row in findings.by_stage[PLAN]
+        if row["cause"] == "rate_off" and row["size"] is not None
+    }
+    by_model = {
+        row["finding"]: row["value"]
+        for row in rows_of(findings.effects)
+        if row["finding"] and row["effect"] == "table_angle_scale" and row["value"] is not None
+    }
+    return by_plan | by_model
 
 
 def _repairs(findings: Findings) -> tuple[dict[str, list[Row]], list[Row]]:

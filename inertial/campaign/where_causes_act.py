@@ -10,6 +10,7 @@ RESTARTS = frozenset({"gyro_restarts", "accel_restarts"})
 MAX_APART_SIGMAS = 3.0  # of two times of one event
 MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with any other
 MAX_ANGLE_RATIO = 2.0  # of one rotation as two stages have it: a rest shows two components of three
+MAX_SHARE_OFF = 0.3  # of a share by which all turns are off, as two stages have it
 MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
 CLOCK = "clock_scale"  # in ppm
 MAX_RATIO_OF_TIMES = 2.0  # of what a clock is off by, as two stages have it
@@ -71,6 +72,13 @@ def by_single_readings(cause: Hypothesis, other: Hypothesis) -> bool:
     """In a manoeuvre, of whose turn readings here and there lack little."""
     whole = other.cause in ("incomplete_turn", "wrong_angle") and other.size > MAX_OF_READINGS
     return same_manoeuvre(cause, other) and not whole
+
+
+def by_as_much(cause: Hypothesis, other: Hypothesis) -> bool:
+    """In all turns, which both say go further by about the same share."""
+    if not cause.share or other.share is None:
+        return False
+    return abs(other.share / cause.share - 1) < MAX_SHARE_OFF
 
 
 # ---- One event.

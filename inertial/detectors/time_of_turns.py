@@ -179,19 +179,21 @@ def _slightly_off(ratio: float, rate_sigma: float, stated: float) -> Description
         _(
             "By the time of the logs all turns are {ppm} ppm {slower} than planned, by their angle "
             "and by the rate, which the table keeps to {sigma} ppm: either the samples are taken "
-            "at another rate, or the table is that much {slower}.",
+            "at another rate, or the table is that much {slower}, or its turns go {further}.",
             ppm=significant(1e6 * abs(ratio - 1), 3),
             slower=_("slower") if ratio > 1 else _("faster"),
+            further=_("that much further") if ratio > 1 else _("less far by that much"),
             sigma=significant(1e6 * rate_sigma),
         ),
         _(
-            "If it is the samples, the scale factors of all gyros are off by {ppm} ppm; if it is "
-            "the table, they stand, for they are by the angle.",
+            "If it is the samples or the angles, the scale factors of all gyros are off by {ppm} "
+            "ppm; if it is the speed, they stand, for they are by the angle.",
             ppm=significant(1e6 * (ratio - 1), 3),
         ),
         _(
-            "Nothing is changed. Time some thousand samples by another clock and state {state}; or "
-            "state rate_sigma_ppm of the table as large as its speed is uncertain.",
+            "Nothing is changed. Time some thousand samples by another clock and state {state}; "
+            "state rate_sigma_ppm of the table as large as its speed is uncertain; or add whole "
+            "turns about a level axis, in which gravity shows how far they go.",
             state=state,
         ),
     )

@@ -64,7 +64,7 @@ CHANNEL_REPAIRS = table(
 
 CANDIDATES = table(
     "candidates",
-    2,
+    3,
     MOUNT,
     text("sensor", "gyro or accel"),
     text("method", "method of its parameters, as in parameters of extension"),
@@ -101,6 +101,10 @@ CANDIDATES = table(
         "open_form",
         "whether its laws of the rate, or of the attitude, have about as many terms as the plan"
         " has of these, so that no manoeuvre confirms their form",
+    ),
+    truth(
+        "saturated",
+        "whether its effects have a term for nearly every manoeuvre, so that none predicts another",
     ),
     sentence("sentence", "the gain in words"),
 )

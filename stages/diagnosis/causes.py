@@ -88,6 +88,15 @@ NO_ATTITUDE = _(
     "attitudes, which the cross-axis terms of the gyros would contain."
 )
 STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
+OF_EACH_MANOEUVRE = _(
+    "The {sensors} differ from manoeuvre to manoeuvre by more than noise. {effects} would explain "
+    "it, but together they have a term for nearly every manoeuvre and would explain anything: the "
+    "plan does not show what it is."
+)
+TURN_AGAIN = _(
+    "Repeat the turns in the same positions, some time later: what is the same again goes with the "
+    "attitude or the turn, the rest with time."
+)
 HARMLESS = _("Nothing need be done about it for this result.")
 
 
@@ -101,7 +110,8 @@ class Cause:
     error it is there, or that is left out for it; `turns`: by how many sigma one of its class turns
     a sensor's axes; `spoilt`: by how many sigma it moves the result of a sensor; `restored`: on
     which condition it does not: that the gravity to which that result is referred is right, or that
-    attitudes are; `doubted`: the sensors that attitudes would move if they were what is wrong.
+    attitudes are; `doubted`: the sensors that attitudes would move if they were what is wrong;
+    `saturated`: whether these effects have a term for nearly every manoeuvre, so that none is sure.
     """
 
     members: tuple[ExplainedFindings, ...]
@@ -118,6 +128,7 @@ class Cause:
     restored: str | None = None
     most_moved: str = ""
     doubted: frozenset[str] = frozenset()
+    saturated: bool = False
 
     def of(self, sensor: str) -> Cause:
         """What it is for the result of one sensor, with its consequences there."""
@@ -155,7 +166,8 @@ class Cause:
     @property
     def verdict(self) -> str:
         """How sure its name is."""
-        if self.main.verdict == LAW and self.cure != MODELLED:  # other manoeuvres do not confirm it
+        law = self.main.verdict == LAW and self.cure != MODELLED
+        if law or self.saturated:  # other manoeuvres do not confirm it
             return UNKNOWN_STRUCTURE
         if self.main.stage == MODEL:
             return self.main.verdict or UNKNOWN_STRUCTURE
@@ -199,6 +211,8 @@ class Cause:
     @property
     def name(self) -> str:
         """The cause in a few words, with its class and its place."""
+        if self.saturated:
+            return in_words(UNKNOWN_STRUCTURE)
         names = [in_words(name) for name in self.main.members] or list(
             dict.fromkeys(_of_rival(row) for row in self.main.rivals)
         )
@@ -222,7 +236,12 @@ class Cause:
         size = sizes.get(main.id, Size(main.row["size"], None, main.row["unit"]))
         count = sum(int(member.cause.row["count"]) for member in self.members)
         sentence = sentences.get(main.id, main.row["sentence"])
-        if len(self.members) > 1 and int(main.row["count"]) > 1:  # its sentence says which it is
+        if self.saturated:
+            names = dict.fromkeys(in_words(member.cause.cause) for member in self.members)
+            sentence = OF_EACH_MANOEUVRE.format(
+                sensors=PLURAL[main.sensor or "gyro"], effects=listed([*names])
+            )
+        elif len(self.members) > 1 and int(main.row["count"]) > 1:  # its sentence says which it is
             sentence += " " + _("In all there are {count} of them.", count=count)
         elif len(self.members) > 1:
             sentence += " " + plural(
@@ -232,7 +251,7 @@ class Cause:
             )
         return {
             "id": self.id,
-            "cause": main.cause,
+            "cause": UNKNOWN_STRUCTURE if self.saturated else main.cause,
             "verdict": self.verdict,
             "mount": main.mount,
             "sensor": main.sensor,
@@ -255,7 +274,7 @@ class Cause:
             "condition": self.condition,
             "consequence": self.most_moved + main.row["consequence"],
             "done": self.done,
-            "action": main.row["action"],
+            "action": TURN_AGAIN if self.saturated else main.row["action"],
         }
 
 
@@ -285,17 +304,24 @@ class Evidence:
     def causes(self, explained: Sequence[ExplainedFindings]) -> list[Cause]:
         """Every cause once: equal faults of one sensor are one."""
         groups: dict[Any, list[ExplainedFindings]] = {}
+        saturated = set[str]().union(*(r.decision.saturated for r in self.results.values()))
         for number, each in enumerate(explained):
             cause = each.cause
             alone = cause.stage == MODEL or cause.cause in DIFFERENT_THINGS or cause.repair
-            key = number if alone else (cause.cause, cause.mount, cause.sensor, cause.masked)
+            key: Any = number if alone else (cause.cause, cause.mount, cause.sensor, cause.masked)
+            if cause.id in saturated:
+                key = cause.mount, cause.sensor
             groups.setdefault(key, []).append(each)
         return [self._cause(tuple(group)) for group in groups.values()]
 
     def _cause(self, members: tuple[ExplainedFindings, ...]) -> Cause:
         main = max(members, key=lambda m: m.cause.row["severity"]).cause
+        saturated = any(main.id in result.decision.saturated for result in self.results.values())
         own = list(self._own(main))
         cure, moves, drop = self._cure(main, own, members)
+        if saturated:
+            each = (self._cure(m.cause, [*self._own(m.cause)], (m,))[1] for m in members)
+            moves = max((move for move in each if move is not None), default=None)
         apart = [{**result.decision.freed, **result.decision.left_out} for result in own]
         freed = next(filter(None, (manoeuvres.get(main.id) for manoeuvres in apart)), None)
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
@@ -319,7 +345,7 @@ class Evidence:
         given = (members, sensors, cure, done, moves, drop, gain, modelled, freed, turns, spoilt)
         gravity = self.gravity.get(main.id)
         condition = None if gravity is None else gravity.condition
-        return Cause(*given, condition, _most_moved(main, moves, own), doubted)
+        return Cause(*given, condition, _most_moved(main, moves, own), doubted, saturated)
 
     def _doubted(self, cause: Hypothesis, moves: float | None) -> frozenset[str]:
         """The gyros, where a structure of the accelerometers may be of attitudes that are wrong.

@@ -53,6 +53,10 @@ OPEN_FORM = _(
     "they have about as many terms as the plan has rates, or attitudes, so they would fit any law, "
     "and what lies between is not confirmed"
 )
+SATURATED = _(
+    "they have a term for nearly every manoeuvre, so they would fit anything, and none of these "
+    "predicts another"
+)
 ONE_NOT_DETERMINED = _("beside it one parameter would not be determined")
 NOT_DETERMINED = _("beside it {count} parameters would not be determined")
 REPLACED = _(
@@ -109,7 +113,8 @@ class Decision:
     candidates whose effects the same manoeuvres carry, which for all others say the same;
     `widened`: by how much its sigmas are, for residuals that nothing explains (Birge 1932);
     `joint_share`: the weight of the joint result beside it, in a mixture of both; `alone`: the
-    reason where the two say the same, so that there is no mixture.
+    reason where the two say the same, so that there is no mixture; `saturated`: the findings whose
+    effects have a term for nearly every manoeuvre.
     """
 
     method: str
@@ -120,6 +125,7 @@ class Decision:
     joint_share: float = 0.0
     alone: str = ""
     left_out: Mapping[str, str] = field(default_factory=dict)
+    saturated: frozenset[str] = frozenset()
 
 
 def alarms_of(findings: Iterable[Row], mount: str, sensor: str) -> list[Row]:
@@ -174,7 +180,8 @@ def decided(
     widened = 1.0 if _freed(own) else _widening(best, alarms)
     if against := _against(best, own, "" if widened > 1 else causes):
         kept = KEPT.format(sensors=sensors, effects=names, reason=against)
-        return Decision(JOINT, kept + others)
+        saturated = frozenset(row["finding"] for row in own if best["saturated"])
+        return Decision(JOINT, kept + others, saturated=saturated)
     if freed := _freed(own):
         manoeuvres = ", ".join(dict.fromkeys(freed.values()))
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
@@ -262,6 +269,8 @@ def _against(best: Row, effects: Sequence[Row], causes: str) -> str:
             return CARRIED.format(manoeuvre=row["carried_by"], effect=in_words(row["effect"]))
     if best["open_form"]:
         return OPEN_FORM
+    if best["saturated"]:
+        return SATURATED
     if not _freed(effects):
         enough = (best["snr_squared"] or 0.0) >= MIN_SNR_SQUARED
         if not enough and not _joint_share(best):

@@ -102,6 +102,7 @@ def groups(manoeuvres: Sequence[str], most: int) -> list[tuple[str, ...]]:
 
 MAX_FOLDS = 12
 MIN_SNR_SQUARED = 9.0  # of the effects in the folds that count: 3 sigma
+MIN_HELD_OUT_SHARE = 0.1  # of the SNR²: with less each manoeuvre shows what no other does
 
 
 @dataclass(frozen=True)
@@ -159,6 +160,11 @@ class CrossValidation:
     def expected_drop(self) -> float:
         """The part of SNR² in these folds; a manoeuvre may hold what the others need."""
         return sum(fold.expected_drop for fold, _ in self.counted)
+
+    @property
+    def saturated(self) -> bool:
+        """Whether effects have a term for nearly every manoeuvre, so that none predicts another."""
+        return self.expected_drop < MIN_HELD_OUT_SHARE * self.snr_squared
 
     @property
     def possible(self) -> bool:

@@ -400,6 +400,10 @@ class Extension:
                     "undetermined": len(set(before) - set(after)),
                     "open_form": trainings is not None
                     and form_is_open(sensor, candidate, trainings.models.extended),
+                    "saturated": len(candidate.effects) > 1
+                    and validated is not None
+                    and validated.saturated
+                    and not carried,
                     "sentence": sentence_of(candidate, validated, carriers),
                 },
             )

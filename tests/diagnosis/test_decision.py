@@ -19,7 +19,7 @@ Row = dict[str, Any]
 def candidate(method: str = "extended", **changes: Any) -> Row:
     row = {"mount": "", "sensor": "gyro", "method": method, "probability": 1.0}
     row |= {"drop": 35.0, "drop_without_walk": None, "snr_squared": 40.0}
-    row |= {"undetermined": 0, "open_form": False}
+    row |= {"undetermined": 0, "open_form": False, "saturated": False}
     return row | changes
 
 
@@ -47,6 +47,7 @@ def test_it_counts_where_others_predict_it_and_nothing_warns():
         ([], {"undetermined": 1}, None, "one parameter would not be determined"),
         ([], {"undetermined": 3}, None, "3 parameters would not be determined"),
         ([], {"open_form": True}, None, "so they would fit any law"),
+        ([], {"saturated": True}, None, "none of these predicts another"),
         ([], {}, "x-down", "x-down alone carries gyro bias ramp"),
     ],
 )

@@ -60,9 +60,16 @@ def test_a_sensor_that_is_late_against_the_other_is_named_alone(effect, lag, beh
 
 
 @pytest.mark.slow
-def test_a_table_whose_turns_all_go_too_far_is_named_alone_and_the_gyros_are_rid_of_it():
-    """The level turns tell; by those about the vertical the scale factors were 1000 ppm off."""
-    made = document(table_angle_scale={"scale_ppm": SCALE * 1e6})
+@pytest.mark.parametrize("speed", [0.0, -SCALE])
+def test_a_table_whose_turns_all_go_too_far_is_named_alone_and_the_gyros_are_rid_of_it(speed):
+    """The level turns tell; by those about the vertical the scale factors were 1000 ppm off.
+
+    Where the rate is right it looked as if the samples were taken at another one.
+    """
+    effects = {"table_angle_scale": {"scale_ppm": SCALE * 1e6}}
+    if speed:
+        effects["table_speed_error"] = {"rate_ppm": speed * 1e6, "ramp_ppm": 0.0}
+    made = document(**effects)
     results = chain.in_memory_of(made, "diagnosis", chain.BESIDE)
     (cause,) = results["diagnosis/causes"].to_dict("records")
     assert cause["cause"] == "table_angle_scale"

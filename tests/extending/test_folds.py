@@ -141,6 +141,26 @@ def test_a_fold_that_cannot_tell_all_of_the_effect_is_not_compared_with_a_walk()
     assert validated.drop_against_walk == pytest.approx(others)
 
 
+@pytest.mark.parametrize("alone", [False, True])
+def test_effects_of_which_each_manoeuvre_shows_its_own_are_saturated(alone):
+    """Ramp, asymmetry and g-dependence of a scale factor in four turns fit whatever it does.
+
+    χ² fell by 15,800 in the fit and by 100 of 26,000 in held-out turns, and it counted.
+    """
+    nuisance, columns, _ = campaign(7, effects=2)
+    if alone:
+        columns = np.column_stack([columns[:, 0] * manoeuvre(i) for i in range(len(NAMES))])
+    noise = np.random.default_rng(7).normal(size=len(EVERY))
+    sizes = np.resize(TRUTH, columns.shape[1])
+    parts = (nuisance, columns, nuisance @ [5.0, 1.0] + columns @ sizes + noise)
+    whole = told(parts, EVERY)
+    trainings = [told(parts, ~manoeuvre(i)) for i in range(len(NAMES))]
+    folds = [fold_of(n, whole, training) for n, training in zip(NAMES, trainings, strict=True)]
+    evidence = SensorEvidence(None, whole, 0.0)
+    pairs = [(fold, evidence) for fold in folds]
+    assert CrossValidation("gyro", evidence, pairs, snr_squared(whole)).saturated == alone
+
+
 def test_manoeuvres_are_left_out_one_by_one_or_in_groups_through_the_plan():
     assert groups(NAMES, 12) == [(name,) for name in NAMES]
     assert groups(NAMES, 4) == [("a", "e"), ("b", "f"), ("c",), ("d",)]
