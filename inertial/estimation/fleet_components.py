@@ -27,6 +27,7 @@ STARTS = (0.01, 0.3)
 DIFFERENCE, CONVERGED = 1e-4, 1e-13
 STEP = 0.05  # relative, of standard deviations, for the curvature of the likelihood
 MIN_SHOWN = 1e-5  # of the variance of the values: a component of less is zero
+MIN_DEGREES = 1.0  # of freedom, of a spread between two
 ADAPTING, DRAWS = 1000, 4000  # of the sampler
 ACCEPTED = 0.3  # share of its steps
 SCALES = (0.2, 1.0, 3.0)  # of its steps, by chance: components differ in how well they are known
@@ -450,7 +451,8 @@ def _satterthwaite(variance: Callable[[Array], Array], sizes: Array, errors: Arr
     """Degrees of freedom of variances (k,) that are functions of estimated ones: 2 φ² / var(φ).
 
     With var(φ) = gᵀ A g of the derivatives g and the covariance A of the estimates (Giesbrecht &
-    Burns 1985, Biometrics 41, 477; Fai & Cornelius 1996, J. Statist. Comput. Simul. 54, 363).
+    Burns 1985, Biometrics 41, 477; Fai & Cornelius 1996, J. Statist. Comput. Simul. 54, 363). No
+    fewer than two values have: near zero a variance is known worse than its derivative says.
     """
     here = variance(sizes)
     shown = np.flatnonzero(np.isfinite(sizes))
@@ -460,4 +462,4 @@ def _satterthwaite(variance: Callable[[Array], Array], sizes: Array, errors: Arr
     ).reshape(len(shown), len(here)) / (2 * STEP)
     of_variance = np.einsum("ik,ij,jk->k", derivative, errors[np.ix_(shown, shown)], derivative)
     with np.errstate(divide="ignore"):
-        return np.asarray(2 * here**2 / of_variance)
+        return np.maximum(2 * here**2 / of_variance, MIN_DEGREES)

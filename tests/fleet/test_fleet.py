@@ -326,6 +326,18 @@ def test_intervals_hold_the_mean_of_simulated_populations(tables, spread, held):
     assert inside / count == pytest.approx(held, abs=0.018)
 
 
+@pytest.mark.parametrize("ratio", [1.0, 1.1, 2.0])
+def test_two_imus_that_hardly_differ_have_a_mean_of_one_degree(ratio):
+    """Two values of sigmas 4 and 400, so far apart as these allow: a spread next to zero."""
+    sigma = np.array([4e-6, 4e-4])
+    own = {"type": ["x"] * 2, "table": ["t"] * 2, "imu": ["a", "b"], "campaign": ["1", "2"]}
+    found = population(np.array([0.0, ratio * np.hypot(*sigma)]), sigma, own)
+    assert found.mean_degrees == pytest.approx(1, rel=1e-6)
+    assert sigma[0] < found.mean_sigma < sigma[1]
+    new = of_new_imu(found)
+    assert new is not None and np.isfinite(new).all()
+
+
 def test_one_imu_is_no_population():
     own = labels(imus=1, each=4, tables=1)
     assert of_new_imu(population(np.arange(4.0), np.ones(4), own)) is None
