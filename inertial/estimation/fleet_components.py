@@ -462,4 +462,4 @@ def _satterthwaite(variance: Callable[[Array], Array], sizes: Array, errors: Arr
     ).reshape(len(shown), len(here)) / (2 * STEP)
     of_variance = np.einsum("ik,ij,jk->k", derivative, errors[np.ix_(shown, shown)], derivative)
     with np.errstate(divide="ignore"):
-        return np.maximum(2 * here**2 / of_variance, MIN_DEGREES)
+        return np.asarray(np.maximum(2 * here**2 / of_variance, MIN_DEGREES))
