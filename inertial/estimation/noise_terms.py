@@ -119,10 +119,8 @@ def _of_channel(bins: Bins, lowest: Sequence[Lowest], channel: int) -> NoiseTerm
     if passed is not None:
         own, beside, worst = _lines(passed.bins, passed.lowest, channel, passed.within)
         if worst <= 1:
-            bins, lowest, lines, leaked, within = (
-                *(passed.bins, passed.lowest),
-                *(own, beside, passed.within),
-            )
+            bins, lowest, within = passed.bins, passed.lowest, passed.within
+            lines, leaked = own, beside
         else:
             passed = None
     used = ~leaked & within
@@ -130,7 +128,7 @@ def _of_channel(bins: Bins, lowest: Sequence[Lowest], channel: int) -> NoiseTerm
     likelihood, misfit = _widened(likelihood, bins.frequency[used])
     beyond = ~within & ~lines
     chosen = _Selection(likelihood, _largest_quantisation(bins, channel, beyond)).chosen()
-    covariance = chosen.covariance
+    covariance = chosen.covariance.copy()
     if passed is not None:
         covariance[WHITE, WHITE] += (passed.spread * chosen.model.white_noise) ** 2
     return NoiseTerms(
