@@ -104,16 +104,19 @@ def lay_out(
     placements: Mapping[str, Placement],
     handling: Handling,
     actual_profiles: Callable[[Manoeuvre], Profile],
+    axis_error: Callable[[Manoeuvre, Array], Array],
 ) -> list[Segment]:
     """The segments of one log. A change of position is one rotation about one axis.
 
-    actual_profile: the actual course of a turn, by the course that is set.
+    actual_profiles: the actual course of a turn, by the course that is set; axis_error: by how much
+    its axis leans at a set attitude, a rotation in the level frame.
     """
     segments: list[Segment] = []
     before: Manoeuvre | None = None
     for manoeuvre in manoeuvres:
         placement = placements[manoeuvre.position]
-        axis = placement.true_axis(manoeuvre.about)
+        leaning = axis_error(manoeuvre, placement.set_attitude)
+        axis = placement.true_axis(manoeuvre.about, leaning)
         if before is not None and changes_between(before, manoeuvre):
             segments.append(change(segments[-1].end, placement.attitude, handling))
         elif before is not None and (steps := steps_between(before, manoeuvre)):

@@ -51,7 +51,16 @@ def perform(specification: Specification) -> Recording:
     truths: dict[str, LogTruth] = {}
     first = 0  # ns from the campaign's first sample to the first of this log
     for log, manoeuvres in logs_of(specification.manoeuvres).items():
-        segments = lay_out(manoeuvres, placements, handling, actual_profiles(effects))
+        segments = lay_out(
+            manoeuvres,
+            placements,
+            handling,
+            actual_profiles(effects),
+            lambda manoeuvre, set_attitude: product(
+                effect.axis_error(manoeuvre, set_attitude, specification.chance)
+                for effect in effects.values()
+            ),
+        )
         stamps = first + receiver.step * np.arange(sum(s.samples for s in segments))
         truths[log] = record_log(log, segments, stamps, effects, site, specification)
         written = reduce(lambda stamps, effect: effect.stamps(stamps), effects.values(), stamps)

@@ -26,14 +26,14 @@ class Placement:
         """C = base · tilt · set attitude · mounting."""
         return self.base @ self.tilt @ self.set_attitude @ self.mounting
 
-    def true_axis(self, about: Array) -> Array:
+    def true_axis(self, about: Array, error: Array) -> Array:
         """The table's axis in body axes, (3,), where the plan names `about`.
 
-        The table turns about its own axis, base · set attitude · about, against which the case is
-        tilted by the error of the position, so that the axis of the case describes a cone; or the
-        axis is tilted with the case.
+        The table turns about its own axis, base · error · set attitude · about, against which the
+        case is tilted by the rest of the error of the position, so that the axis of the case
+        describes a cone; or the axis is tilted with the case.
         """
-        axis = self.base @ self.tilt if self.of_axis else self.base
+        axis = self.base @ (self.tilt if self.of_axis else error)
         return self.attitude.T @ axis @ self.set_attitude @ about
 
 

@@ -116,6 +116,7 @@ IN_PROPORTION = frozenset(
         "table_speed_error",
         "table_tilt",
         "table_axis_non_orthogonality",
+        "table_inner_axis",
         "table_position_error",
         "table_axis_error",
         "table_wobble",

@@ -30,6 +30,7 @@ OF_ATTITUDES = frozenset(
         "table_position_error",
         "table_axis_error",
         "table_axis_non_orthogonality",
+        "table_inner_axis",
         "table_tilt",
         "turn_angle_error",
         "table_angle_scale",

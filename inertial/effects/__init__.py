@@ -60,6 +60,7 @@ from inertial.effects.table_angle_scale import TableAngleScale
 from inertial.effects.table_axis_error import TableAxisError
 from inertial.effects.table_axis_non_orthogonality import TableAxisNonOrthogonality
 from inertial.effects.table_eccentricity import TableEccentricity
+from inertial.effects.table_inner_axis import TableInnerAxis
 from inertial.effects.table_position_error import TablePositionError
 from inertial.effects.table_ripple import TableRipple
 from inertial.effects.table_speed_error import TableSpeedError
@@ -123,6 +124,7 @@ CATALOGUE: dict[str, Effect] = {
         TableSpeedError(),
         TableTilt(),
         TableAxisNonOrthogonality(),
+        TableInnerAxis(),
         TablePositionError(),
         TableAxisError(),
         TableWobble(),

@@ -49,6 +49,11 @@ class TableAxisNonOrthogonality(Effect):
         return without_north(motion)
 
 
+def middle_axis(motion: Motion) -> Array:
+    """The middle axis in body axes when each manoeuvre began, (n, 3); 0 where nothing tells it."""
+    return _middle(motion.up_at_start, np.nan_to_num(motion.north_at_start))[0]
+
+
 def _middle(up: Array, north: Array) -> tuple[Array, Array]:
     """The middle axis in body axes, (n, 3), and the sine of its angle, (n,).
 

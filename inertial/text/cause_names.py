@@ -137,6 +137,7 @@ NAMES = {
     "status_invalid": _("invalid status"),
     "table_angle_scale": _("scale of the table's angle"),
     "table_axis_non_orthogonality": _("table axis non-orthogonality"),
+    "table_inner_axis": _("inner table axis non-orthogonality"),
     "turn_angle_error": _("turn whose angle is off"),
     "table_position_error": _("set position that is off"),
     "table_axis_error": _("set position that is off, with the axis of its turns"),

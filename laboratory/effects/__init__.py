@@ -80,6 +80,7 @@ from laboratory.effects.table_axis_error import TableAxisError
 from laboratory.effects.table_axis_non_orthogonality import TableAxisNonOrthogonality
 from laboratory.effects.table_creep import TableCreep
 from laboratory.effects.table_eccentricity import TableEccentricity
+from laboratory.effects.table_inner_axis import TableInnerAxis
 from laboratory.effects.table_position_error import TablePositionError
 from laboratory.effects.table_ripple import TableRipple
 from laboratory.effects.table_speed_error import TableSpeedError
@@ -104,6 +105,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     # the table and the mount
     "table_tilt": TableTilt.specified,
     "table_axis_non_orthogonality": TableAxisNonOrthogonality.specified,
+    "table_inner_axis": TableInnerAxis.specified,
     "table_position_error": TablePositionError.specified,
     "table_axis_error": TableAxisError.specified,
     "table_speed_error": TableSpeedError.specified,

@@ -56,6 +56,10 @@ class Effect:
         """
         return np.eye(3)
 
+    def axis_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
+        """The part of `position_error` by which the axis of the turn leans too: a rotation."""
+        return np.eye(3)
+
     def actual_profile(self, profile: Profile) -> Profile:
         """The actual course of a turn that is set to `profile`."""
         return profile

@@ -38,20 +38,28 @@ class TableAxisNonOrthogonality(Effect):
         return cls(parameters["lean_arcsec"] * ARCSECOND, quarter * ARCSECOND, home)
 
     def position_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
-        step = manoeuvre.step
-        turned = 0.0 if step is None else step.angle
-        back = rotation_about(manoeuvre.about, np.asarray(turned))
-        start = back @ manoeuvre.up
-        across = np.cross(start, self.home)
-        angle = atan2(float(np.linalg.norm(across)), float(self.home @ start))
-        if sin(angle) < 1e-9:  # home is up or down: the axis points away from the zero mark
-            across = -back @ manoeuvre.mark
-        middle = across / np.linalg.norm(across)
-        about = float(middle @ manoeuvre.about)
-        if abs(about) > cos(DEGREE):
-            angle += about * turned
-        at_start = set_attitude @ rotation_about(manoeuvre.about, np.asarray(-turned))
-        axis = at_start @ middle
+        axis, angle = middle_axis(manoeuvre, set_attitude, self.home)
         inclined = cos(self.inclination) * axis + sin(self.inclination) * np.array([0.0, 0.0, 1.0])
         true_angle = np.asarray(angle + self.quarter * sin(angle))
         return rotation_about(inclined, true_angle) @ rotation_about(axis, np.asarray(angle)).T
+
+
+def middle_axis(manoeuvre: Manoeuvre, set_attitude: Array, home: Array) -> tuple[Array, float]:
+    """The middle axis of the table, (3,), level frame, and its angle, rad: 0 where home is up.
+
+    Where home is up or down it points away from the zero mark.
+    """
+    step = manoeuvre.step
+    turned = 0.0 if step is None else step.angle
+    back = rotation_about(manoeuvre.about, np.asarray(turned))
+    start = back @ manoeuvre.up
+    across = np.cross(start, home)
+    angle = atan2(float(np.linalg.norm(across)), float(home @ start))
+    if sin(angle) < 1e-9:
+        across = -back @ manoeuvre.mark
+    middle = across / np.linalg.norm(across)
+    about = float(middle @ manoeuvre.about)
+    if abs(about) > cos(DEGREE):
+        angle += about * turned
+    at_start = set_attitude @ rotation_about(manoeuvre.about, np.asarray(-turned))
+    return at_start @ middle, angle

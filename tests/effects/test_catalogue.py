@@ -129,7 +129,8 @@ BLIND = {
         "accel_bias_temperature", "accel_scale_temperature",
     },
     "heading": {
-        "heading_error", "table_tilt", "table_axis_non_orthogonality", "table_wobble",
+        "heading_error", "table_tilt", "table_axis_non_orthogonality", "table_inner_axis",
+        "table_wobble",
     },
 }  # fmt: skip
 

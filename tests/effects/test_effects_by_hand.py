@@ -158,6 +158,32 @@ def test_a_middle_axis_that_leans_by_exact_rotations(lean, quarter):
     np.testing.assert_allclose(gyro[1:-1], off[0] - right[0], atol=5e-8)
 
 
+@pytest.mark.parametrize("turning_axis", ["inner", "middle", "outer"])
+def test_an_inner_axis_that_leans_by_exact_rotations(turning_axis):
+    """The inner axis, on which the case sits, leans towards the south, the middle axis."""
+    lean, south = 1e-4, np.array([0.0, -1.0, 0.0])
+    tilted = Rotation.from_rotvec(np.arccos(UP[2]) * south)
+    on_table = tilted.inv() * AT_START  # the case with the middle axis at zero
+    leaning = Rotation.from_rotvec(lean * np.cross(VERTICAL, south))
+    about = {"inner": VERTICAL, "middle": on_table.inv().apply(south), "outer": UP}[turning_axis]
+    motion = on_a_turn(ANGLES, about)
+
+    def attitudes(missed: Rotation) -> Rotation:
+        if turning_axis == "inner":
+            return tilted * missed * about_the_vertical(ANGLES) * on_table
+        axis = south if turning_axis == "middle" else VERTICAL
+        return Rotation.from_rotvec(np.outer(ANGLES, axis)) * tilted * missed * on_table
+
+    off, right = sensed(attitudes(leaning)), sensed(attitudes(Rotation.identity()))
+    gyro, accel = acted("table_inner_axis", [lean], motion)
+    np.testing.assert_allclose(accel[1:-1], off[1] - right[1], atol=2e-7)
+    np.testing.assert_allclose(gyro[1:-1], off[0] - right[0], atol=5e-8)
+    if turning_axis == "inner":
+        assert np.abs(gyro).max() == 0 and np.abs(accel).max() > 2e-4
+    if turning_axis == "middle":
+        assert np.abs(gyro).max() > 1e-4  # of 1.9 rad/s
+
+
 def test_axes_at_other_than_right_angles_leave_a_case_upright_alone():
     flat = replace(on_a_turn(ANGLES), up=np.tile(VERTICAL, (len(ANGLES), 1)), about=VERTICAL)
     assert not acted("table_axis_non_orthogonality", [1e-4, 1e-4], flat)[1].any()

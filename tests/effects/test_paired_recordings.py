@@ -45,7 +45,7 @@ GROUPS = (
         *("gyro_bias_ramp", "accel_quadratic", "accel_bias_ramp", "size_effect", "latitude_error"),
         *("table_axis_non_orthogonality", "heading_error"),
     ),
-    ("table_wobble", "table_angle_scale"),
+    ("table_wobble", "table_angle_scale", "table_inner_axis"),
     ("mounting_shift",),
     ("gyro_scale_ramp", "accel_scale_ramp", "gyro_relaxation", "gyro_relaxation_braking"),
     ("gyro_relaxation_sense",),

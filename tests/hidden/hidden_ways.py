@@ -123,6 +123,7 @@ WAYS: Mapping[str, Way] = {
     "size_effect": _matrix("arms_mm", 1e-3, "r"),
     "table_tilt": _level("north", "east"),
     "table_axis_non_orthogonality": Way(("lean", "quarter"), _leaning, RATES),
+    "table_inner_axis": _one("lean_arcsec", ARC_SECOND, "lean", plans=RATES),
     "table_wobble": _level("north", "east"),
     "table_angle_scale": _one("scale_ppm", PPM, "e", plans=RATES),
     "latitude_error": _one("error_deg", DEGREE, "dphi", plans=TURNS),

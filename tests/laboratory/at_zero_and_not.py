@@ -18,6 +18,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"north_arcsec": 60, "east_arcsec": 0},
     ),
     "table_axis_non_orthogonality": ({"lean_arcsec": 0}, {"lean_arcsec": 30}),
+    "table_inner_axis": ({"lean_arcsec": 0}, {"lean_arcsec": 30}),
     "table_position_error": (
         {"sigma_arcsec": 0, "backlash_arcsec": 0},
         {"sigma_arcsec": 0, "backlash_arcsec": 30},

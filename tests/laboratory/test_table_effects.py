@@ -257,6 +257,32 @@ def test_a_tumble_about_the_leaning_axis(performed: Performed) -> None:
         assert force[1:] == pytest.approx(on_edge(degrees)[1:], abs=1e-6)  # (60″)² g
 
 
+def test_an_inner_axis_that_leans_stays_the_axis_of_its_turns(performed: Performed) -> None:
+    """It leans south, away from the mark; the case on it reads gravity towards north."""
+    truth = truth_of(performed, TURN, {"table_inner_axis": {"lean_arcsec": 60}})
+    angle = turned(truth) - 0.005 * (truth.rate[:, 2] - UP)
+    north = np.array([np.cos(angle), -np.sin(angle)]).T
+    np.testing.assert_allclose(
+        truth.force[:, :2] / GRAVITY / ARCSECOND, 60 * north, rtol=0, atol=0.05
+    )
+    earth = EARTH * cos(LATITUDE) * north
+    np.testing.assert_allclose(
+        truth.rate[:, :2], earth, rtol=0, atol=6e-8
+    )  # of 60″ × 40 °/s = 2e-4
+
+
+def test_a_turn_about_another_axis_than_the_inner_one_shows_the_gyros_the_lean(
+    performed: Performed,
+) -> None:
+    """About y, level to the west: the inner axis leans towards the middle one, which is y's end."""
+    move = TURN | {"up": "+x", "mark": "+y", "about": "+y"}
+    off, right = (
+        truth_of(performed, move, {"table_inner_axis": {"lean_arcsec": lean}}).rate[400:600]
+        for lean in (60, 0)
+    )
+    assert (off - right)[:, 2] / radians(40) / ARCSECOND == pytest.approx(-60, abs=0.03)
+
+
 NORTH = EARTH * cos(LATITUDE)
 WORLDS: list[tuple[str, Document, float, list[float]]] = [
     ("gravity_error", {"error_mgal": 50}, GRAVITY + 0.0005, [NORTH, 0, UP]),
