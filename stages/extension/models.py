@@ -21,6 +21,7 @@ from inertial.physics.effect import Effect
 from stages.extension.named_effects import NamedClass
 
 PRIOR_SIGMA = 1e4  # of an effect's parameters, in their typical sizes
+MIN_OWN_SHARE = 0.01  # of the other sensor's information: less improves a sigma by half a percent
 
 
 @dataclass(frozen=True)
@@ -57,21 +58,32 @@ class Models:
     def shown(self) -> tuple[frozenset[str], frozenset[str]]:
         """The columns of the effects that gyros, and accelerometers, show by themselves.
 
-        A column is not shown where its information, all else fitted, is no more than rounding, or
-        where the largest plausible size would not be observable.
+        A column is not shown where its information, all else fitted, is no more than rounding,
+        where the largest plausible size would not be observable, or where the other sensor tells
+        so much more that its own adds nothing: there the sensor's parameters take the effect up.
         """
-        largest = np.array([e.largest_of(p) for e in self.effects for p in e.parameters])
-        gyro, accel = (
-            _shown(system, largest) for system in self.extended.systems(self.effects, PRIOR_SIGMA)
-        )
-        return gyro, accel
+        gyro, accel = self._information
+        return _told_by(gyro, accel), _told_by(accel, gyro)
 
     @cached_property
     def absorbed(self) -> tuple[frozenset[str], frozenset[str]]:
         """The columns that the parameters of a sensor absorb, and that the other sensor shows."""
-        gyro, accel = self.shown
         some = {name for e in self.effects if e.absorbed_by for name in e.columns}
-        return frozenset(some & (accel - gyro)), frozenset(some & (gyro - accel))
+        (gyro, accel), (by_gyro, by_accel) = self.shown, self._information
+        return (
+            frozenset((some | by_gyro.keys()) & (accel - gyro)),
+            frozenset((some | by_accel.keys()) & (gyro - accel)),
+        )
+
+    @cached_property
+    def _information(self) -> tuple[Mapping[str, float], Mapping[str, float]]:
+        """By sensor the information of its equations on each observable column, all else fitted."""
+        largest = np.array([e.largest_of(p) for e in self.effects for p in e.parameters])
+        gyro, accel = (
+            _observable(system, largest)
+            for system in self.extended.systems(self.effects, PRIOR_SIGMA)
+        )
+        return gyro, accel
 
     def complete(self) -> list[System | None]:
         """The equations with the effects that each sensor shows or absorbs; None where none is."""
@@ -130,14 +142,22 @@ def _evidence(system: System, joint: System | None) -> SensorEvidence:
     return SensorEvidence(plain, system.effect_information(), drop)
 
 
-def _shown(system: System | None, largest: Array) -> frozenset[str]:
+def _observable(system: System | None, largest: Array) -> Mapping[str, float]:
+    """The information on the columns that are observable, by column."""
     if system is None:
-        return frozenset()
+        return {}
     reduced = system.effect_information()
     information = np.diag(reduced.information)
     determined = information > MIN_INFORMATION_SHARE * system.raw_information()
     observable = largest * np.sqrt(np.maximum(information, 0.0)) > MIN_OBSERVABLE_SIGMAS
-    return frozenset(np.array(reduced.names)[determined & observable].tolist())
+    there = determined & observable
+    names = np.array(reduced.names)[there].tolist()
+    return dict(zip(names, information[there].tolist(), strict=True))
+
+
+def _told_by(own: Mapping[str, float], other: Mapping[str, float]) -> frozenset[str]:
+    """The columns of which a sensor tells something beside the other one."""
+    return frozenset(n for n, known in own.items() if known > MIN_OWN_SHARE * other.get(n, 0.0))
 
 
 def given(system: System, estimates: Mapping[str, tuple[float, float]]) -> System:
