@@ -1,5 +1,6 @@
 """The command of the wheel, installed apart from this checkout, on a folder elsewhere."""
 
+import shutil
 import subprocess
 import sys
 import venv
@@ -79,6 +80,14 @@ def test_a_report_is_made_elsewhere(installed: Path, tmp_path: Path) -> None:
     )
     assert traced.returncode == 0, traced.stdout
     assert "Every link is intact" in traced.stdout
+
+    shutil.copytree(tmp_path / "there/data/raw/june", tmp_path / "there/data/raw/july")
+    (tmp_path / "there/data/raw/july/x-up.asc").write_bytes(b"<!DOCTYPE html>\n<html>\n")
+    (tmp_path / "there/reports/june.html").unlink()
+    several = call(installed, "--folder", "there", "report", "july", "june", cwd=tmp_path)
+    assert several.returncode == 1
+    assert "decode: x-up.asc\n  found:    a page of HTML" in several.stderr
+    assert (tmp_path / "there/reports/june.html").stat().st_size > 100_000
 
 
 def test_a_plan_is_written_and_its_name_is_not_taken_twice(installed: Path, tmp_path: Path) -> None:

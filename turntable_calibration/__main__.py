@@ -79,18 +79,22 @@ def main(ctx: click.Context, folder: Path, cores: int) -> None:
 
 
 @main.command()
-@click.argument("campaign", type=Campaign())
+@click.argument("campaign", nargs=-1, required=True, type=Campaign())
 @click.pass_obj
-def report(of: tuple[Path, int], campaign: str) -> int:
-    """Make the report of a campaign, and its calibration for other programs."""
+def report(of: tuple[Path, int], campaign: tuple[str, ...]) -> int:
+    """Make the reports of campaigns, and their calibrations for other programs.
+
+    A campaign that is refused keeps none of the others from its report.
+    """
     folder, cores = of
-    pages = _pages(campaign)
-    if status := snakemake(folder, cores, [*pages, f"reports/{campaign}.calibration.json"]):
+    goals = [goal for name in campaign for goal in _goals(name)]
+    if status := snakemake(folder, cores, goals, keep_going=True):
         return status
-    summary = (folder / f"reports/{campaign}.txt").read_text(encoding="utf-8")
-    click.echo(f"\n{summary.partition(chr(10) + 'Campaign:')[0]}")
-    click.echo(f"For other programs: {' '.join(f'reports/{campaign}.{end}' for end in EXPORTS)}")
-    click.echo(f"The report: {' '.join(pages)}")
+    for name in campaign:
+        summary = (folder / f"reports/{name}.txt").read_text(encoding="utf-8")
+        click.echo(f"\n{summary.partition(chr(10) + 'Campaign:')[0]}")
+        click.echo(f"For other programs: {' '.join(f'reports/{name}.{end}' for end in EXPORTS)}")
+        click.echo(f"The report: {' '.join(_pages(name))}")
     return 0
 
 
@@ -100,14 +104,18 @@ def _pages(campaign: str) -> list[str]:
     return [f"reports/{campaign}.{kind}" for kind in kinds]
 
 
+def _goals(campaign: str) -> list[str]:
+    """The report and the calibration for other programs."""
+    return [*_pages(campaign), f"reports/{campaign}.calibration.json"]
+
+
 @main.command()
 @click.argument("campaign", type=Campaign())
 @click.pass_obj
 def crate(of: tuple[Path, int], campaign: str) -> int:
     """Pack a campaign with all that made it as a Run-RO-Crate."""
     folder, cores = of
-    goals = [*_pages(campaign), f"reports/{campaign}.calibration.json"]
-    if status := snakemake(folder, cores, goals):
+    if status := snakemake(folder, cores, _goals(campaign)):
         return status
     return command("crate", ["--campaign", campaign], folder)
 

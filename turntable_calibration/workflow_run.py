@@ -18,9 +18,10 @@ WORKFLOW = HERE / "workflow" if (HERE / "workflow").is_dir() else HERE.parent
 LOCK = ".snakemake/turntable-calibration.lock"
 
 
-def snakemake(folder: Path, cores: int, targets: Sequence[str]) -> int:
+def snakemake(folder: Path, cores: int, targets: Sequence[str], *, keep_going: bool = False) -> int:
     """Make the targets on a folder that holds data/; its exit status.
 
+    `keep_going`: what does not rest on a job that fails is made all the same.
     Two runs on one folder wait for each other; in a checkout those of `make`, too, which lock the
     Snakefile. The kernel releases the lock when a run is killed; Snakemake's own would stay and
     stop the next run. What Snakemake started has it too.
@@ -34,7 +35,9 @@ def snakemake(folder: Path, cores: int, targets: Sequence[str]) -> int:
         command = [
             *(sys.executable, "-m", "snakemake", "--nolock"),
             *("--snakefile", str(WORKFLOW / "Snakefile"), "--directory", str(folder)),
-            *("--cores", str(cores), "--quiet", "host", "reason", "--", *targets),
+            *("--cores", str(cores), "--quiet", "host", "reason"),
+            *(["--keep-going"] if keep_going else []),
+            *("--", *targets),
         ]
         return subprocess.run(command, pass_fds=[file.fileno()], check=False).returncode
 
