@@ -8,13 +8,7 @@ from itertools import accumulate, pairwise
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.campaign.equations_by_hand import (
-    MIN_BENT,
-    NO_TABLE,
-    SWAYING,
-    ByHand,
-    of_a_table,
-)
+from inertial.campaign.equations_by_hand import NO_TABLE, SWAYING, ByHand, of_a_table
 from inertial.campaign.rate_segments import GyroInputs
 from inertial.campaign.records import Known
 from inertial.campaign.solution import Solution
@@ -31,7 +25,6 @@ from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_and_random_walk import Scatter, SwitchOns
-from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Effect, Reading
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined
@@ -45,7 +38,6 @@ NO_GYROS = _(
     "their biases are determined"
 )
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
-NOTHING = np.zeros((1, 3))  # that changes a rest
 NOTHING_SHARED: Mapping[str, Sequence[Name]] = {}
 MAX_KEPT = 4  # equations with different effects
 
@@ -141,7 +133,7 @@ class Campaign:
             names = [*self._gyro_names, *(self.by_hand.moving if self.by_hand else ())]
             motions = self.gyro_motions
         else:
-            names = self._at_rest
+            names = self.at_rest
             motions = [motion for _, _, motion in self.static_forces]
         each = zip(names, motions, strict=True)
         return [name for name, motion in each for _ in range(len(motion.rate))]
@@ -181,85 +173,20 @@ class Campaign:
         """The same with random walks of the gyro and accelerometer biases, rad/s/√s, m/s²/√s."""
         return replace(self, solution=replace(self.solution, random_walks=random_walks))
 
-    def about_effects(self, effects: Sequence[Effect], prior_sigma: float) -> "Campaign":
-        """The same, linear about the result with those effects; `prior_sigma`: as in `systems`."""
-        if self.by_hand:
-            return self._about_changes(self.by_hand, effects, prior_sigma)
-        return self._about_leans(effects, prior_sigma)
-
-    def _about_changes(
-        self, by_hand: ByHand, effects: Sequence[Effect], prior_sigma: float
-    ) -> "Campaign":
-        """By hand: about M and bias of the gyros, and directions at rest, that effects leave.
-
-        A bias that warms up bends M where it is taken as constant; and directions by accelerometers
-        that warm up are off alike from one position to the next, which is no scatter.
-        """
-        before, effects = self.solution.gyro, [e for e in effects if not self.excludes(e)]
-        gyro, accel = (self._changed(sensor, effects, prior_sigma) for sensor in SENSORS)
-        if not effects or before is None or gyro is None or accel is None:
-            return self
-        after, forces = gyro[0], dict(zip(self._at_rest, accel[1], strict=True))
-        stops = by_hand.handled.stops
-        changes = np.array([forces.get(stop.forces.name, NOTHING)[0] for stop in stops])
-        further = changes if by_hand.force_changes is None else changes - by_hand.force_changes
-        bent = max(
-            np.abs(after.matrix - before.matrix).max(),
-            np.abs(after.bias - before.bias).max(),
-            np.abs(further).max() / self.gravity.number,
-        )
-        if bent <= MIN_BENT:
-            return self
-        solution = replace(self.solution, gyro=after)
-        about = replace(by_hand, force_changes=changes)
-        return replace(self, by_hand=about, solution=solution, _known={}, _linear={})
+    def about(self, solution: Solution, by_hand: ByHand | None) -> "Campaign":
+        """The same, linear about another result."""
+        return replace(self, solution=solution, by_hand=by_hand, _known={}, _linear={})
 
     @property
-    def _at_rest(self) -> list[str]:
+    def at_rest(self) -> list[str]:
         """The manoeuvres of the accelerometers."""
         return [name for name, _, _ in self.static_forces]
-
-    def _changed(
-        self, sensor: str, effects: Sequence[Effect], prior_sigma: float
-    ) -> tuple[Triad, list[Array]] | None:
-        """M and bias of a sensor with effects, and by how much these change each stretch of it."""
-        system = self.system(sensor, effects, prior_sigma)
-        estimate = system.solve_shared() if system else None
-        if estimate is None or not estimate.determined[:UNKNOWNS].all():
-            return None
-        unknowns = zip(estimate.names, estimate.values.tolist(), strict=True)
-        sizes = {name: value for (kind, name), value in unknowns if kind == "effect"}
-        answers = self._sensitivities(sensor, effects)
-        changes = [each.of([*sizes]) @ np.array([*sizes.values()]) for each in answers]
-        return accelerometers.triad_of(estimate), changes
-
-    def _about_leans(self, effects: Sequence[Effect], prior_sigma: float) -> "Campaign":
-        """The same, its accelerometers linear about their result with those effects of a table.
-
-        The tilt that a reading shows is by M and bias. A lean of all positions that is not among
-        the unknowns bends both, and a part of it is not seen.
-        """
-        leans = [effect for effect in effects if of_a_table(effect)]
-        before = self.solution.accelerometer
-        if not leans or before is None:
-            return self
-        system = self.system("accel", leans, prior_sigma)
-        estimate = system.solve_shared() if system else None
-        if estimate is None or not estimate.determined[:UNKNOWNS].all():
-            return self
-        after = accelerometers.triad_of(estimate)
-        bent = np.abs(after.matrix - before.matrix).max()
-        bent = max(bent, np.abs(after.bias - before.bias).max() / self.gravity.number)
-        if bent <= accelerometers.MIN_BENT:
-            return self
-        solution = replace(self.solution, accelerometer=after)
-        return replace(self, solution=solution, _known={}, _linear={})
 
     def without_random_walks(self) -> "Campaign":
         """The same with constant biases."""
         return self.with_random_walks((0.0, 0.0))
 
-    def without_drift_at_rest(self, sensors: Collection[str] = SENSORS) -> "Campaign":
+    def without_driftat_rest(self, sensors: Collection[str] = SENSORS) -> "Campaign":
         """The same without the drift that the noise at rest shows of some.
 
         Switch-ons remain, and the bias instability of the data sheet.
@@ -402,7 +329,7 @@ class Campaign:
     def _carried(
         self, by_hand: ByHand, effects: Sequence[Effect], prior_sigmas: Mapping[str, float]
     ) -> CarriedEquations:
-        answers = self._sensitivities("gyro", effects)
+        answers = self.sensitivities("gyro", effects)
         at_rest = {
             position.label: (_first(response), position.stretch)
             for position, response in zip(self.inputs.static_positions, answers, strict=False)
@@ -425,7 +352,7 @@ class Campaign:
         return made
 
     def _newly_linearised(self, effects: Sequence[Effect]) -> LinearisedEquations:
-        sensitivities = self._sensitivities("gyro", effects)
+        sensitivities = self.sensitivities("gyro", effects)
         static = len(self.static_motions)
         rests = [
             replace(rest, sensitivities=_first(responses))
@@ -472,7 +399,7 @@ class Campaign:
     ) -> DriftingEquations | None:
         if self.solution.accelerometer is None:
             return None
-        sensitivities = self._sensitivities("accel", effects)
+        sensitivities = self.sensitivities("accel", effects)
         rests = [
             replace(rest, sensitivities=_first(responses))
             for (name, rest, _), responses in zip(self.static_forces, sensitivities, strict=True)
@@ -509,7 +436,7 @@ class Campaign:
         )
         return [responses[key] for key in keys]
 
-    def _sensitivities(self, sensor: str, effects: Sequence[Effect]) -> list[Sensitivities]:
+    def sensitivities(self, sensor: str, effects: Sequence[Effect]) -> list[Sensitivities]:
         """The responses of one sensor in each stretch of its equations.
 
         Gyros: static positions, then rotations; accelerometers: as in `static_forces`.

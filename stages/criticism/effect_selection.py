@@ -12,6 +12,7 @@ import numpy as np
 
 from inertial.campaign.effect_evidence import evidence
 from inertial.campaign.equations import Campaign
+from inertial.campaign.linearisation import about_effects
 from inertial.campaign.scatter_given_effects import NAMED_PRIOR_SIZE, scattered
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, NamedCauses
 from inertial.model_selection.detection_limits import visible
@@ -68,7 +69,7 @@ def select_with_scatter(
     for _round in range(MAX_ROUNDS):
         if not fitted:
             break
-        about = campaign.about_effects(fitted, NAMED_PRIOR_SIZE)
+        about = about_effects(campaign, fitted, NAMED_PRIOR_SIZE)
         quiet = scattered(about, fitted, noise_degrees)
         selection = select_effects(quiet, effects, level, noise_degrees)
         before, fitted = fitted, selection.fitted
@@ -189,7 +190,7 @@ def _select(
     for _round in range(MAX_ROUNDS):
         found = _about_what_was_found(named, families)
         there = [families[c.effect][c.value] for c in named.causes if c.effect in families]
-        about, campaign = campaign, campaign.about_effects(there, NAMED_PRIOR_SIZE)
+        about, campaign = campaign, about_effects(campaign, there, NAMED_PRIOR_SIZE)
         if not found and campaign is about:
             break
         families |= found

@@ -10,6 +10,7 @@ import pandas as pd
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
 from inertial.campaign.equations import Campaign
 from inertial.campaign.estimates import switch_on_columns
+from inertial.campaign.linearisation import about_effects
 from inertial.campaign.observations import campaign_of
 from inertial.campaign.records import rows_of
 from inertial.campaign.scatter_given_effects import scattered
@@ -265,7 +266,7 @@ class Extension:
         known = [effect for effect in named if effect.scan is None or effect.at is not None]
         self.switch_ons = campaign.switch_ons(known)
         campaign = campaign.with_switch_ons(self.switch_ons)
-        campaign = campaign.about_effects(known, PRIOR_SIGMA)
+        campaign = about_effects(campaign, known, PRIOR_SIGMA)
         if campaign.by_hand:
             campaign = scattered(campaign, known, self.data.noise.degrees)
         if by_hand := campaign.by_hand:
