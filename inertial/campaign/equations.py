@@ -186,7 +186,7 @@ class Campaign:
         """The same with constant biases."""
         return self.with_random_walks((0.0, 0.0))
 
-    def without_driftat_rest(self, sensors: Collection[str] = SENSORS) -> "Campaign":
+    def without_drift_at_rest(self, sensors: Collection[str] = SENSORS) -> "Campaign":
         """The same without the drift that the noise at rest shows of some.
 
         Switch-ons remain, and the bias instability of the data sheet.

@@ -19,7 +19,7 @@ NOTHING = np.zeros((1, 3))  # that changes a rest
 
 
 def about_effects(campaign: Campaign, effects: Sequence[Effect], prior_sigma: float) -> Campaign:
-    """The same, linear about the result with those effects; `prior_sigma`: as in `Campaign.systems`."""
+    """The same, linear about the result with those effects; `prior_sigma`: as in its `systems`."""
     if campaign.by_hand:
         return _about_changes(campaign, campaign.by_hand, effects, prior_sigma)
     return _about_leans(campaign, effects, prior_sigma)
