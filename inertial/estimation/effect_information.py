@@ -88,13 +88,14 @@ class EffectInformation:
     def by_others(self, matrix: Array, names: Sequence[str]) -> "EffectInformation":
         """The same with the last columns, errors, as a function of others, (t, u), by name."""
         k = len(self.names) - len(matrix)
-        change = np.zeros((len(self.names), k + len(names)))
-        change[:k, :k], change[k:, k:] = np.eye(k), matrix
+        own, across = self.information[:k, :k], self.information[:k, k:] @ matrix
         return replace(
             self,
             names=(*self.names[:k], *names),
-            information=change.T @ self.information @ change,
-            right=change.T @ self.right,
+            information=np.block(
+                [[own, across], [across.T, matrix.T @ self.information[k:, k:] @ matrix]]
+            ),
+            right=np.append(self.right[:k], matrix.T @ self.right[k:]),
         )
 
     def deviance_as_errors(self, prior: Array) -> float:

@@ -166,6 +166,11 @@ class System:
     def _effects(self) -> list[int]:
         return [i for i, (kind, _) in enumerate(self.names) if kind == "effect"]
 
+    def _all_but(self, places: Sequence[int]) -> list[int]:
+        """The places of the other unknowns."""
+        left_out = set(places)
+        return [i for i in range(len(self.names)) if i not in left_out]
+
     def _whitened(self) -> tuple[Array, Array]:
         """Design and residuals about the prior in units of sigma."""
         residual = (self.observed - self.design @ self.prior) / self.sigma
@@ -187,7 +192,7 @@ class System:
         squared norms of the columns before projection (k,)
         """
         further = self._effects[fitted:]
-        base = [i for i in range(len(self.names)) if i not in set(further)]
+        base = self._all_but(further)
         scaled, residual = self._whitened()
         stacked = np.vstack([scaled[:, base] * self.prior_sigma[base], np.eye(len(base))])
         columns = np.vstack([scaled[:, further], np.zeros((len(base), len(further)))])
@@ -206,7 +211,7 @@ class System:
         further effects, in sigmas of the parameters.
         """
         further = self._effects[fitted:]
-        base = [i for i in range(len(self.names)) if i not in set(further)]
+        base = self._all_but(further)
         scaled, _ = self._whitened()
         design = np.vstack([scaled[:, base] * self.prior_sigma[base], np.eye(len(base))])
         inverse = solve_triangular(np.linalg.qr(design, mode="r"), np.eye(len(base)))
@@ -228,7 +233,7 @@ class System:
         scatter that they are all of, that would stand where an effect leaves nothing.
         """
         effects = self._effects
-        others = [i for i in range(len(self.names)) if i not in set(effects)]
+        others = self._all_but(effects)
         scaled, residual = self._whitened()
         base = scaled[:, others] * self.prior_sigma[others]
         stacked = np.zeros((len(residual) + len(others), len(others) + len(effects) + 1))

@@ -30,18 +30,18 @@ def log_evidence(drop: Array, degrees: Integers) -> Array:
     ----------
     drop, degrees : (c,); an effect that is not observable has no odds
     """
-    half = degrees / 2
     root = np.sqrt(np.maximum(drop, 1e-6))
-    safe = np.maximum(half, 0.5)
+    half = np.maximum(degrees / 2, 0.5)
     # Laplace's approximation where the drop is large.
-    sharp = drop / 2 + gammaln(safe) + (safe - 1) * np.log(2) - 2 * safe * np.log(root)
+    log_odds = drop / 2 + gammaln(half) + (half - 1) * np.log(2) - 2 * half * np.log(root)
+    exact = (degrees > 0) & (root <= 0.7 * MAX_PRIOR_SNR)
     ratio = np.linspace(MIN_PRIOR_SNR, MAX_PRIOR_SNR, PRIOR_STEPS)
-    z = root[:, None] * ratio
-    order = (safe - 1)[:, None]
+    z = root[exact, None] * ratio
+    order = half[exact, None] - 1
     bessel = gammaln(order + 1) - order * np.log(z / 2) + np.log(ive(order, z)) + z
     step = np.log(ratio[1] - ratio[0])
-    exact = np.logaddexp.reduce(bessel - ratio**2 / 2 - np.log(ratio), axis=1) + step
-    return np.where(degrees > 0, np.where(root > 0.7 * MAX_PRIOR_SNR, sharp, exact), -np.inf)
+    log_odds[exact] = np.logaddexp.reduce(bessel - ratio**2 / 2 - np.log(ratio), axis=1) + step
+    return np.where(degrees > 0, log_odds, -np.inf)
 
 
 @dataclass(frozen=True)

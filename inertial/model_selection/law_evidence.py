@@ -149,12 +149,12 @@ def best_paths(equations: Equations, steps: Sequence[int], fewest: int) -> dict[
     right = equations.right[list(steps)]
 
     def drops(paths: Sequence[Path]) -> Array:
-        signs = np.zeros((len(paths), count))
-        for row, path in enumerate(paths):
-            signs[row, list(path)] = (-1.0) ** np.arange(len(path))
-        information = np.sum((signs @ block) * signs, axis=1)
+        """Of paths with as many changes each."""
+        at = np.array(paths)
+        signs = (-1.0) ** np.arange(at.shape[1])
+        information = block[at[:, :, None], at[:, None, :]] @ signs @ signs
         known = information > MIN_EIGENVALUE * block.max()
-        return np.where(known, (signs @ right) ** 2 / np.where(known, information, 1.0), 0.0)
+        return np.where(known, (right[at] @ signs) ** 2 / np.where(known, information, 1.0), 0.0)
 
     coarse = range(0, count, COARSE)
     pairs = list(combinations(coarse, 2))
@@ -166,7 +166,7 @@ def best_paths(equations: Equations, steps: Sequence[int], fewest: int) -> dict[
         starts = [path for path in grown if len(path) == changes]
         found[changes] = _moved(starts[int(np.argmax(drops(starts)))], count, drops)
     paths = [found[changes] for changes in range(fewest, MAX_CHANGES + 1)]
-    return dict(zip(paths, drops(paths).tolist(), strict=True))
+    return {path: float(drops([path])[0]) for path in paths}
 
 
 def _toggled(path: Path, places: Path) -> Path:

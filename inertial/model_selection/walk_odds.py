@@ -13,6 +13,7 @@ Source: MacKay 1992, Bayesian interpolation (Occam factor); IEEE Std 952-2020, r
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -60,10 +61,20 @@ class Equations:
 
 @dataclass(frozen=True)
 class WeighedExplanation:
-    """Log evidence of an explanation against none, and the equations with it explained."""
+    """Log evidence of an explanation against none.
+
+    `equations`: before it; `columns`: that it explains, `variance`: beforehand, where they have one
+    """
 
     log_evidence: float
-    rest: Equations
+    equations: Equations
+    columns: Sequence[int] = ()
+    variance: Array | None = None
+
+    @cached_property
+    def rest(self) -> Equations:
+        """The equations with it explained."""
+        return self.equations.given(self.columns, self.variance)
 
 
 def walk(equations: Equations, axes: Sequence[Sequence[int]]) -> WeighedExplanation:
@@ -91,7 +102,7 @@ def law(
     Where it has parameters for each axis, all axes together or any of them; see `_ways`.
     """
     ways = _ways(WeighedExplanation(0.0, equations), (values, weights))
-    return WeighedExplanation(_sum_of(ways), max(ways, key=lambda way: way.log_evidence).rest)
+    return replace(max(ways, key=lambda way: way.log_evidence), log_evidence=_sum_of(ways))
 
 
 def laws(equations: Equations, effects: Sequence[Scanned]) -> float:
@@ -122,6 +133,7 @@ def _ways(before: WeighedExplanation, effect: Scanned) -> list[WeighedExplanatio
     The columns of a matrix are in the order of its rows, of which each axis has one.
     """
     values, weights = effect
+    before = WeighedExplanation(before.log_evidence, before.rest)
     count = len(values[0])
     whole = _after(before, values, weights)
     if count % AXES:
@@ -164,7 +176,7 @@ def _each(
 def _either(one: WeighedExplanation, other: WeighedExplanation) -> WeighedExplanation:
     """Two kinds of the same, as likely beforehand."""
     both = float(np.logaddexp(one.log_evidence, other.log_evidence) - np.log(2))
-    return WeighedExplanation(both, max(one, other, key=lambda each: each.log_evidence).rest)
+    return replace(max(one, other, key=lambda each: each.log_evidence), log_evidence=both)
 
 
 def _walk(equations: Equations, columns: Sequence[int], shape: Array) -> WeighedExplanation:
@@ -185,7 +197,7 @@ def _walk(equations: Equations, columns: Sequence[int], shape: Array) -> Weighed
     step = float(np.log(sizes[1] / sizes[0]))
     total = float(np.logaddexp.reduce(logs)) + np.log(step) - np.log(LOG_RANGE)
     best = float(variances[int(np.argmax(logs)), 0])
-    return WeighedExplanation(float(total), equations.given(own, best * shape))
+    return WeighedExplanation(float(total), equations, own, best * shape)
 
 
 def _after(
@@ -196,5 +208,5 @@ def _after(
     drops, degrees = candidates.drops(before.rest.information, before.rest.right)
     odds = np.where(degrees > 0, log_evidence(drops, degrees) - np.log(LOG_RANGE), 0.0)
     total = float(np.logaddexp.reduce(odds + np.log(weights / np.sum(weights))))
-    rest = before.rest.given(values[int(np.argmax(odds))])
-    return WeighedExplanation(before.log_evidence + total, rest)
+    columns = values[int(np.argmax(odds))]
+    return WeighedExplanation(before.log_evidence + total, before.rest, columns)
