@@ -37,6 +37,10 @@ class Equations:
     information: Array
     right: Array
 
+    def of(self, columns: Sequence[int]) -> "Equations":
+        """Those of some columns alone, in their order."""
+        return Equations(self.information[np.ix_(columns, columns)], self.right[list(columns)])
+
     def given(self, columns: Sequence[int], variance: Array | None = None) -> "Equations":
         """The same with some columns explained, with prior variances where they have one.
 
@@ -115,11 +119,7 @@ def laws(equations: Equations, effects: Sequence[Scanned]) -> float:
     effects = sorted(effects, key=lambda effect: len(effect[0]))
     own = sorted({i for values, _weights in effects for columns in values for i in columns})
     place = {column: i for i, column in enumerate(own)}
-    ways = [
-        WeighedExplanation(
-            0.0, Equations(equations.information[np.ix_(own, own)], equations.right[own])
-        )
-    ]
+    ways = [WeighedExplanation(0.0, equations.of(own))]
     for values, weights in effects:
         moved = [[place[i] for i in columns] for columns in values]
         every = [after for way in ways for after in _ways(way, (moved, weights))]

@@ -94,12 +94,14 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
     others = [effect for effect in selection.fitted if effect not in named]
     columns = columns_with(campaign, sensor, others, named)
     prior = {e.name: _prior(e, campaign, len(selection.searched)) for e in named}
-    tried = []
-    for beside in _subsets(named):
+
+    def weighed(beside: Sequence[Effect]) -> tuple[float, Searched, Sequence[Effect]]:
         jumped = any(effect.name == f"{sensor}_bias_jump" for effect in beside)
         found = searched(columns, columns.given(beside), 1 if jumped else 2)
-        tried.append((_catalogue(columns, beside, prior) + found.odds.total, found, beside))
-    score, found, beside = max(tried, key=lambda one: one[0])
+        return _catalogue(columns, beside, prior) + found.odds.total, found, beside
+
+    # One after the other, for each has equations of some thousand columns.
+    score, found, beside = max(map(weighed, _subsets(named)), key=lambda one: one[0])
     alone = _catalogue(columns, named, prior)
     walk = max(_walk_beside(columns, []), alone + _walk_beside(columns, named))
     # Where the effects are all there is, odds of 1/level occur in that share of campaigns at most.
@@ -274,7 +276,11 @@ def _catalogue(columns: Columns, kept: Sequence[Effect], prior: Mapping[str, flo
 
 def _walk_beside(columns: Columns, named: Sequence[Effect]) -> float:
     """The log evidence of a random walk, alone or beside the named effects."""
-    return walk_odds.walk(columns.given(named), columns.waves).log_evidence
+    known = [columns.place[name] for effect in named for name in effect.columns]
+    own = [*known, *(i for axis in columns.waves for i in axis)]
+    equations = columns.equations.of(own).given(range(len(known)))
+    axes = np.arange(len(known), len(own)).reshape(len(AXES), -1)
+    return walk_odds.walk(equations, axes.tolist()).log_evidence
 
 
 # ---- The shape of a law between the values of its grid.
