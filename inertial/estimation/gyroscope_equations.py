@@ -43,6 +43,7 @@ are unknowns.
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from scipy.linalg import cholesky_banded, solve_banded
@@ -60,6 +61,7 @@ from inertial.estimation.elimination import (
 from inertial.estimation.gyroscope_observations import (
     TABLE,
     Earth,
+    EncoderWindow,
     Position,
     RateSegment,
     StaticRate,
@@ -298,11 +300,25 @@ def segment_equations(
     if segment.by_hand:
         rows.append(across @ unweighted / np.sqrt(segment.seconds.sum() + 2 * edges)[:, None])
         count += len(across)
+    known_angle = partial(_known_angle, segment, point.matrix, recorded, own=list(own))
     if segment.windows:
-        known = _windows(segment, name, point.matrix, of_windows, recorded, angle, list(own))
+        known = np.array(
+            [
+                known_angle(
+                    total,
+                    segment.seconds[window.first : window.after].sum(),
+                    window.end - window.start - angle[window.first : window.after].sum(),
+                    _errors_of(segment, name, window),
+                )
+                for window, total in zip(segment.windows, of_windows, strict=True)
+            ]
+        )
     else:
-        sum_of_blocks = float(segment.weights @ angle)
-        known = _whole_angle(segment, point.matrix, whole, recorded, sum_of_blocks, own)
+        by_kind = {"angle": 1.0, "gap angle": 1.0, CLOCK: segment.angle}
+        errors = {error: by_kind[error[0]] for error in own if error[0] in by_kind}
+        duration = segment.weights**2 @ segment.seconds
+        missing = segment.angle - segment.weights @ angle
+        known = known_angle(whole, duration, missing, errors)[None]
     known = known[np.isfinite(known).all(axis=1)]
     stacked, count = np.vstack([*rows, known]), count - 1 + len(known)
     return EquationBlock(compressed(stacked), tuple(own), count, 0.0)
@@ -440,65 +456,38 @@ class _Blocks:
         return rows
 
 
-def _whole_angle(
+def _known_angle(
     segment: RateSegment,
     matrix: Array,
+    recorded: Booleans,  # (3,)
     whole: Array,  # (3, columns), weighted sum of the blocks
-    recorded: Booleans,  # (3,)
-    angle: float,  # rad, of these blocks
-    own: Mapping[Name, float],
-) -> Array:
-    """The equation of the known angle; the motion of the table on the way is no noise here."""
-    quiet = np.where(recorded, 1 / np.where(recorded, segment.quiet_density, 1.0), 0.0)
-    along = quiet * (matrix @ segment.about)
-    duration = segment.weights**2 @ segment.seconds + _ends(along, quiet, segment.quantisation)
-    scale = float(np.linalg.norm(along)) * np.sqrt(duration)
-    along = quiet * along / scale
-    row = along @ whole
-    # M multiplies the known angle, from which the sum of the blocks' angles differs a little.
-    missing = np.kron(along, (segment.angle - angle) * segment.about)
-    row[:9] += missing
-    row[-1] -= missing @ np.eye(3).ravel()
-    by_kind = {"angle": 1.0, "gap angle": 1.0, CLOCK: segment.angle}
-    for column, (kind, _unused) in enumerate(own, len(row) - 1 - len(own)):
-        if kind in by_kind:
-            row[column] = by_kind[kind] * float(along @ (matrix @ segment.about))
-    return row[None]
-
-
-def _windows(
-    segment: RateSegment,
-    name: str,
-    matrix: Array,
-    sums: Sequence[Array],  # (3, columns) each, of the blocks of a window
-    recorded: Booleans,  # (3,)
-    angle: Array,  # (k,), rad, of the blocks
+    duration: float,  # s, variance of its white noise
+    missing: float,  # rad, the known angle less that of the blocks
+    errors: Mapping[Name, float],  # of the known angle, for one of each
     own: Sequence[Name],
 ) -> Array:
-    """The equations of the angles that the encoder reads, a row for each window."""
+    """The equation of a known angle; the motion of the table on the way is no noise here."""
     quiet = np.where(recorded, 1 / np.where(recorded, segment.quiet_density, 1.0), 0.0)
     along = quiet * (matrix @ segment.about)
-    ends = _ends(along, quiet, segment.quantisation)
-    rows = []
-    for window, whole in zip(segment.windows, sums, strict=True):
-        inside = slice(window.first, window.after)
-        factor = quiet * along
-        factor /= np.linalg.norm(along) * np.sqrt(segment.seconds[inside].sum() + ends)
-        row = factor @ whole
-        # M multiplies the angle of the encoder, from which that of the blocks differs a little.
-        known = window.end - window.start
-        missing = np.kron(factor, (known - float(angle[inside].sum())) * segment.about)
-        row[:9] += missing
-        row[-1] -= missing @ np.eye(3).ravel()
-        of_angle = factor @ (matrix @ segment.about)
-        errors = {DELAY: -window.change, **dict(zip(WAVES, np.negative(window.waves), strict=True))}
-        errors |= {_edge(name, window.start): -1.0, _edge(name, window.end): 1.0}
-        if segment.clock_sigma:
-            errors[(CLOCK, segment.clock)] = known
-        for error, size in errors.items():
-            row[own.index(error) - len(own) - 1] += of_angle * size
-        rows.append(row)
-    return np.array(rows)
+    duration += _ends(along, quiet, segment.quantisation)
+    along = quiet * along / (np.linalg.norm(along) * np.sqrt(duration))
+    row = along @ whole
+    # M multiplies the known angle, from which the sum of the blocks' angles differs a little.
+    change = np.kron(along, missing * segment.about)
+    row[:9] += change
+    row[-1] -= change @ np.eye(3).ravel()
+    for error, size in errors.items():
+        row[own.index(error) - len(own) - 1] += along @ (matrix @ segment.about) * size
+    return np.asarray(row)
+
+
+def _errors_of(segment: RateSegment, name: str, window: EncoderWindow) -> dict[Name, float]:
+    """The errors of the angle that the encoder reads over a window."""
+    errors = {DELAY: -window.change, **dict(zip(WAVES, np.negative(window.waves), strict=True))}
+    errors |= {_edge(name, window.start): -1.0, _edge(name, window.end): 1.0}
+    if segment.clock_sigma:
+        errors[(CLOCK, segment.clock)] = window.end - window.start
+    return errors
 
 
 def _edge(name: str, angle: float) -> Name:
