@@ -40,11 +40,11 @@ from stages.diagnosis.causes import (
     INTERPOLATED,
     LEFT_OUT,
     MASKED,
-    MAX_HARMLESS_MOVE,
     NONE,
 )
 from stages.diagnosis.decision import MAX_MOVE
 from stages.diagnosis.declared import DECLARED
+from stages.diagnosis.sizes_of_causes import MAX_HARMLESS_MOVE
 
 # ---- What leaves the report without a result, though nothing need be wrong with the recording.
 

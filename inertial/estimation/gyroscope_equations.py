@@ -316,8 +316,8 @@ def segment_equations(
     else:
         by_kind = {"angle": 1.0, "gap angle": 1.0, CLOCK: segment.angle}
         errors = {error: by_kind[error[0]] for error in own if error[0] in by_kind}
-        duration = segment.weights**2 @ segment.seconds
-        missing = segment.angle - segment.weights @ angle
+        duration = float(segment.weights**2 @ segment.seconds)
+        missing = segment.angle - float(segment.weights @ angle)
         known = known_angle(whole, duration, missing, errors)[None]
     known = known[np.isfinite(known).all(axis=1)]
     stacked, count = np.vstack([*rows, known]), count - 1 + len(known)

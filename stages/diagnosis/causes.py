@@ -27,25 +27,26 @@ from inertial.campaign.records import Performed, Row
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, listed, plural
-from inertial.text.numbers import significant
-from inertial.text.parameters import MIXTURE, sign_of
-from inertial.text.units import quantity
+from inertial.text.parameters import MIXTURE
 from stages.diagnosis.decision import MAX_MOVE, UNEXPLAINED
 from stages.diagnosis.gravity_by_latitude import Gravity
 from stages.diagnosis.sensor_results import SensorResult
 from stages.diagnosis.sizes_of_causes import (
     CLOCK,
+    MAX_HARMLESS_MOVE,
     Size,
+    gain_of,
+    most_moved_by,
     moved_by,
     moved_by_measure,
     moved_by_runs,
     moved_by_turning,
+    turns_of,
 )
 
 REPAIRED, MODELLED, CURVE, MASKED = "repaired", "modelled", "curve", "masked"
 INTERPOLATED, LEFT_OUT, NONE = "interpolated", "left_out", "none"
 APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were made with
-MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
 ENCODER_JUMP = "encoder_jump"  # which segment takes out of the angles
 QUANTISATION = "quantisation"
@@ -341,11 +342,11 @@ class Evidence:
         spoilt = self._by_gravity_of_wrong_place(members)
         doubted = self._doubted(main, moves)
         sensors = tuple(dict.fromkeys([*(result.sensor for result in own), *spoilt, *doubted]))
-        gain, turns = _gain(main, drop, own), {} if freed else _turns(main, own)
+        gain, turns = gain_of(main, drop, own), {} if freed else turns_of(main, own)
         given = (members, sensors, cure, done, moves, drop, gain, modelled, freed, turns, spoilt)
         gravity = self.gravity.get(main.id)
         condition = None if gravity is None else gravity.condition
-        return Cause(*given, condition, _most_moved(main, moves, own), doubted, saturated)
+        return Cause(*given, condition, most_moved_by(main, moves, own), doubted, saturated)
 
     def _doubted(self, cause: Hypothesis, moves: float | None) -> frozenset[str]:
         """The gyros, where a structure of the accelerometers may be of attitudes that are wrong.
@@ -488,17 +489,6 @@ def _of_sensor(findings: Sequence[Hypothesis], sensor: str) -> Iterator[Hypothes
     return (each for each in findings if each.sensor in (None, sensor))
 
 
-def _turns(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
-    """By how many sigma it turns the axes of a sensor that does not show it, if it is that shift.
-
-    Where a shift is one of a class.
-    """
-    if (cause.causes - {cause.cause}).isdisjoint(MOUNTINGS):
-        return {}
-    others = [result for result in own if not result.shows(MOUNTINGS)]
-    return {r.sensor: move for r in others for move in moved_by_turning(own, [r])}
-
-
 def _mean_of(cause: Hypothesis, own: Sequence[SensorResult]) -> str:
     """What the parameters are a mean over, as a sentence; "" where they are of one fit."""
     means = [result for result in own if result.chosen.method == MIXTURE]
@@ -506,43 +496,3 @@ def _mean_of(cause: Hypothesis, own: Sequence[SensorResult]) -> str:
     if cause.verdict == ONE_OF_CLASS and means:
         return BY_MEMBERS_AND_WITHOUT if without else BY_MEMBERS
     return WITH_AND_WITHOUT if without else ""
-
-
-def _gain(cause: Hypothesis, drop: float | None, own: Sequence[SensorResult]) -> str | None:
-    """What it gains, with the other effects of that result."""
-    repair = cause.repair
-    if repair is not None and repair["fitting_after"] != repair["fitting_before"]:
-        return _(
-            "With it {after} of {all} observations fit the plan, without it {before}.",
-            after=repair["fitting_after"],
-            before=repair["fitting_before"],
-            all=repair["observations"],
-        )
-    having = [result for result in own if result.models(cause.causes) and result.drop == drop]
-    if drop is None or not having:
-        return None
-    rows = having[0].chosen.rows
-    others = dict.fromkeys(row["effect"] for row in rows if row["effect"])
-    together = [in_words(name) for name in others if name not in cause.causes]
-    return _(
-        "χ² of the held-out manoeuvres of the {sensors} falls by {drop}{together}.",
-        sensors=PLURAL[having[0].sensor],
-        drop=significant(drop),
-        together=_(", together with {others}", others=listed(together)) if together else "",
-    )
-
-
-def _most_moved(cause: Hypothesis, moves: float | None, own: Sequence[SensorResult]) -> str:
-    """Which parameter it shifts by `moves` of its sigma, as a sentence; "" where none is known."""
-    each = ((result.most_moved(cause.causes), result) for result in own)
-    for most, result in each:
-        if most is not None and most.sigmas == moves and moves > MAX_HARMLESS_MOVE:
-            shown = quantity(most.parameter, most.unit).shown
-            return _(
-                "Most of all {parameter} of the {sensors}, by {by} {unit}. ",
-                parameter=sign_of(most.parameter),
-                sensors=PLURAL[result.sensor],
-                by=significant(shown.of(most.by), 2),
-                unit=shown.name,
-            )
-    return ""

@@ -1,4 +1,4 @@
-"""How large causes are, by the result where its model has them, and by how much they move it."""
+"""How large causes are, what their model gains, and by how much they move the result."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -9,11 +9,16 @@ from inertial.campaign.hypotheses import MOUNTINGS, PLAN, Findings, Hypothesis
 from inertial.campaign.records import Row, rows_of, sizes_of_result
 from inertial.effects import KNOWN, TEMPERATURE_MODELS
 from inertial.effects.restarts import Restarts
-from inertial.text.parameters import AXES
-from inertial.text.units import STANDARD_GRAVITY
+from inertial.sensors import PLURAL
+from inertial.text.cause_names import in_words
+from inertial.text.messages import _, listed
+from inertial.text.numbers import significant
+from inertial.text.parameters import AXES, sign_of
+from inertial.text.units import STANDARD_GRAVITY, quantity
 from stages.diagnosis.sensor_results import SensorResult
 
 PLACES = ("frequency", "n", "phase")  # parameters of lines: where they are, not how large
+MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
 MIN_CLEAR_SIGMA = 4.0  # of a parameter: the effect is in its axis
 
 
@@ -165,3 +170,54 @@ def moved_by_measure(cause: Hypothesis, own: Sequence[SensorResult]) -> float | 
     else:
         return None
     return max((share / sigma for share, sigma in shares if sigma), default=None)
+
+
+def turns_of(cause: Hypothesis, own: Sequence[SensorResult]) -> dict[str, float]:
+    """By how many sigma it turns the axes of a sensor that does not show it, if it is that shift.
+
+    Where a shift is one of a class.
+    """
+    if (cause.causes - {cause.cause}).isdisjoint(MOUNTINGS):
+        return {}
+    others = [result for result in own if not result.shows(MOUNTINGS)]
+    return {r.sensor: move for r in others for move in moved_by_turning(own, [r])}
+
+
+def gain_of(cause: Hypothesis, drop: float | None, own: Sequence[SensorResult]) -> str | None:
+    """What it gains, with the other effects of that result."""
+    repair = cause.repair
+    if repair is not None and repair["fitting_after"] != repair["fitting_before"]:
+        return _(
+            "With it {after} of {all} observations fit the plan, without it {before}.",
+            after=repair["fitting_after"],
+            before=repair["fitting_before"],
+            all=repair["observations"],
+        )
+    having = [result for result in own if result.models(cause.causes) and result.drop == drop]
+    if drop is None or not having:
+        return None
+    rows = having[0].chosen.rows
+    others = dict.fromkeys(row["effect"] for row in rows if row["effect"])
+    together = [in_words(name) for name in others if name not in cause.causes]
+    return _(
+        "χ² of the held-out manoeuvres of the {sensors} falls by {drop}{together}.",
+        sensors=PLURAL[having[0].sensor],
+        drop=significant(drop),
+        together=_(", together with {others}", others=listed(together)) if together else "",
+    )
+
+
+def most_moved_by(cause: Hypothesis, moves: float | None, own: Sequence[SensorResult]) -> str:
+    """Which parameter it shifts by `moves` of its sigma, as a sentence; "" where none is known."""
+    each = ((result.most_moved(cause.causes), result) for result in own)
+    for most, result in each:
+        if most is not None and most.sigmas == moves and moves > MAX_HARMLESS_MOVE:
+            shown = quantity(most.parameter, most.unit).shown
+            return _(
+                "Most of all {parameter} of the {sensors}, by {by} {unit}. ",
+                parameter=sign_of(most.parameter),
+                sensors=PLURAL[result.sensor],
+                by=significant(shown.of(most.by), 2),
+                unit=shown.name,
+            )
+    return ""

@@ -16,13 +16,13 @@ from stages.diagnosis.causes import (
     INTERPOLATED,
     LEFT_OUT,
     MASKED,
-    MAX_HARMLESS_MOVE,
     MODELLED,
     NONE,
     REPAIRED,
     Cause,
 )
 from stages.diagnosis.sensor_results import TWELVE, SensorResult
+from stages.diagnosis.sizes_of_causes import MAX_HARMLESS_MOVE
 
 USABLE, WITHIN_LIMITS, ON_CONDITION, NOT_USABLE = (
     "usable",

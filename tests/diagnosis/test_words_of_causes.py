@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from inertial.campaign.estimates import reasons
-from stages.diagnosis.causes import MASKED, MODELLED, _gain, _mean_of, _most_moved
+from stages.diagnosis.causes import MASKED, MODELLED, _mean_of
 from stages.diagnosis.sensor_results import Moved
+from stages.diagnosis.sizes_of_causes import gain_of, most_moved_by
 from stages.diagnosis.verdict import _limit
 
 WARM_UP = SimpleNamespace(causes=frozenset({"gyro_warm_up"}), repair=None)
@@ -28,18 +29,18 @@ def result(*effects, drop=96.05, joint_share=0.0, method="extended"):
 
 
 def test_a_gain_says_of_which_sensor_and_with_which_other_effects_it_is():
-    alone = _gain(WARM_UP, 96.05, [result("gyro_warm_up")])
+    alone = gain_of(WARM_UP, 96.05, [result("gyro_warm_up")])
     assert alone == "χ² of the held-out manoeuvres of the gyros falls by 96.05."
-    both = _gain(WARM_UP, 96.05, [result("gyro_warm_up", "gyro_temperature")])
+    both = gain_of(WARM_UP, 96.05, [result("gyro_warm_up", "gyro_temperature")])
     assert both.endswith("falls by 96.05, together with gyro parameters with temperature.")
-    assert _gain(WARM_UP, None, [result("gyro_warm_up")]) is None
+    assert gain_of(WARM_UP, None, [result("gyro_warm_up")]) is None
 
 
 def test_the_parameter_that_is_shifted_most_is_named_with_its_shift():
-    said = _most_moved(WARM_UP, 20.0, [result("gyro_warm_up")])
+    said = most_moved_by(WARM_UP, 20.0, [result("gyro_warm_up")])
     assert said == "Most of all b_z of the gyros, by 5.0 °/h. "
-    assert not _most_moved(WARM_UP, 31.0, [result("gyro_warm_up")])  # by something else
-    assert not _most_moved(WARM_UP, None, [result("gyro_warm_up")])
+    assert not most_moved_by(WARM_UP, 31.0, [result("gyro_warm_up")])  # by something else
+    assert not most_moved_by(WARM_UP, None, [result("gyro_warm_up")])
 
 
 @pytest.mark.parametrize(
