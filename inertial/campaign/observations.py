@@ -166,7 +166,7 @@ def _turning(
         angle *= m.angle / (motion.angle[-1] + swept[-1] / 2)
     turned = (m.axis, angle, swept)
     ups = mean_turned(m.up, *turned)
-    _, off = between_blocks(motion.rate, seconds)
+    *_, off = between_blocks(motion.rate, seconds, blocks.missing)
     starts = [start for piece in pairwise(edges) for start in _merged(off, *piece)]
     merged = Merged(seconds, starts)
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
