@@ -25,7 +25,9 @@ class TableTiltJump(SettingIn, TableTilt):
         "zero: all that it carries leans the same way from then on"
     )
     parameters = tuple(
-        Parameter(to, "rad", 2e-5, _("lean of the table's vertical towards {to} from then on", to=to))
+        Parameter(
+            to, "rad", 2e-5, _("lean of the table's vertical towards {to} from then on", to=to)
+        )
         for to in ("north", "east")
     )
     sizes = of_tables(ARC_SECOND, 10, 60)

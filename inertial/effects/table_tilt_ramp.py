@@ -19,7 +19,9 @@ class TableTiltRamp(TableTilt):
     """
 
     name = "table_tilt_ramp"
-    cause = _("the floor or the base of the table gives way slowly, so all its axes lean more and more")
+    cause = _(
+        "the floor or the base of the table gives way slowly, so all its axes lean more and more"
+    )
     parameters = tuple(
         Parameter(to, "rad/s", 2e-5 / HOUR, _("drift of the table's vertical towards {to}", to=to))
         for to in ("north", "east")
