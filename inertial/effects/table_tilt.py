@@ -22,7 +22,7 @@ class TableTilt(Effect):
     name = "table_tilt"
     cause = _("the base of the table is not level, so all its axes lean the same way")
     source = "IEEE Std 517-1974, table errors"
-    parameters = (
+    parameters: tuple[Parameter, ...] = (
         Parameter("north", "rad", 2e-5, _("lean of the table's vertical towards north")),
         Parameter("east", "rad", 2e-5, _("lean of the table's vertical towards east")),
     )
