@@ -44,6 +44,14 @@ HIDDEN = {
         {"north_arcsec": 9, "east_arcsec": 0},
         {"north": np.radians(9 / 3600), "east": 0.0},
     ),
+    "table_tilt_ramp": (
+        {"north_arcsec_h": 30, "east_arcsec_h": 0},
+        {"north": np.radians(30 / 3600) / 3600, "east": 0.0},
+    ),
+    "table_tilt_jump": (
+        {"north_arcsec": 0, "east_arcsec": 30, "at_s": 1450},
+        {"north": 0.0, "east": np.radians(30 / 3600)},
+    ),
     "table_wobble": ({"east_arcsec": 0, "north_arcsec": 5}, {}),
 }
 # In the quick tests; `make test-slow` hides them all.

@@ -115,6 +115,8 @@ IN_PROPORTION = frozenset(
         "accel_scale_temperature",
         "table_speed_error",
         "table_tilt",
+        "table_tilt_ramp",
+        "table_tilt_jump",
         "table_axis_non_orthogonality",
         "table_inner_axis",
         "table_position_error",

@@ -32,6 +32,8 @@ OF_ATTITUDES = frozenset(
         "table_axis_non_orthogonality",
         "table_inner_axis",
         "table_tilt",
+        "table_tilt_ramp",
+        "table_tilt_jump",
         "turn_angle_error",
         "table_angle_scale",
     }

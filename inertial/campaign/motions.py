@@ -66,28 +66,37 @@ def in_blocks(data: CampaignData, m: Manoeuvre, turn: RateSegment, time: Array) 
     if abs(known - 1) > MAX_ANGLE_OFF and turn.course is None:
         angle = known * angle
     rate = angle / turn.seconds
-    acceleration = np.diff(between_blocks(rate, turn.seconds)[0]) / turn.seconds
+    missing = np.zeros(len(rate))
+    missing[[gap.before for gap in turn.gaps]] = [gap.seconds for gap in turn.gaps]
+    first, last = between_blocks(rate, turn.seconds, missing)[:2]
+    acceleration = (last - first) / turn.seconds
     blocks = turning(m.axis, up, north, turn.turned(angle), rate, acceleration, time, turn.seconds)
     return replace(blocks, surveyed=np.full(len(time), set_position.north is not None))
 
 
-def between_blocks(rate: Array, seconds: Array) -> tuple[Array, Array]:
-    """The rate between the k blocks of a turn and at its ends, where it is at rest, (k + 1,).
+def between_blocks(rate: Array, seconds: Array, missing: Array) -> tuple[Array, Array, Array]:
+    """The rate where each of the k blocks of a turn begins and ends; at its ends it is at rest.
 
     It continues straight from the blocks on both sides, or, near the corner of a ramp, from those
-    on the side away from it. The second: how far the blocks beside it are off a straight line,
+    on the side away from it. Where samples are `missing` before a block, (k,), s, it has changed by
+    when that begins. The third: how far the blocks beside each edge are off a straight line,
     (k + 1,), rad/s; if they are, a corner may be so near that the rate is another.
     """
-    length = np.pad(seconds, 1, "edge")
-    slope = np.diff(np.pad(rate, 1)) / ((length[1:] + length[:-1]) / 2)
+    length, gap = np.pad(seconds, 1, "edge"), np.append(missing, 0.0)
+    apart = (length[1:] + length[:-1]) / 2 + gap
+    slope = np.diff(np.pad(rate, 1)) / apart
     bend = np.abs(np.diff(np.pad(slope, 1))) * length  # of the rest before, the blocks, the rest
-    before = rate[:-1] + slope[:-2] * seconds[:-1] / 2
-    behind = rate[1:] - slope[2:] * seconds[1:] / 2
-    earlier, later = bend[:-3], bend[3:]
+    earlier, later, gap = bend[:-3], bend[3:], gap[1:-1]
     straighter = [later < earlier - MIN_BEND, earlier < later - MIN_BEND]
-    edges = np.select(straighter, [behind, before], (before + behind) / 2)
+
+    def at(since: Array) -> Array:
+        """After a time since the block before each inner edge ended, (k − 1,)."""
+        before = rate[:-1] + slope[:-2] * (seconds[:-1] / 2 + since)
+        behind = rate[1:] - slope[2:] * (seconds[1:] / 2 + gap - since)
+        return np.asarray(np.select(straighter, [behind, before], (before + behind) / 2))
+
     off = np.fmin(bend[1:-2], bend[2:-1])
-    return np.pad(edges, 1), np.pad(off, 1)
+    return np.append(0.0, at(gap)), np.append(at(0 * gap), 0.0), np.pad(off, 1)
 
 
 def at_rate(data: CampaignData, m: Manoeuvre, steady: SteadyRate, time: Array) -> Motion:

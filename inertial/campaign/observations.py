@@ -150,6 +150,8 @@ def _turning(
 ) -> list[tuple[str, StaticForce, Motion]]:
     """The accelerometers during a rotation in means of some blocks, none across the `edges`.
 
+    Nor those that end at a gap near the corner of a ramp, where nothing shows the rate.
+
     `noise`: white at the steady rate and at rest, and quantisation. While the table starts and
     stops the larger white one: what shakes the rest after a turn may begin before it is at rest.
     `early`: sigma of the time of a sample against that of the gyros, s. By it a mean is off in
@@ -166,7 +168,7 @@ def _turning(
         angle *= m.angle / (motion.angle[-1] + swept[-1] / 2)
     turned = (m.axis, angle, swept)
     ups = mean_turned(m.up, *turned)
-    _, off = between_blocks(motion.rate, seconds)
+    *_, off = between_blocks(motion.rate, seconds, blocks.missing)
     starts = [start for piece in pairwise(edges) for start in _merged(off, *piece)]
     merged = Merged(seconds, starts)
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
@@ -181,6 +183,8 @@ def _turning(
         sigmas = np.hypot(sigmas, early * change / merged.seconds[:, None])
     sigmas = np.hypot(sigmas, of_faster_waves(m, merged.mean(ups), walk))
     shares = merged.mean(angle) / (m.angle or np.inf)
+    cut = np.append((blocks.missing > 0) & (off[:-1] > MIN_BEND), False)
+    known = ~(cut[starts] | cut[[*starts[1:], len(seconds)]])
     means = zip(merged.mean(ups), merged.mean(read), sigmas, level, shares, strict=True)
     rests = [
         StaticForce(
@@ -195,9 +199,8 @@ def _turning(
         )
         for up, mean, sigma, own, share in means
     ]
-    return [
-        (m.name, rest, at) for rest, at in zip(rests, mean_motions(motion, merged), strict=True)
-    ]
+    each = zip(rests, mean_motions(motion, merged), known.tolist(), strict=True)
+    return [(m.name, rest, at) for rest, at, usable in each if usable]
 
 
 def _merged(off: Array, first: int, after: int) -> list[int]:

@@ -9,7 +9,7 @@ from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import COLUMNS, PLURAL
 from inertial.signal.detector import Description, Detector, Event, Log, Piece
 from inertial.signal.runs import records_of_a_reading, runs
-from inertial.signal.stamps import kinds
+from inertial.signal.stamps import kinds, sent_again
 from inertial.text.messages import _, listed
 from inertial.text.numbers import counted, fixed, p_is, significant
 
@@ -21,8 +21,9 @@ MAX_CHANCE_EQUAL = 0.05
 class Duplicate(Detector):
     """A record whose stamp and readings were in the log before.
 
-    Right before, where a line was written twice; or farther back, where logs were joined that
-    overlap. What lies farther back than the piece shows is not seen.
+    Right before, where a line was written twice or a packet came twice, of which the second may be
+    stamped as it came; or farther back, where logs were joined that overlap. What lies farther back
+    than the piece shows is not seen.
 
     A sum counts it twice: at 10 °/s and 100 Hz a turn gains 0.1° with each.
     """
@@ -37,8 +38,8 @@ class Duplicate(Detector):
     def detect(self, piece: Piece, log: Log) -> Iterator[Event]:
         repeated = _repeated(piece)
         for start, end in runs(repeated):
-            far = bool(piece.time[start] < np.nanmax(piece.time[:start]))
-            yield piece.event(start, end, float(end - start), facts=far)
+            after = float(piece.time[start] - np.nanmax(piece.time[:start]))
+            yield piece.event(start, end, float(end - start), facts=after)
 
     def describe(self, event: Event, name: str) -> Description:
         single = event.size == 1
@@ -48,9 +49,10 @@ class Duplicate(Detector):
             line=event.line,
         )
         does = _("repeats") if single else _("repeat")
-        where = (
-            _("earlier ones, stamps and all") if event.facts else _("the one before, stamp and all")
-        )
+        where = _("the one before, stamp and all")
+        if event.facts:
+            earlier = _("earlier ones, stamps and all")
+            where = earlier if event.facts < 0 else _("the one before, too soon for a sample")
         many = _("it") if single else _("them")
         return Description(
             _(
@@ -77,7 +79,7 @@ class Duplicate(Detector):
 
 def _repeated(piece: Piece) -> Booleans:
     """Which records were there before, (n,)."""
-    repeated = np.zeros(len(piece), bool)
+    repeated = sent_again(piece.time, piece.values)
     time = np.where(np.isnan(piece.time), np.inf, piece.time)
     again = np.zeros(len(piece), bool)
     again[1:] = time[1:] <= np.maximum.accumulate(time)[:-1]

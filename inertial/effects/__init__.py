@@ -65,6 +65,8 @@ from inertial.effects.table_position_error import TablePositionError
 from inertial.effects.table_ripple import TableRipple
 from inertial.effects.table_speed_error import TableSpeedError
 from inertial.effects.table_tilt import TableTilt
+from inertial.effects.table_tilt_jump import TableTiltJump
+from inertial.effects.table_tilt_ramp import TableTiltRamp
 from inertial.effects.table_wobble import TableWobble
 from inertial.effects.temperature_model import TemperatureModel
 from inertial.effects.thermal_hysteresis import ThermalHysteresis
@@ -123,6 +125,8 @@ CATALOGUE: dict[str, Effect] = {
         # the table
         TableSpeedError(),
         TableTilt(),
+        TableTiltRamp(),
+        TableTiltJump(),
         TableAxisNonOrthogonality(),
         TableInnerAxis(),
         TablePositionError(),

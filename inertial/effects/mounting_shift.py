@@ -26,13 +26,14 @@ class MountingShift(SettingIn):
     From then on every axis of the case points elsewhere than the plan says, for both sensors alike.
     A jump of a bias is the same in all attitudes; this one turns what is sensed, so it goes with
     the attitude and with the rate. A single position that is off is followed by right ones;
-    after a shift all that follow are off.
+    after a shift all that follow are off. Another zero of the axis that carries the fixture is the
+    same rotation, and no reading tells which it is.
     """
 
     name = "mounting_shift"
     cause = _(
-        "a screw or an adhesive gives way, or the IMU is knocked: its orientation in the fixture "
-        "differs from then on"
+        "a screw or an adhesive gives way, the IMU is knocked, or the innermost axis of the table "
+        "counts from another zero: its orientation differs from then on"
     )
     source = "IEEE Std 1554-2005, stability of the mounting fixture"
     parameters = parameters_by_axis(

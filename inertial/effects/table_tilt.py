@@ -22,20 +22,27 @@ class TableTilt(Effect):
     name = "table_tilt"
     cause = _("the base of the table is not level, so all its axes lean the same way")
     source = "IEEE Std 517-1974, table errors"
-    parameters = (
+    parameters: tuple[Parameter, ...] = (
         Parameter("north", "rad", 2e-5, _("lean of the table's vertical towards north")),
         Parameter("east", "rad", 2e-5, _("lean of the table's vertical towards east")),
     )
     sizes = of_tables(ARC_SECOND, 3, 60)
+    slope = 0.0  # of the course, 1/s: the gyros feel it
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         north = np.nan_to_num(motion.north)
         leant = values[0] * north + values[1] * cross(north, motion.up)
-        lean = cross(motion.up, leant)
+        whole = cross(motion.up, leant)
+        lean = self.course(motion)[:, None] * whole
         earth = -cross(lean, truth.rate - motion.omega)
         upward = np.sum(earth * motion.up, axis=1, keepdims=True) * motion.up
         seen = np.where(motion.surveyed[:, None], earth, upward)  # else the gyros tell the level
-        return Truth(rate=truth.rate + seen, force=truth.force - cross(lean, truth.force))
+        rate = truth.rate + seen + self.slope * whole
+        return Truth(rate=rate, force=truth.force - cross(lean, truth.force))
+
+    def course(self, motion: Motion) -> Array:
+        """The share of the lean that there is in each stretch, (n,)."""
+        return np.ones(len(motion.up))
 
     def level_rate_changes(self, up: float, level: float) -> Array:
         return np.array([-up, 0.0])

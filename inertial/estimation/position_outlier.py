@@ -26,7 +26,8 @@ from inertial.physics.motion import cross, level_axes
 
 FREE_TILT_SIGMA = 0.02  # rad, of a tilt that is fitted freely: a degree
 SIGNIFICANCE = 0.001  # accepted probability of a false alarm
-MIN_OFF, MIN_OFF_SIGMAS = np.radians(0.5), 20.0  # by which it is no small error, and of the table
+MIN_OFF = np.sqrt(2e-5)  # rad: from there 1 − cos, which no linear error has, is above 10 µg
+MIN_OFF_SIGMAS = 20.0  # of the table: less is an error that it makes
 MAX_OFF = np.radians(15.0)  # more is another position
 MAX_OFF_POSITIONS = 3
 MAX_REST = 1 / 3  # of what is beyond noise: else the positions are not what is wrong

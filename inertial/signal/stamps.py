@@ -194,3 +194,23 @@ def _change(before: Array, after: Array) -> tuple[float, float]:
     first, last = (float(force.mean()) for force in forces)
     sigmas = [float(force.std()) / np.sqrt(len(force)) for force in forces]
     return last / first - 1, float(np.hypot(*sigmas) / first)
+
+
+def sent_again(time: Array, values: Array) -> Booleans:
+    """Which records are the one before, that came twice and is stamped as it came, (n,).
+
+    They have its readings, (n, c), within half of an interval, in which nothing is sampled; unless
+    most that come so soon have readings of their own.
+    """
+    soon = np.zeros(len(time), bool)
+    step = np.diff(time)
+    if not np.isfinite(step).any():
+        return soon
+    soon[1:] = (step > 0) & (step < np.nanmedian(step) / 2)
+    late = np.flatnonzero(soon)
+    now, before = values[late], values[late - 1]
+    same = (now == before) | (np.isnan(now) & np.isnan(before))
+    again = np.zeros(len(time), bool)
+    again[late] = same.all(axis=1) & np.isfinite(now).any(axis=1)
+    few = 2 * np.count_nonzero(again) <= len(late)
+    return np.zeros(len(time), bool) if few else again

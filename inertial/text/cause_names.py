@@ -14,6 +14,8 @@ NAMES = {
     "accel_latency": _("delay between accelerometers and gyros"),
     "lever_arm": _("lever arm"),
     "table_tilt": _("table tilt"),
+    "table_tilt_ramp": _("table that tilts steadily"),
+    "table_tilt_jump": _("tilt of the table from a time on"),
     "table_wobble": _("table wobble"),
     "table_eccentricity": _("table eccentricity"),
     "table_ripple": _("table ripple"),

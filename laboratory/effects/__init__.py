@@ -86,6 +86,8 @@ from laboratory.effects.table_ripple import TableRipple
 from laboratory.effects.table_speed_error import TableSpeedError
 from laboratory.effects.table_sway import TableSway
 from laboratory.effects.table_tilt import TableTilt
+from laboratory.effects.table_tilt_jump import TableTiltJump
+from laboratory.effects.table_tilt_ramp import TableTiltRamp
 from laboratory.effects.table_wobble import TableWobble
 from laboratory.effects.temperature_curves import TemperatureCurves
 from laboratory.effects.temperature_hysteresis import TemperatureHysteresis
@@ -115,6 +117,8 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "table_ripple": TableRipple.specified,
     "table_wobble": TableWobble.specified,
     "table_creep": TableCreep.specified,
+    "table_tilt_ramp": TableTiltRamp.specified,
+    "table_tilt_jump": TableTiltJump.specified,
     "oscillation": Oscillation.specified,
     "lever_arm": LeverArm.specified,
     "size_effect": SizeEffect.specified,

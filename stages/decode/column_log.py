@@ -14,6 +14,7 @@ from inertial.formats.columns.column_layout import ticks_per_second
 from inertial.formats.columns.data_rows import Rows
 from inertial.signal.regular_clock import RegularClock, are_regular, regular_clock
 from inertial.signal.scale_factor import bits_without_sign, signed
+from inertial.signal.stamps import sent_again
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
@@ -33,7 +34,7 @@ class Stamped:
     """The stamps of one sensor, for two may come in rows of their own.
 
     record, ticks: (n,), of its rows; repeated: (n,), which have stamp and readings of the row
-    before, so that no sample is taken with them.
+    before, or these and come too soon, so that no sample is taken with them.
     """
 
     record: Integers
@@ -51,6 +52,7 @@ class Stamped:
         still = np.flatnonzero(repeated)
         same = np.nan_to_num(values[still]) == np.nan_to_num(values[still - 1])
         repeated[still] = same.all(axis=1)
+        repeated |= sent_again(ticks, values)
         return cls(rows.record[there], ticks, repeated)
 
     @classmethod

@@ -97,7 +97,7 @@ def test_what_is_scanned_has_candidates_of_its_own(motion):
         "gyro_relaxation", "gyro_relaxation_sense", "gyro_relaxation_braking",
         "accel_warm_up", "accel_bias_jump", "accel_scale_jump",
         "table_ripple", "table_position_error", "table_axis_error",
-        "turn_angle_error", "mounting_shift", "mounting_slip",
+        "turn_angle_error", "mounting_shift", "mounting_slip", "table_tilt_jump",
     }  # fmt: skip
     for effect in CATALOGUE.values():
         candidates = effect.candidates(motion)
@@ -121,7 +121,7 @@ BLIND = {
         "gyro_bias_ramp", "gyro_scale_ramp", "gyro_warm_up", "gyro_bias_jump", "gyro_scale_jump",
         "accel_bias_ramp", "accel_scale_ramp", "accel_warm_up", "accel_bias_jump",
         "accel_scale_jump",
-        "mounting_shift", "mounting_slip",
+        "mounting_shift", "mounting_slip", "table_tilt_ramp", "table_tilt_jump",
         "gyro_relaxation", "gyro_relaxation_sense", "gyro_relaxation_braking",
     },
     "temperature": {
@@ -130,7 +130,7 @@ BLIND = {
     },
     "heading": {
         "heading_error", "table_tilt", "table_axis_non_orthogonality", "table_inner_axis",
-        "table_wobble",
+        "table_wobble", "table_tilt_ramp", "table_tilt_jump",
     },
 }  # fmt: skip
 

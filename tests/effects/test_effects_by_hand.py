@@ -117,6 +117,23 @@ def test_a_table_that_leans_feels_another_part_of_the_earth_rate(north, east):
     assert np.array([north, east]) @ change == pytest.approx(level - SITE.earth_level, abs=1e-10)
 
 
+def test_a_tilt_with_a_course_is_that_share_of_a_tilt_and_the_gyros_feel_it_grow():
+    motion, lean_2d = (
+        replace(on_a_turn(np.zeros(3)), time=np.array([0.0, 1800.0, 3600.0])),
+        [2e-5, 1e-5],
+    )
+    gyro, accel = acted("table_tilt", lean_2d, motion)
+    rates = [size / 3600 for size in lean_2d]
+    gyro_ramp, accel_ramp = acted("table_tilt_ramp", rates, motion)
+    np.testing.assert_allclose(accel_ramp, np.array([[0], [0.5], [1]]) * accel, atol=1e-9)
+    felt = AT_START.inv().apply(lean(*rates))
+    earth = np.array([[0], [0.5], [1]]) * gyro
+    np.testing.assert_allclose(gyro_ramp - earth, [felt] * 3, atol=1e-12)
+    gyro_jump, accel_jump = acted("table_tilt_jump", lean_2d, motion, at=900.0)
+    np.testing.assert_allclose(accel_jump, np.array([[0], [1], [1]]) * accel, atol=1e-12)
+    np.testing.assert_allclose(gyro_jump, np.array([[0], [1], [1]]) * gyro, atol=1e-15)
+
+
 def test_a_scale_of_the_angle_leaves_the_case_off_until_a_position_is_set():
     """A turn about north, one about east from where that ends, and one about east set anew."""
     scale, whole, n = 1e-5, ANGLES[-1], len(ANGLES)

@@ -46,6 +46,8 @@ GROUPS = (
         *("table_axis_non_orthogonality", "heading_error"),
     ),
     ("table_wobble", "table_angle_scale", "table_inner_axis"),
+    ("table_tilt_ramp",),
+    ("table_tilt_jump",),
     ("mounting_shift",),
     ("gyro_scale_ramp", "accel_scale_ramp", "gyro_relaxation", "gyro_relaxation_braking"),
     ("gyro_relaxation_sense",),

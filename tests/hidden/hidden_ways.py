@@ -58,6 +58,11 @@ def _level(first: str, second: str, **more: Any) -> Way:
     return Way((first, second), told, **more)
 
 
+def _drifting(v: Array) -> dict[str, Any]:
+    keys = ("north_arcsec_h", "east_arcsec_h")
+    return dict(zip(keys, (v / ARC_SECOND * 3600).tolist(), strict=True))
+
+
 def _products(v: Array) -> dict[str, Any]:
     """The laboratory's columns are yz, zx, xy; the model's xy, yz, zx."""
     return {"matrix_micro_g_g2": (v.reshape(3, 3)[:, [1, 2, 0]] / (PPM / G)).tolist()}
@@ -122,6 +127,8 @@ WAYS: Mapping[str, Way] = {
     "mounting_shift": _three("rotation_arcsec", ARC_SECOND, "theta", **AT),
     "size_effect": _matrix("arms_mm", 1e-3, "r"),
     "table_tilt": _level("north", "east"),
+    "table_tilt_ramp": Way(("north", "east"), _drifting),
+    "table_tilt_jump": _level("north", "east", **AT),
     "table_axis_non_orthogonality": Way(("lean", "quarter"), _leaning, RATES),
     "table_inner_axis": _one("lean_arcsec", ARC_SECOND, "lean", plans=RATES),
     "table_wobble": _level("north", "east"),

@@ -44,7 +44,7 @@ def test_sigmas_of_positions_set_by_hand_hold(degrees):
         assert np.mean(of_bias) == pytest.approx(2e-3, rel=0.5)
 
 
-@pytest.mark.parametrize("degrees", [0.7, 5.0])
+@pytest.mark.parametrize("degrees", [0.3, 0.7, 5.0])
 def test_a_position_off_by_degrees_is_told_with_its_angle(degrees):
     random = np.random.default_rng(7)
     ups = np.vstack([UPS, UPS])

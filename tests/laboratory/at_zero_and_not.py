@@ -45,6 +45,14 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"east_arcsec": 0, "north_arcsec": 0},
         {"east_arcsec": 0, "north_arcsec": 10},
     ),
+    "table_tilt_ramp": (
+        {"north_arcsec_h": 0, "east_arcsec_h": 0},
+        {"north_arcsec_h": 600, "east_arcsec_h": 300},
+    ),
+    "table_tilt_jump": (
+        {"north_arcsec": 0, "east_arcsec": 0, "at_s": 5},
+        {"north_arcsec": 10, "east_arcsec": 20, "at_s": 5},
+    ),
     "table_creep": (
         {"about": "east", "rate_deg_h": 0, "from_s": 5, "to_s": 15},
         {"about": "east", "rate_deg_h": 10, "from_s": 5, "to_s": 15},

@@ -348,3 +348,25 @@ def test_a_clock_that_is_set_moves_stamps_and_nothing_else(performed: Performed)
     assert np.array_equal(np.delete(steps, 399), [10_000_000] * 998)
     counts = [recording.records["all.asc"].counts for recording in (stepped, without)]
     assert np.array_equal(*counts)
+
+
+def test_a_table_that_tilts_in_time_is_tilted_as_one_that_always_was(performed: Performed) -> None:
+    """From a jump on it is tilted as ever; a ramp is as far after a tenth of an hour, 360 s."""
+    tilt = {"north_arcsec": 10, "east_arcsec": -20}
+    ramp = {"north_arcsec_h": 100, "east_arcsec_h": -200}
+    level, ever, jumped, steadily = (
+        np.diff(
+            truth_of(performed, {**REST, "seconds": 400}, effects).noiseless.accelerometer, axis=0
+        )
+        / 0.01
+        for effects in (
+            {},
+            {"table_tilt": tilt},
+            {"table_tilt_jump": {**tilt, "at_s": 200.0}},
+            {"table_tilt_ramp": ramp},
+        )
+    )
+    assert np.abs(ever - level).max() > 1e-4
+    assert jumped[19_990] == pytest.approx(level[19_990], abs=1e-9)
+    assert jumped[20_010] == pytest.approx(ever[20_010], abs=1e-9)
+    assert steadily[35_999] == pytest.approx(ever[35_999], abs=1e-7)
