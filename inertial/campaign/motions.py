@@ -242,11 +242,8 @@ class CampaignMotions:
         upright = abs(float(turn.position.up @ turn.about)) > MIN_UPRIGHT_COSINE
         still, steady = (self._data.noise.of_samples(name, at, ACCEL) for at in ("rest", "steady"))
         rate = np.abs(motion.rate)[:, None]
-        share = (
-            np.minimum(rate / np.median(rate[blocks.steady]), 1.0) ** 2
-            if blocks.steady.any()
-            else 1.0
-        )
+        fastest = np.median(rate[blocks.steady]) if blocks.steady.any() else rate.max()
+        share = np.minimum(rate / fastest, 1.0) ** 2
         quiet = np.where(np.isfinite(still), still, steady) ** 2
         vibration = np.sqrt(quiet + share * (steady**2 - quiet) if upright else np.nan * rate)
         peaks, senses = self._on_the_way(name, len(time))

@@ -106,7 +106,8 @@ def effective_levels(
         differ = _differ(white, level, weight / 2)
         for row, precision, differs in zip(own, weight, differ, strict=True):
             rows.append(
-                {key: row[key] for key in ("manoeuvre", "phase", "channel", "per_sample", "swing")}
+                {key: row[key] for key in ("manoeuvre", "phase", "channel", "per_sample")}
+                | {"swing": row.get("swing")}
                 | {"measured": row["white_noise"]}
                 | {"rounding": rounding.pop((row["manoeuvre"], row["phase"], channel), None)}
                 | common

@@ -6,6 +6,8 @@ import chain
 import numpy as np
 import pytest
 
+import laboratory
+
 DEGREE_PER_HOUR, G = np.radians(1 / 3600), 9.80665
 OBLIQUE = {"xy": [1, 1, 0], "yz": [0, 1, 1], "zx": [1, 0, 1]}
 MARKS = {"xy": "+z", "yz": "+x", "zx": "+y"}
@@ -57,3 +59,22 @@ def test_products_of_rates_show_in_turns_about_oblique_axes() -> None:
     results = chain.in_memory_of(document, "diagnosis", chain.BESIDE)
     hidden = {"x_yz": 200e-6, "y_zx": 200e-6, "z_xy": 200e-6, "x_xy": 0.0}
     found_alone(results, "gyro_rate_products", "k", hidden)
+
+
+@pytest.mark.slow
+def test_a_table_that_shakes_at_one_rate_moves_the_biases_of_the_gyros_there() -> None:
+    """0.1 g in the turns at 80 °/s, which come between others at 30 °/s."""
+    document = at_two_rates()
+    plan = document["campaign"]["plan"]
+    fast = [m for m in plan if m.get("rate_deg_s") == 80]
+    slow = [m for m in plan if m not in fast]
+    document["campaign"]["plan"] = slow[:-3] + fast + slow[-3:]
+    truth = laboratory.perform(laboratory.specify(document)).truth
+    first, last = (truth[m["log"]].time for m in (fast[0], fast[-1]))
+    shake = {"vibration_g": 0.1, "from_s": float(first[0]) - 1, "to_s": float(last[-1]) + 1}
+    hidden = np.array([300.0, -200.0, 400.0])  # °/h/g²
+    shake["k_deg_h_g2"] = hidden.tolist()
+    document["effects"] = {"gyro_vibration_rectification": shake}
+    results = chain.in_memory_of(document, "diagnosis", chain.BESIDE)
+    sizes = dict(zip("xyz", hidden * DEGREE_PER_HOUR / G**2, strict=True))
+    found_alone(results, "gyro_vibration_rectification", "k", sizes)

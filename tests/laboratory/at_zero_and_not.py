@@ -180,6 +180,8 @@ PLAN: list[Parameters] = [
     {"id": "still", "do": "rest", "up": "+z", "mark": "+x", "seconds": 20, "log": "rest.asc"},
     {"id": "turn", "do": "turn", "up": "+z", "mark": "+x", "degrees": 360, "log": "turn.asc"}
     | {"rate_deg_s": 40, "accel_deg_s2": 40},
+    {"id": "back", "do": "turn", "up": "+z", "mark": "+x", "degrees": -360, "log": "back.asc"}
+    | {"rate_deg_s": 40, "accel_deg_s2": 40},
     {"id": "tumble", "do": "tumble", "up": "+z", "about": "+x", "step_degrees": 45, "steps": 8}
     | {"and_back": True, "seconds": 2, "log": "tumble.asc"},
 ]
