@@ -9,6 +9,7 @@ from typing import Final
 DEGREE: Final = pi / 180  # rad
 PPM: Final = 1e-6
 MILLISECOND: Final = 1e-3  # s
+MICROSECOND: Final = 1e-6  # s
 MILLIRADIAN: Final = 1e-3  # rad
 ARCSECOND: Final = DEGREE / 3600  # rad
 MINUTE: Final = 60.0  # s

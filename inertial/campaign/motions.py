@@ -243,12 +243,18 @@ class CampaignMotions:
     def _placed(
         self, m: Manoeuvre, motion: Motion, blocks: Blocks, turn: RateSegment | SteadyRate
     ) -> Motion:
-        """With its place in the plan; the vibration is known only where the axis is vertical."""
+        """With its place in the plan; the vibration is known only where the axis is vertical.
+
+        From rest to the steady rate the table is taken to shake in proportion to its rate.
+        """
         time, name = motion.time, m.name
         upright = abs(float(turn.position.up @ turn.about)) > MIN_UPRIGHT_COSINE
-        vibration = (
-            self._data.noise.of_samples(name, "steady", ACCEL) if upright else np.full(3, np.nan)
-        )
+        still, steady = (self._data.noise.of_samples(name, at, ACCEL) for at in ("rest", "steady"))
+        rate = np.abs(motion.rate)[:, None]
+        fastest = np.median(rate[blocks.steady]) if blocks.steady.any() else rate.max()
+        share = np.minimum(rate / fastest, 1.0) ** 2
+        quiet = np.where(np.isfinite(still), still, steady) ** 2
+        vibration = np.sqrt(quiet + share * (steady**2 - quiet) if upright else np.nan * rate)
         peaks, senses = self._on_the_way(name, len(time))
         since, turned = self._turns.before(m, blocks.time)
         return replace(
@@ -259,7 +265,7 @@ class CampaignMotions:
             position=np.full(len(time), self._places[name]),
             run=np.full(len(time), self._runs[name]),
             temperature=blocks.temperature,
-            vibration=np.tile(vibration, (len(time), 1)),
+            vibration=np.broadcast_to(vibration, (len(time), 3)),
             peaks=peaks,
             senses=senses,
             since=since,

@@ -99,7 +99,7 @@ def effective_levels(
         level = float(np.sqrt(np.average(white[alike] ** 2, weights=weight[alike])))
         common = {"white_noise": level, "sigma": level * total**-0.5, "source": COMMON}
         common["degrees"] = total / 2
-        elsewhere = dict.fromkeys(("manoeuvre", "phase", "measured", "per_sample"))
+        elsewhere = dict.fromkeys(("manoeuvre", "phase", "measured", "per_sample", "swing"))
         rows.append(
             elsewhere | {"channel": channel} | common | dict((drifts or {}).get(channel, {}))
         )
@@ -107,6 +107,7 @@ def effective_levels(
         for row, precision, differs in zip(own, weight, differ, strict=True):
             rows.append(
                 {key: row[key] for key in ("manoeuvre", "phase", "channel", "per_sample")}
+                | {"swing": row.get("swing")}
                 | {"measured": row["white_noise"]}
                 | {"rounding": rounding.pop((row["manoeuvre"], row["phase"], channel), None)}
                 | common
@@ -176,6 +177,12 @@ class NoiseLevels:
         """The white noise of the integral of each channel of a sensor, (3,), rad or m/s."""
         found = [row.get("quantisation") or 0.0 for row in self._of_axes(sensor)]
         return np.nan_to_num(np.array(found, np.float64))
+
+    def of_integral(self, manoeuvre: str, phase: str, sensor: str) -> Array:
+        """The same with what oscillates in a manoeuvre, rest or steady, (3,), rad or m/s."""
+        keys = [(manoeuvre, phase, f"{sensor}_{axis}") for axis in tables.AXES]
+        swings = [self._rows.get(key, {}).get("swing") or 0.0 for key in keys]
+        return np.hypot(self.quantisation(sensor), np.nan_to_num(np.array(swings, np.float64)))
 
     def delay(self, sensor: str) -> float:
         """By how much the slowest low pass of a sensor delays slow changes, s; 0: none is seen."""

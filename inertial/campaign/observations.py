@@ -66,7 +66,7 @@ def campaign_of(data: CampaignData) -> Campaign:
         turns.append(motion)
         if not turn.by_hand:
             noise = [data.noise.of(recorded.plan.name, at, ACCEL) for at in ("steady", "rest")]
-            noise.append(data.noise.quantisation("accel"))
+            noise.append(data.noise.of_integral(recorded.plan.name, "steady", "accel"))
             edges = [0, *(gap.before for gap in turn.gaps), len(turn.seconds)]
             clock = data.clocks.get(recorded.plan.log)
             early = 0.0 if clock is None or clock.averaged else clock.step / np.sqrt(12)
@@ -152,12 +152,12 @@ def _turning(
 
     Nor those that end at a gap near the corner of a ramp, where nothing shows the rate.
 
-    `noise`: white at the steady rate and at rest, and quantisation. While the table starts and
-    stops the larger white one: what shakes the rest after a turn may begin before it is at rest.
-    `early`: sigma of the time of a sample against that of the gyros, s. By it a mean is off in
-    proportion to the change from its start to its end, of specific force that does not turn with
-    the table: that of a lever arm in a ramp. The delay by a slow low pass of one of the sensors is
-    in it. `walk`: as in `turn_errors`.
+    `noise`: white at the steady rate and at rest, and that of the integral. While the table starts
+    and stops the larger white one: what shakes the rest after a turn may begin before it is at
+    rest. `early`: sigma of the time of a sample against that of the gyros, s. By it a mean is off
+    in proportion to the change from its start to its end, of specific force that does not turn
+    with the table: that of a lever arm in a ramp. The delay by a slow low pass of one of the
+    sensors is in it. `walk`: as in `turn_errors`.
     """
     read, seconds = blocks.accel, blocks.seconds
     assert m.up is not None  # else the turn is refused
@@ -172,9 +172,9 @@ def _turning(
     starts = [start for piece in pairwise(edges) for start in _merged(off, *piece)]
     merged = Merged(seconds, starts)
     steady = np.logical_and.reduceat(blocks.steady, starts)[:, None]
-    moving, resting, quantisation = noise
+    moving, resting, swing = noise
     density = np.where(steady, moving, np.fmax(moving, resting))
-    sigmas = sigma_of_mean(density, quantisation, merged.seconds[:, None])
+    sigmas = sigma_of_mean(density, swing, merged.seconds[:, None])
     axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes(m.up)]
     level = np.stack(axes, axis=1)
     if case is None:

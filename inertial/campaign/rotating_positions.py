@@ -24,6 +24,7 @@ from inertial.campaign.static_positions import (
 )
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.effect_information import Sensitivities
+from inertial.estimation.noise_model import sigma_of_mean
 from inertial.physics.motion import is_vertical, level_axes, mean_turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 
@@ -50,20 +51,21 @@ def turning_rests(data: CampaignData) -> list[tuple[Part, StaticForce]]:
             density, of_gyros = (data.noise.of(m.name, "steady", own) for own in (ACCEL, GYRO))
             walk = float(np.linalg.norm(np.nan_to_num(of_gyros) * m.axis))
             walk *= float(np.sqrt(part.seconds.sum()))
+            swing = data.noise.of_integral(m.name, "steady", "accel")
             stretch = stretch_of(m, part.those(part.steady), data.shared_clock)
             forces += [
                 (Part(m.name, "steady"), replace(rest, stretch=stretch))
-                for rest in _steady(m, part, quiet[m.name], density, walk)
+                for rest in _steady(m, part, quiet[m.name], density, swing, walk)
             ]
     return forces
 
 
 def _steady(
-    m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array, walk: float
+    m: Manoeuvre, part: Blocks, quiet: Blocks, density: Array, swing: Array, walk: float
 ) -> list[StaticForce]:
     """Means of blocks of the steady part, over which the attitude is nearly constant.
 
-    `walk`: as in `turn_errors`.
+    `density`: white noise; `swing`: of the integral, as `of_integral`; `walk`: as in `turn_errors`.
     """
     assert m.up is not None and m.angle is not None  # else it is left out
     readings, seconds = part.accel, part.seconds
@@ -84,7 +86,8 @@ def _steady(
     for indices in (piece for piece in pieces if len(piece)):
         share = seconds[indices] / seconds[indices].sum()
         square = float(share @ rate[indices] ** 2)
-        up, noise = share @ ups[indices], density / np.sqrt(seconds[indices].sum())
+        up = share @ ups[indices]
+        noise = sigma_of_mean(density, swing, seconds[indices].sum())
         pull = square * (np.outer(m.axis, m.axis) - np.eye(3))  # ω × (ω × r) of r
         rests.append(
             StaticForce(

@@ -346,7 +346,7 @@ def static_positions(data: "CampaignData", sensor: str) -> tuple[list[StaticPosi
                             ),
                             switch_on=m.switch_on,
                         ),
-                        data.noise.quantisation(sensor),
+                        data.noise.of_integral(m.name, "rest", sensor),
                     )
                 )
     return positions, left_out

@@ -27,6 +27,7 @@ from inertial.effects.gyro_bias_jump import GyroBiasJump
 from inertial.effects.gyro_bias_ramp import GyroBiasRamp
 from inertial.effects.gyro_bias_sense import GyroBiasSense
 from inertial.effects.gyro_bias_temperature import GyroBiasTemperature
+from inertial.effects.gyro_cross_axis_squares import GyroCrossAxisSquares
 from inertial.effects.gyro_dead_band import GyroDeadBand
 from inertial.effects.gyro_flicker import GyroFlicker
 from inertial.effects.gyro_g2_sensitivity import GyroG2Sensitivity
@@ -34,6 +35,7 @@ from inertial.effects.gyro_g_sensitivity import GyroGSensitivity
 from inertial.effects.gyro_hysteresis import GyroHysteresis
 from inertial.effects.gyro_latency import GyroLatency
 from inertial.effects.gyro_random_walk import GyroRandomWalk
+from inertial.effects.gyro_rate_products import GyroRateProducts
 from inertial.effects.gyro_relaxation import GyroRelaxation
 from inertial.effects.gyro_relaxation_braking import GyroRelaxationBraking
 from inertial.effects.gyro_relaxation_sense import GyroRelaxationSense
@@ -45,6 +47,7 @@ from inertial.effects.gyro_scale_jump import GyroScaleJump
 from inertial.effects.gyro_scale_quadratic import GyroScaleQuadratic
 from inertial.effects.gyro_scale_ramp import GyroScaleRamp
 from inertial.effects.gyro_scale_temperature import GyroScaleTemperature
+from inertial.effects.gyro_vibration_rectification import GyroVibrationRectification
 from inertial.effects.gyro_warm_up import GyroWarmUp
 from inertial.effects.heading_error import HeadingError
 from inertial.effects.latitude_error import LatitudeError
@@ -59,6 +62,7 @@ from inertial.effects.size_effect import SizeEffect
 from inertial.effects.table_angle_scale import TableAngleScale
 from inertial.effects.table_axis_error import TableAxisError
 from inertial.effects.table_axis_non_orthogonality import TableAxisNonOrthogonality
+from inertial.effects.table_backlash import TableBacklash
 from inertial.effects.table_eccentricity import TableEccentricity
 from inertial.effects.table_inner_axis import TableInnerAxis
 from inertial.effects.table_position_error import TablePositionError
@@ -79,6 +83,9 @@ CATALOGUE: dict[str, Effect] = {
         # gyros
         GyroGSensitivity(),
         GyroG2Sensitivity(),
+        GyroRateProducts(),
+        GyroCrossAxisSquares(),
+        GyroVibrationRectification(),
         GyroScaleAsymmetry(),
         GyroScaleQuadratic(),
         GyroScaleCubic(),
@@ -137,6 +144,7 @@ CATALOGUE: dict[str, Effect] = {
         Oscillation(),
         TableAngleScale(),
         TurnAngleError(),
+        TableBacklash(),
         # site and clock
         GravityError(),
         LatitudeError(),

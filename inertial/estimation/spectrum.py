@@ -74,6 +74,10 @@ def band_levels(
     return np.asarray(density[loud] / shape.at(frequency[loud])[:, None] ** 2)
 
 
+MAX_LINE_P_VALUE = 1e-4  # that noise alone has a line anywhere in a periodogram
+LINE_CHANCES = 2.0  # of its floor to the median, where a filter takes from its upper part
+
+
 def in_band(values: Array, rate: float, band: tuple[float, float]) -> tuple[Array, Array]:
     """The frequencies within a band, (bins,), Hz, and the periodogram there, as `band_levels`."""
     density = periodogram(detrended(values).T, rate).T
@@ -82,6 +86,26 @@ def in_band(values: Array, rate: float, band: tuple[float, float]) -> tuple[Arra
     after = int(np.searchsorted(frequency, band[1], side="right"))
     inside = slice(first, max(after, first + MIN_BAND_BINS))
     return frequency[inside].copy(), density[inside].copy()  # a view would keep all of them
+
+
+def square_of_integral(values: Array, rate: float, above: float) -> Array:
+    """The mean square of the integral of the lines of each column above a frequency, (c,), (U s)².
+
+    A line is what stands out of the noise by more than chance, of all frequencies together. Its
+    sum over samples is that of its two ends: A/(2 sin(πf/rate)) a sample, however long they are.
+
+    values: (n, c), in any unit U; rate, above: Hz.
+    """
+    density = periodogram(detrended(values).T, rate)
+    frequency = np.arange(1, density.shape[1] + 1) * rate / len(values)
+    fast = frequency > above
+    if not fast.any():
+        return np.zeros(values.shape[1])
+    density, frequency = density[:, fast], frequency[fast]
+    floor = np.median(density, axis=1, keepdims=True) / np.log(2)
+    line = density > LINE_CHANCES * np.log(density.shape[1] / MAX_LINE_P_VALUE) * floor
+    of_sums = 2 * rate * np.sin(np.pi * frequency / rate)
+    return np.asarray(np.sum(line * density / of_sums**2, axis=1) * 2 * rate / len(values))
 
 
 def detrended(values: Array) -> Array:

@@ -25,13 +25,19 @@ from inertial.text.parameters import AXES
 
 NOISE = table(
     "noise",
-    1,
+    2,
     text("manoeuvre", "as in manoeuvres"),
     text("phase", "rest or steady"),
     text("channel", "one of the six channels"),
     number("white_noise", "rad/√s, m/s/√s", "random walk: root of the power density"),
     number("sigma", "rad/√s, m/s/√s", "standard deviation of white_noise"),
     number("per_sample", "rad/s, m/s²", "standard deviation of the samples"),
+    optional_number(
+        "swing",
+        "rad, m/s",
+        "standard deviation of the integral of what oscillates: by its two ends every sum is as"
+        " uncertain, however long it is; none: nothing oscillates",
+    ),
     integer("samples", "number of samples"),
     optional_number("data_sheet", "rad/√s, m/s/√s", "the data sheet's figure"),
 )
@@ -79,7 +85,7 @@ NOISE_TERMS = table(
 )
 LEVELS = table(
     "levels",
-    7,
+    8,
     optional_text("manoeuvre", "as in noise; none: all that have no row"),
     optional_text("phase", "rest or steady; none as manoeuvre"),
     text("channel", "one of the six channels"),
@@ -98,6 +104,7 @@ LEVELS = table(
     ),
     optional_number("measured", "rad/√s, m/s/√s", "as in noise"),
     optional_number("per_sample", "rad/s, m/s²", "as in noise"),
+    optional_number("swing", "rad, m/s", "as in noise"),
     optional_number(
         "bias_instability",
         "rad/s, m/s²",

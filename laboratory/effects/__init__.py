@@ -38,6 +38,7 @@ from laboratory.effects.gyro_bias_ramp import GyroBiasRamp
 from laboratory.effects.gyro_bias_sense import GyroBiasSense
 from laboratory.effects.gyro_bias_temperature import GyroBiasTemperature
 from laboratory.effects.gyro_coefficient_drift import GyroCoefficientDrift
+from laboratory.effects.gyro_cross_axis_squares import GyroCrossAxisSquares
 from laboratory.effects.gyro_cubic_drift import GyroCubicDrift
 from laboratory.effects.gyro_dead_band import GyroDeadBand
 from laboratory.effects.gyro_disturbance import GyroDisturbance
@@ -49,6 +50,7 @@ from laboratory.effects.gyro_latency import GyroLatency
 from laboratory.effects.gyro_low_pass import GyroLowPass
 from laboratory.effects.gyro_rate_noise import GyroRateNoise
 from laboratory.effects.gyro_rate_power import GyroRatePower
+from laboratory.effects.gyro_rate_products import GyroRateProducts
 from laboratory.effects.gyro_relaxation import (
     GyroRelaxation,
     GyroRelaxationBraking,
@@ -66,6 +68,7 @@ from laboratory.effects.gyro_scale_temperature import GyroScaleTemperature
 from laboratory.effects.gyro_stray_field import GyroStrayField
 from laboratory.effects.gyro_telegraph import GyroTelegraph
 from laboratory.effects.gyro_temperature_rate import GyroTemperatureRate
+from laboratory.effects.gyro_vibration_rectification import GyroVibrationRectification
 from laboratory.effects.gyro_warm_up import GyroWarmUp
 from laboratory.effects.heading_error import HeadingError
 from laboratory.effects.latitude_error import LatitudeError
@@ -78,6 +81,7 @@ from laboratory.effects.size_effect import SizeEffect
 from laboratory.effects.table_angle_scale import TableAngleScale
 from laboratory.effects.table_axis_error import TableAxisError
 from laboratory.effects.table_axis_non_orthogonality import TableAxisNonOrthogonality
+from laboratory.effects.table_backlash import TableBacklash
 from laboratory.effects.table_creep import TableCreep
 from laboratory.effects.table_eccentricity import TableEccentricity
 from laboratory.effects.table_inner_axis import TableInnerAxis
@@ -113,6 +117,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "table_speed_error": TableSpeedError.specified,
     "table_angle_scale": TableAngleScale.specified,
     "turn_angle_error": TurnAngleError.specified,
+    "table_backlash": TableBacklash.specified,
     "table_eccentricity": TableEccentricity.specified,
     "table_ripple": TableRipple.specified,
     "table_wobble": TableWobble.specified,
@@ -126,6 +131,9 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "gyro_accel_misalignment": GyroAccelMisalignment.specified,
     "gyro_g_sensitivity": GyroGSensitivity.specified,
     "gyro_g2_sensitivity": GyroG2Sensitivity.specified,
+    "gyro_rate_products": GyroRateProducts.specified,
+    "gyro_cross_axis_squares": GyroCrossAxisSquares.specified,
+    "gyro_vibration_rectification": GyroVibrationRectification.specified,
     "gyro_anisoelasticity": GyroAnisoelasticity.specified,
     "gyro_remanence": GyroRemanence.specified,
     "gyro_scale_asymmetry": GyroScaleAsymmetry.specified,

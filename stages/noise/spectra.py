@@ -8,7 +8,13 @@ import numpy as np
 from inertial import tables
 from inertial.arrays import Array
 from inertial.estimation.noise_model import NoiseModel
-from inertial.estimation.spectrum import NoiseShape, in_band, level_of_pieces, shape_of
+from inertial.estimation.spectrum import (
+    NoiseShape,
+    in_band,
+    level_of_pieces,
+    shape_of,
+    square_of_integral,
+)
 from inertial.sensors import COLUMNS
 
 MIN_SAMPLES = 16  # fewer give no level
@@ -26,6 +32,7 @@ class Spectra:
         self.frequencies: dict[str, list[Array]] = {}
         self.squares = np.zeros(6)
         self.sums = np.zeros(6)
+        self.integrals = np.zeros(6)  # squares of what lines add up to, times samples
         self.samples: dict[str, int] = {}
         self.seconds: dict[str, list[float]] = {}
         self.carried: set[str] = set()
@@ -38,11 +45,13 @@ class Spectra:
             if len(part) >= MIN_SAMPLES:
                 whole = np.isfinite(part).all(axis=0)
                 varies = np.ptp(part, axis=0) > 0  # else their mean is off by its last digit
-                frequency, levels = in_band(np.where(whole & varies, part, 0.0), rate, band)
+                known = np.where(whole & varies, part, 0.0)
+                frequency, levels = in_band(known, rate, band)
                 self.frequencies.setdefault(sensor, []).append(frequency)
                 self.levels.setdefault(sensor, []).append(np.where(whole, levels, np.nan))
                 self.squares[columns] += np.var(part, axis=0) * len(part)
                 self.sums[columns] += part.sum(axis=0)
+                self.integrals[columns] += square_of_integral(known, rate, band[1]) * len(part)
                 self.samples[sensor] = self.samples.get(sensor, 0) + len(part)
                 self.seconds.setdefault(sensor, []).append(len(part) / rate)
 
@@ -74,6 +83,7 @@ class Spectra:
                 if white[0] > 0:
                     slow = float(shape.at(slowest))
                     square = self.squares[COLUMNS[sensor]][i]
+                    swing = self.integrals[COLUMNS[sensor]][i]
                     yield {
                         "manoeuvre": manoeuvre,
                         "phase": phase,
@@ -81,6 +91,7 @@ class Spectra:
                         "white_noise": slow * float(white[0]),
                         "sigma": slow * float(sigma[0]),
                         "per_sample": float(np.sqrt(square / self.samples[sensor])),
+                        "swing": float(np.sqrt(swing / self.samples[sensor])) or None,
                         "samples": self.samples[sensor],
                     }
 

@@ -480,6 +480,12 @@ PAIRS = ((0, 1), (1, 2), (2, 0))  # xy, yz, zx
 BY_AXIS = {
     "gyro_g_sensitivity": lambda k, i: sum(k[3 * i + j] * FORCE[j] for j in range(3)),
     "gyro_g2_sensitivity": lambda k, i: k[i] * FORCE[i] ** 2,
+    "gyro_rate_products": lambda k, i: sum(
+        k[3 * i + n] * RATE[one] * RATE[other] for n, (one, other) in enumerate(PAIRS)
+    ),
+    "gyro_cross_axis_squares": lambda k, i: sum(
+        k[2 * i + n] * RATE[j] ** 2 for n, j in enumerate(j for j in range(3) if j != i)
+    ),
     "gyro_scale_asymmetry": lambda k, i: k[i] * abs(RATE[i]),
     "gyro_scale_quadratic": lambda k, i: k[i] * RATE[i] * abs(RATE[i]),
     "gyro_scale_cubic": lambda k, i: k[i] * RATE[i] ** 3,

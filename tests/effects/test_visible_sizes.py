@@ -156,5 +156,6 @@ def test_evidence_is_silent_where_no_thinkable_size_is_seen():
     }  # fmt: skip
     unexcited = {
         "gyro_scale_quadratic", "gyro_scale_cubic", "accel_cubic", "accel_cross_products",
+        "gyro_rate_products",
     }  # fmt: skip
     assert not seen & (latent | elsewhere | unexcited)

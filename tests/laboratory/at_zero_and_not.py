@@ -33,6 +33,7 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
         {"turn": "turn", "further_arcsec": 0},
         {"turn": "turn", "further_arcsec": 100},
     ),
+    "table_backlash": ({"play_arcsec": 0}, {"play_arcsec": 100}),
     "table_eccentricity": (
         {"sin_arcsec": 0, "cos_arcsec": 0},
         {"sin_arcsec": 0, "cos_arcsec": 30},
@@ -65,6 +66,12 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     "size_effect": ({"arms_mm": [ZERO] * 3}, {"arms_mm": [[50, 0, 0], ZERO, ZERO]}),
     "gyro_accel_misalignment": ({"rotation_mrad": ZERO}, {"rotation_mrad": ONE}),
     "gyro_g_sensitivity": ({"matrix_deg_h_g": [ZERO] * 3}, {"matrix_deg_h_g": [ONE] * 3}),
+    "gyro_rate_products": ({"matrix_us": [ZERO] * 3}, {"matrix_us": [ONE] * 3}),
+    "gyro_cross_axis_squares": ({"matrix_us": [ZERO] * 3}, {"matrix_us": [ONE] * 3}),
+    "gyro_vibration_rectification": (
+        {"k_deg_h_g2": ONE, "vibration_g": 0, "from_s": 3, "to_s": 9},
+        {"k_deg_h_g2": ONE, "vibration_g": 0.1, "from_s": 3, "to_s": 9},
+    ),
     "gyro_g2_sensitivity": ({"k_deg_h_g2": ZERO}, {"k_deg_h_g2": ONE}),
     "gyro_scale_asymmetry": ({"asymmetry_ppm": ZERO}, {"asymmetry_ppm": ONE}),
     "gyro_scale_quadratic": ({"k2_ppm_per_deg_s": ZERO}, {"k2_ppm_per_deg_s": ONE}),
@@ -181,6 +188,8 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
 PLAN: list[Parameters] = [
     {"id": "still", "do": "rest", "up": "+z", "mark": "+x", "seconds": 20, "log": "rest.asc"},
     {"id": "turn", "do": "turn", "up": "+z", "mark": "+x", "degrees": 360, "log": "turn.asc"}
+    | {"rate_deg_s": 40, "accel_deg_s2": 40},
+    {"id": "back", "do": "turn", "up": "+z", "mark": "+x", "degrees": -360, "log": "back.asc"}
     | {"rate_deg_s": 40, "accel_deg_s2": 40},
     {"id": "tumble", "do": "tumble", "up": "+z", "about": "+x", "step_degrees": 45, "steps": 8}
     | {"and_back": True, "seconds": 2, "log": "tumble.asc"},

@@ -6,6 +6,7 @@ from scipy.signal import welch
 
 from inertial.estimation.multiresolution import WelchSums, segment_for
 from inertial.estimation.noise_model import NoiseModel
+from inertial.estimation.spectrum import square_of_integral
 
 INTERVAL = 0.02
 
@@ -68,3 +69,17 @@ def test_segments_fit_into_the_stretches():
     assert segment_for([]) == 64
     assert segment_for([3000]) == 512
     assert segment_for([10**7, 300]) == 1024
+
+
+def test_a_line_makes_means_of_any_length_as_uncertain_by_its_two_ends():
+    """√2 Q/T is the scatter of the means over T of a sine of 23.4 Hz; noise alone has no Q."""
+    rng, step, amplitude = np.random.default_rng(5), 0.01, 0.3
+    noise = 0.005 * rng.standard_normal((900, 200))
+    assert not square_of_integral(noise, 1 / step, 5.0).any()
+    time = step * np.arange(900)[:, None]
+    waves = amplitude * np.sin(2 * np.pi * (23.4 * time + rng.uniform(size=200)))
+    found = np.sqrt(square_of_integral(waves + noise, 1 / step, 5.0))
+    assert np.ptp(found) < 0.05 * np.median(found)
+    lengths = np.arange(200, 900)
+    scatter = [np.std(waves[:n].mean(axis=0)) * n * step for n in lengths]
+    assert abs(np.sqrt(np.mean(np.square(scatter))) / (np.sqrt(2) * np.median(found)) - 1) < 0.05
