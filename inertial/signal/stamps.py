@@ -196,7 +196,7 @@ def _change(before: Array, after: Array) -> tuple[float, float]:
     return last / first - 1, float(np.hypot(*sigmas) / first)
 
 
-def sent_again(time: Array, values: Array) -> Booleans:
+def sent_again(time: Array | Integers, values: Array) -> Booleans:
     """Which records are the one before, that came twice and is stamped as it came, (n,).
 
     They have its readings, (n, c), within half of an interval, in which nothing is sampled; unless
