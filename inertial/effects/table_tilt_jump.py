@@ -24,11 +24,11 @@ class TableTiltJump(SettingIn, TableTilt):
         "the base of the table settles or is pushed, or its outer level axis counts from another "
         "zero: all that it carries leans the same way from then on"
     )
-    parameters = tuple(
+    parameters = (
         Parameter(
-            to, "rad", 2e-5, _("lean of the table's vertical towards {to} from then on", to=to)
-        )
-        for to in ("north", "east")
+            "north", "rad", 2e-5, _("lean of the table's vertical towards north from then on")
+        ),
+        Parameter("east", "rad", 2e-5, _("lean of the table's vertical towards east from then on")),
     )
     sizes = of_tables(ARC_SECOND, 10, 60)
     thinkable = 1000.0  # degrees, where an axis counts from another zero

@@ -11,6 +11,9 @@ from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, HOUR
 
 
+TYPICAL = 2e-5 / HOUR
+
+
 class TableTiltRamp(TableTilt):
     """As a table that is not level, but the lean is n t and e t, t since the first sample.
 
@@ -22,9 +25,9 @@ class TableTiltRamp(TableTilt):
     cause = _(
         "the floor or the base of the table gives way slowly, so all its axes lean more and more"
     )
-    parameters = tuple(
-        Parameter(to, "rad/s", 2e-5 / HOUR, _("drift of the table's vertical towards {to}", to=to))
-        for to in ("north", "east")
+    parameters = (
+        Parameter("north", "rad/s", TYPICAL, _("drift of the table's vertical towards north")),
+        Parameter("east", "rad/s", TYPICAL, _("drift of the table's vertical towards east")),
     )
     sizes = of_tables(ARC_SECOND / HOUR, 3, 60)
     slope = 1.0
