@@ -101,6 +101,9 @@ _BY_UNIT = {
         Unit("°/h/g²", DEGREE_PER_HOUR / STANDARD_GRAVITY**2),
         Unit("10⁻⁶ (rad/s)/(m/s²)²", 1e-6),
     ),
+    "(rad/s)/(rad/s)²": Quantity(
+        Unit("°/h/(°/s)²", DEGREE_PER_HOUR / DEGREE**2), Unit("10⁻⁶ (rad/s)/(rad/s)²", 1e-6)
+    ),
     "1/(rad/s)": Quantity(Unit("ppm/(°/s)", 1e-6 / DEGREE), Unit("1/(rad/s)", 1.0)),
     "1/(rad/s)²": Quantity(Unit("ppm/(°/s)²", 1e-6 / DEGREE**2), Unit("1/(rad/s)²", 1.0)),
     "1/(m/s²)": Quantity(Unit("ppm/g", 1e-6 / STANDARD_GRAVITY), Unit("10⁻⁶ 1/(m/s²)", 1e-6)),
