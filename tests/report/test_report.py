@@ -724,7 +724,7 @@ def test_a_table_of_another_version_is_refused(tmp_path: Path) -> None:
     assert str(refused.value) == (
         f"report: {path}\n"
         "  found:    noise table of version 0\n"
-        "  expected: noise table of version 1\n"
+        "  expected: noise table of version 2\n"
         "  cure:     delete the file and run the campaign again"
     )
 
