@@ -64,8 +64,10 @@ CLASS = {
     "gyro_bias_sense": {"gyro_hysteresis"},
     "gyro_relaxation_sense": {"gyro_relaxation_braking"},  # likewise
     "gyro_relaxation_braking": {"gyro_relaxation_sense"},
-    "gyro_scale_asymmetry": {"turn_angle_error"},  # of one of the two turns about x
+    # That of one of the two turns about x; after the first turn of all every other one reverses.
+    "gyro_scale_asymmetry": {"turn_angle_error", "table_backlash"},
     "lever_arm": {"size_effect"},
+    "table_tilt": {"table_tilt_jump"},  # before the second position
 }
 
 
