@@ -10,7 +10,6 @@ from inertial.physics.motion import Motion
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, HOUR
 
-
 TYPICAL = 2e-5 / HOUR
 
 
