@@ -29,7 +29,7 @@ class TableBacklash(Effect):
         ),
     )
     sizes = of_tables(ARC_SECOND, 2, 30)
-    thinkable = 1000.0
+    thinkable = 20.0  # 10′, of a worm gear that is worn
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         for turn in turns_after_reversal(motion):

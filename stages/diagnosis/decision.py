@@ -24,6 +24,8 @@ UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
 OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
+# A slip turns the axes of all that follows; of turns there and back play takes all but the first.
+OF_OTHERS_TOO = (SLIP, "table_backlash")
 TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
 MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
@@ -171,9 +173,9 @@ def decided(
             return without
         reason = DOUBTFUL if alarms else NO_EFFECT
         return Decision(JOINT, reason.format(sensors=sensors, causes=causes))
-    carried = _carriers(effects_of(best))
-    alike = [one for one in candidates if carried and _carriers(effects_of(one)) == carried]
-    best = likeliest(one for one in alike if _freed(effects_of(one))) or best
+    carried = _carriers(effects_of(best)).keys()
+    rivals = [one for one in candidates if carried and _carriers(effects_of(one)).keys() == carried]
+    best = likeliest(one for one in rivals if _freed(effects_of(one))) or best
     own = effects_of(best)
     names = _listed([row["effect"] for row in own])
     others = _other_members(own, effects)
@@ -185,8 +187,12 @@ def decided(
     if freed := _freed(own):
         manoeuvres = ", ".join(dict.fromkeys(freed.values()))
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
-        same = frozenset(one["method"] for one in alike if not _turns(effects_of(one)))
-        return Decision(best["method"], reason + others, freed, same)
+        alike = [
+            one["method"]
+            for one in rivals
+            if _carriers(effects_of(one)) == freed and not _reaches_others(effects_of(one))
+        ]
+        return Decision(best["method"], reason + others, freed, frozenset(alike))
     whole = best["drop_without_walk"]
     beside_walk = whole is not None and best["drop"] < whole
     replaced = REPLACED if best["drop"] <= best["snr_squared"] else REPLACED_WALK
@@ -294,9 +300,9 @@ def _freed(effects: Sequence[Row]) -> Mapping[str, str]:
     return _carriers(effects)
 
 
-def _turns(effects: Sequence[Row]) -> bool:
-    """Whether any turns the axes of all that follows, though one manoeuvre alone shows it."""
-    return any(row["effect"] == SLIP for row in effects)
+def _reaches_others(effects: Sequence[Row]) -> bool:
+    """Whether any changes what others say as well, though one manoeuvre alone shows it."""
+    return any(row["effect"] in OF_OTHERS_TOO for row in effects)
 
 
 def _of_one_manoeuvre(effect: str) -> bool:
