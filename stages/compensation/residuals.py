@@ -1,9 +1,9 @@
 """Readings less what the final result predicts: static positions and steady rotation.
 
 A static position is predicted in its blocks, by the forward model with all effects of the result,
-about the azimuth that these give where the heading is not known.
-The rate in a rotation is that of `simulated`, of which M and bias of the joint fit are undone; the
-effects are those that follow from a reading, so that one of the table stays in.
+about the tilt that these give, and the azimuth where the heading is not known.
+The rate in a rotation is that of `simulated`, of which M and bias of the joint fit are undone. What
+effects of the table change of it is predicted; the others follow from the reading.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,18 +17,20 @@ from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.measurement import Measurement, SensorResult
 from inertial.campaign.motions import CampaignMotions
+from inertial.campaign.observations import campaign_of
 from inertial.campaign.rate_segments import position_of
 from inertial.campaign.static_positions import StaticPosition
 from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
 from inertial.estimation.horizontal_earth_rate import MAX_AZIMUTH_SIGMA
 from inertial.estimation.noise_model import sigma_of_mean
-from inertial.physics.forward import UNKNOWN_TRIAD, Site, predict
-from inertial.physics.motion import Motion, cross, stretches, turned
+from inertial.physics.forward import UNKNOWN_TRIAD, Site, predict, truth_of
+from inertial.physics.motion import Motion, cross, joined, level_axes, stretches, turned
 from inertial.tables import ACCEL, CHANNELS, GYRO
 from inertial.tables.parquet import Stream
 
 SECONDS = 1.0  # of a mean in a rotation
 MIN_SHARE = 0.98  # of it that is recorded, so that a vibration averages out as in the others
+BLOCKS = "blocks"  # effects that are sought elsewhere have no columns in the equations
 MIN_COSINE = 0.5  # to an axis from which its sensor shows an error along a direction
 LEFT = [f"residual_{channel}" for channel in GYRO]
 
@@ -48,8 +50,9 @@ def residuals(
         motions = CampaignMotions(data)
         for channels, result, positions in sensors:
             yield from _static(data, positions, motions, channels, result)
+        changes = _changes_of_rate(data, measurement.gyro)
         yield from (
-            _in_rotation(data, name, turn, measurement)
+            _in_rotation(data, name, turn, measurement, changes.get(name))
             for name, turn in turns.items()
             if name in {m.name for m in data.plan}
         )
@@ -66,11 +69,17 @@ def _static(
     rests = [_in_blocks(position, motions.at_rest(position)) for position in positions]
 
     def residuals_at(motions: Sequence[Motion]) -> list[Array]:
-        predicted = (_predicted(each, data.result.site, channels, result) for each in motions)
-        return [p.means - values for p, values in zip(positions, predicted, strict=True)]
+        if not motions:
+            return []
+        predicted = _predicted(joined(motions), data.result.site, channels, result)
+        counts = np.cumsum([len(position.seconds) for position in positions])
+        every = np.split(predicted, counts[:-1])
+        return [p.means - values for p, values in zip(positions, every, strict=True)]
 
     if channels is GYRO and result.triad is not None:
         rests = with_azimuths(data, positions, rests, result.triad.matrix, residuals_at)
+    if channels is ACCEL and result.triad is not None and result.effects and not data.by_hand:
+        rests = with_tilts(data, positions, rests, result.triad.matrix, residuals_at)
     for position, values in zip(positions, residuals_at(rests), strict=True):
         if data.by_hand:
             values[:, np.abs(position.up_now) < MIN_COSINE] = np.nan
@@ -125,10 +134,32 @@ def _turns(mounts: Sequence[CampaignData], simulated: Stream) -> dict[str, pd.Da
     return means
 
 
+def _changes_of_rate(data: CampaignData, result: SensorResult) -> dict[str, tuple[Array, Array]]:
+    """By rotation, time, (k,), s, and what effects of the table change of the rate, (k, 3), rad/s.
+
+    All manoeuvres are seen together: some tell how the table stands in others.
+    """
+    staying = [one for one in result.staying if one.effect.sought_in == BLOCKS]
+    if not staying:
+        return {}
+    motion = campaign_of(data).motion
+    before = truth = truth_of(motion, data.result.site)
+    for one in staying:
+        truth = one.effect.moves(truth, motion, one.values)
+    change, place = truth.rate - before.rate, np.floor(motion.visit)
+    turning = (motion.rate != 0) & np.isfinite(motion.time) & np.isfinite(change).all(axis=1)
+    own = {m.name: turning & (place == number) for number, m in enumerate(data.plan)}
+    return {name: (motion.time[rows], change[rows]) for name, rows in own.items() if rows.any()}
+
+
 def _in_rotation(
-    data: CampaignData, name: str, means: pd.DataFrame, measurement: Measurement
+    data: CampaignData,
+    name: str,
+    means: pd.DataFrame,
+    measurement: Measurement,
+    changes: tuple[Array, Array] | None,
 ) -> pd.DataFrame:
-    """The gyros in a steady rotation, in means of a second."""
+    """The gyros in a steady rotation, in means of a second; `changes`: of `_changes_of_rate`."""
     (m,) = (m for m in data.plan if m.name == name)
     predicted, left, time = (means[n].to_numpy(np.float64) for n in (GYRO, LEFT, "time"))
     time = time + data.clocks[m.log].offset  # as that of the blocks and of the effects
@@ -139,6 +170,8 @@ def _in_rotation(
     rates = np.full((len(means), 3), np.nan)
     if joint is not None and gyro is not None:
         known = (predicted - joint.bias) @ np.linalg.inv(joint.matrix).T
+        if changes is not None:
+            known += np.stack([np.interp(time, changes[0], axis) for axis in changes[1].T], axis=1)
         motion = stretches(time, seconds, temperature)
         read = measurement.rate(predicted + left, motion, _force(data, means))
         rates = (read - known) @ gyro.matrix.T
@@ -175,6 +208,56 @@ def _frame(
         for channel in CHANNELS:
             frame[prefix + channel] = values.get(channel, np.nan)
     return frame[[column.name for column in tables.RESIDUALS.columns]]
+
+
+# ---- The tilts of static positions by the final result
+#
+# Those of the joint estimate have taken up a part of the effects that it lacks.
+
+
+def with_tilts(
+    data: CampaignData,
+    positions: Sequence[StaticPosition],
+    motions: Sequence[Motion],
+    matrix: Array,
+    residuals_at: "Residuals",
+) -> list[Motion]:
+    """The motions with the tilts that fit the accelerometers, of the sigma of a set position.
+
+    `matrix`: M of the accelerometers, (3, 3); `residuals_at`: as in `with_azimuths`, m/s².
+    """
+    places: dict[str, list[int]] = {}
+    for number, position in enumerate(positions):
+        places.setdefault(position.manoeuvre.position, []).append(number)
+    known, found = data.result.position_parameters, list(motions)
+    left, off = residuals_at(motions), data.reference.free
+    for name, numbers in places.items():
+        free = name in off
+        if not data.position_sigma and not free:
+            continue
+        prior = 0.0 if free else data.position_sigma**-2
+        before = np.array([known.get((name, "tilt", i), 0.0) for i in (0, 1)])
+        information, right = prior * np.eye(2), -prior * before
+        leans = {n: _leans(positions[n]) for n in numbers}
+        for n in numbers:
+            columns = data.gravity.number * matrix @ leans[n]
+            noise = positions[n].density[:, None], positions[n].quantisation[:, None]
+            there = np.isfinite(left[n])
+            weights = np.where(there, sigma_of_mean(*noise, positions[n].seconds).T ** -2, 0.0)
+            information = information + (columns.T * weights.sum(axis=0)) @ columns
+            right = right + columns.T @ np.sum(weights * np.nan_to_num(left[n]), axis=0)
+        further = np.linalg.solve(information, right)
+        for n in numbers:
+            found[n] = replace(found[n], up=found[n].up + leans[n] @ further)
+    return found
+
+
+def _leans(position: StaticPosition) -> Array:
+    """What the upward direction changes by per tilt about either level axis, (3, 2)."""
+    up = position.manoeuvre.up
+    assert up is not None  # else it is by hand
+    at_start = [cross(axis, up) for axis in level_axes(up)]
+    return np.stack([turned(own, position.about, position.angle) for own in at_start], axis=1)
 
 
 # ---- The azimuths of static positions by the final result, where the heading is not known

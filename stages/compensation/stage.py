@@ -31,7 +31,7 @@ from stages.compensation.characteristics import ByCounts, characteristics, least
 from stages.compensation.checks import checks, not_compensated
 from stages.compensation.correction import CompensatedStream, envelope, mounted
 from stages.compensation.declared import DECLARED
-from stages.compensation.residuals import residuals
+from stages.compensation.residuals import BLOCKS, residuals
 
 ALREADY = Finding(
     id="compensation/already_compensated/campaign",
@@ -191,7 +191,6 @@ def fits_of(
 
 MAX_SIGMA_RATIO = 1.1  # of the result's sigma and that of these equations, which are not the same
 HELD = 1e-9  # of its prior, by which a parameter that the result does without is held at zero
-BLOCKS = "blocks"  # effects that are sought elsewhere have no columns in the equations
 
 
 def budget_rows(data: CampaignData, measurement: Measurement, fits: Sequence[Row]) -> Iterator[Row]:

@@ -5,8 +5,10 @@ from typing import Any
 
 import chain
 import hidden_plans
+import numpy as np
 import pytest
 
+from inertial.tables import ACCEL, CHANNELS
 from inertial.text.units import ARC_SECOND
 
 INNER = ("z-up", "z-down", "x-up", "y-down")  # faces on which it turns about z
@@ -60,3 +62,17 @@ def test_it_is_named_alone_and_both_sensors_are_rid_of_it(seed, lean):
                 own = result.loc[f"cross_{row}{column}"]
                 true = made["truth"]["gyro"]["matrix"][i][j]
                 assert abs(own["value"] - true) < 4 * own["sigma"] < 5e-5
+
+
+@pytest.mark.slow
+def test_its_result_leaves_the_noise_over_at_rest_and_in_rotations(tmp_path):
+    """Of each position by itself, and without it in rotations, 14 and 21 sigma were left."""
+    raw = chain.simulate(document(7, table_inner_axis={"lean_arcsec": 45.0}), tmp_path / "raw")
+    results = chain.run(raw, tmp_path / "derived", "compensation", chain.BESIDE)
+    left = results["compensation/residuals"]
+    in_rotation = left["phase"] == "steady"
+    for channel in CHANNELS:
+        square = (left[f"residual_{channel}"] / left[f"sigma_{channel}"]) ** 2
+        assert 0.8 < np.sqrt(square[~in_rotation].mean()) < 1.2
+        # The angle of a turn is off by 2″, which is about the white noise of one of these.
+        assert channel in ACCEL or 0.8 < np.sqrt(square[in_rotation].mean()) < 1.6

@@ -361,12 +361,13 @@ SECTION = Section(
         "included."
     ),
     _(
-        "Effects of the table, the site or the mounting are not taken off a reading, and appear "
-        "here. Left, fifths of each static position and whole steady rotations, with ±3 σ of white "
-        "noise; right, the residuals of blocks and of seconds of rotation over their σ, of which "
-        "noise alone leaves 0.3 % beyond 3; the outermost bins hold what is further out. Where the "
-        "table's heading is not known, the azimuth of each static position is estimated with the "
-        "result, so one direction of the gyros' residuals at rest is fitted away."
+        "Effects of the table, the site or the mounting that are in the result are predicted, too, "
+        "though no compensated reading is rid of them. Left, fifths of each static position and "
+        "whole steady rotations, with ±3 σ of white noise; right, the residuals of blocks and of "
+        "seconds of rotation over their σ, of which noise alone leaves 0.3 % beyond 3; the "
+        "outermost bins hold what is further out. Tilts of the positions are estimated with the "
+        "result, and so is their azimuth where the table's heading is not known: that fits one "
+        "direction of the gyros' residuals at rest away."
     ),
     ("residuals", "manoeuvres", "result"),
     parts,
