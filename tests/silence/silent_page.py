@@ -18,7 +18,7 @@ SURE = 0.01  # of all tests of a table together that one is called uneven
 # Tests whose p-values are bounds (at most as many are below a value as that value): what searches
 # pays for that by a bound, and the lean of a table is sought beside the tilts of its axes, of
 # which the simulated table has none.
-BOUNDS = ("structure ", "table_tilt")
+BOUNDS = ("structure ", "table_tilt", "table_inner_axis")
 
 Outcome = dict[str, Any]
 Row = tuple[str, ...]
