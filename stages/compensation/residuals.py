@@ -228,7 +228,8 @@ def with_tilts(
     """
     places: dict[str, list[int]] = {}
     for number, position in enumerate(positions):
-        places.setdefault(position.manoeuvre.position, []).append(number)
+        if position.manoeuvre.up is not None:
+            places.setdefault(position.manoeuvre.position, []).append(number)
     known, found = data.result.position_parameters, list(motions)
     left, off = residuals_at(motions), data.reference.free
     for name, numbers in places.items():
@@ -242,11 +243,11 @@ def with_tilts(
         for n in numbers:
             columns = data.gravity.number * matrix @ leans[n]
             noise = positions[n].density[:, None], positions[n].quantisation[:, None]
-            there = np.isfinite(left[n])
-            weights = np.where(there, sigma_of_mean(*noise, positions[n].seconds).T ** -2, 0.0)
+            sigma = sigma_of_mean(*noise, positions[n].seconds).T
+            weights = np.nan_to_num(np.where(np.isfinite(left[n]), sigma**-2, 0.0))
             information = information + (columns.T * weights.sum(axis=0)) @ columns
             right = right + columns.T @ np.sum(weights * np.nan_to_num(left[n]), axis=0)
-        further = np.linalg.solve(information, right)
+        further = np.linalg.lstsq(information, right)[0]  # 0 where nothing is recorded
         for n in numbers:
             found[n] = replace(found[n], up=found[n].up + leans[n] @ further)
     return found

@@ -25,14 +25,10 @@ from inertial.physics.site import EARTH_RATE
 from inertial.sensors import PLURAL, UNITS
 from inertial.text.messages import _
 from stages.criticism import block_sentences as sentences
+from stages.criticism.another_imu import another_imu
 from stages.criticism.bias_drift import drift_name, per_log_name
 from stages.criticism.class_splitting import TURNED_OVER, ExtendedCampaigns
-from stages.criticism.confounded_causes import (
-    ASYMMETRY,
-    another_imu,
-    jumps_not_testable,
-    shared_asymmetry,
-)
+from stages.criticism.confounded_causes import ASYMMETRY, jumps_not_testable, shared_asymmetry
 from stages.criticism.finding_rows import (
     TableRow,
     finding_id,

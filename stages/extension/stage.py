@@ -34,17 +34,7 @@ from stages.extension.candidates import (
 )
 from stages.extension.cross_validation import CrossValidation, Trainings, cross_validate
 from stages.extension.declared import DECLARED
-from stages.extension.estimates import (
-    LEFT_OUT,
-    Solved,
-    carried_alone,
-    drift_means,
-    fit_without,
-    joint_fit,
-    moved,
-    solved,
-    unseen_components,
-)
+from stages.extension.estimates import Solved, drift_means, moved, solved, unseen_components
 from stages.extension.gain import gain, gain_of_line, gain_of_ripple
 from stages.extension.laws import form_is_open, proposed_rows, with_drift_in_the_bias
 from stages.extension.models import (
@@ -60,6 +50,7 @@ from stages.extension.named_effects import NamedEffects, combinations_of, compar
 from stages.extension.navigation_error import change_of, worth
 from stages.extension.scanned_values import over_moments, with_scanned_values
 from stages.extension.temperature_shapes import with_shapes
+from stages.extension.without_one import LEFT_OUT, carried_alone, fit_without, joint_fit
 
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]
