@@ -10,7 +10,6 @@ from inertial.campaign.equations import PRIOR_SIZE, Campaign
 from inertial.estimation.effect_information import EffectInformation
 from inertial.estimation.elimination import OF_AXIS, OF_CASE, TILTS, Name, case_by_both, names_of
 from inertial.estimation.gyroscope_equations import is_upright
-from inertial.estimation.least_squares import System
 from inertial.estimation.triad import linear_names
 from inertial.model_selection.evidence import Evidence
 from inertial.physics.effect import Effect
@@ -32,9 +31,9 @@ def evidence(
     of a sensor by itself, where the other one sees it. That is judged against noise alone: a
     scatter by hand may be all effect. `noise_degrees`: of freedom of the noise estimate.
     """
-    systems, informative = _informative(campaign, effects)
+    informative, raw = _informative(campaign, effects)
     quiet = campaign.without_scatter()
-    against = informative if quiet is campaign else _informative(quiet, effects)[1]
+    against = informative if quiet is campaign else _informative(quiet, effects)[0]
     largest = np.array(
         [
             effect.largest_of(parameter)
@@ -54,25 +53,25 @@ def evidence(
         ),
         tuple(sensor for sensor, _ in informative),
         tuple(campaign.noise_degrees(sensor, noise_degrees) for sensor, _ in informative),
-        np.array([system.raw_information()[: len(largest)] for _, system in systems]),
+        np.array([own[: len(largest)] for own in raw]),
     )
 
 
 def _informative(
     campaign: Campaign, effects: Sequence[Effect]
-) -> tuple[list[tuple[str, System]], list[tuple[str, EffectInformation]]]:
-    """The equations by sensor, and their information on the effects, made independent."""
+) -> tuple[list[tuple[str, EffectInformation]], list[Array]]:
+    """The information on the effects by sensor, made independent, and without other unknowns."""
     tilts = shared_tilts(campaign)
     shared = tilts.names if tilts else {}
-    pairs = zip(SENSORS, campaign.systems(effects, 1.0, sharing=shared), strict=True)
-    systems = [(sensor, system) for sensor, system in pairs if system is not None]
-    informative = [(sensor, system.effect_information()) for sensor, system in systems]
+    every = {s: campaign.information(s, effects, shared.get(s, ())) for s in SENSORS}
+    there = {sensor: own for sensor, own in every.items() if own is not None}
+    informative = [(sensor, own) for sensor, (own, _) in there.items()]
     if tilts:
         (_, gyro), (_, accel) = informative
         gyro, before = tilts.by_those_of_accelerometers(gyro, accel), tilts.before["accel"]
         independent = gyro.following(accel, before), accel.eliminated(before)
         informative = list(zip(SENSORS, independent, strict=True))
-    return systems, informative
+    return informative, [raw for _, raw in there.values()]
 
 
 def _restricted(reduced: EffectInformation, observable: Array) -> EffectInformation:
@@ -148,8 +147,8 @@ def deviance(campaign: Campaign) -> float:
     alone = sum(deviances(campaign).values())
     if (tilts := shared_tilts(campaign)) is None:
         return alone
-    systems = campaign.systems([], 1.0, sharing=tilts.names)
-    gyro, accel = (system.effect_information() for system in systems if system is not None)
+    found = (campaign.information(sensor, [], tilts.names[sensor]) for sensor in SENSORS)
+    gyro, accel = (own for own, _ in filter(None, found))
     both = tilts.by_those_of_accelerometers(gyro, accel) + accel
     counted = gyro.deviance_as_errors(tilts.before["gyro"])
     counted += accel.deviance_as_errors(tilts.before["accel"])

@@ -16,7 +16,7 @@ from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import Reference, StaticForce
 from inertial.estimation.carried_effects import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.effect_information import Sensitivities
+from inertial.estimation.effect_information import EffectInformation, Sensitivities
 from inertial.estimation.elimination import Name
 from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.gyroscope_observations import EARTH_UP, SteadyRate
@@ -25,7 +25,7 @@ from inertial.estimation.horizontal_earth_rate import constrained_positions
 from inertial.estimation.least_squares import System
 from inertial.estimation.random_walk import NO_DRIFT, MeasuredDrift
 from inertial.estimation.scatter_and_random_walk import Scatter, SwitchOns
-from inertial.physics.effect import Effect, Reading
+from inertial.physics.effect import Effect
 from inertial.physics.forward import Triad, signatures
 from inertial.physics.motion import Motion, joined
 from inertial.sensors import SENSORS
@@ -38,7 +38,6 @@ NO_GYROS = _(
     "their biases are determined"
 )
 POSITION_UNKNOWNS = {"tilt": "tilt", "horizontal": "level"}  # by quantity, in the equations
-NOTHING_SHARED: Mapping[str, Sequence[Name]] = {}
 MAX_KEPT = 4  # equations with different effects
 
 
@@ -80,7 +79,7 @@ class Campaign:
         default_factory=lambda: dict.fromkeys(SENSORS, NO_DRIFT)
     )
     axis_sigma: float | None = None
-    _known: dict[EffectKey, Reading] = field(
+    _known: dict[EffectKey, Mapping[str, Array]] = field(
         default_factory=dict, repr=False, compare=False
     )  # responses to effects, which random walks do not change
     _linear: dict[EffectKeys, LinearisedEquations] = field(
@@ -239,18 +238,13 @@ class Campaign:
         effects: Sequence[Effect],
         prior_sigma: float,
         only: set[str] | None = None,
-        sharing: Mapping[str, Sequence[Name]] = NOTHING_SHARED,
     ) -> tuple[System | None, System | None]:
         """The equations of gyros and accelerometers with the effects as further unknowns.
 
         `prior_sigma`: of the effects' parameters, in their typical sizes; `only`: the
-        manoeuvres that are used; `sharing`: by sensor, errors that are not eliminated, but the last
-        effects.
+        manoeuvres that are used.
         """
-        gyro, accel = (
-            self.system(sensor, effects, prior_sigma, only, sharing.get(sensor, ()))
-            for sensor in SENSORS
-        )
+        gyro, accel = (self.system(sensor, effects, prior_sigma, only) for sensor in SENSORS)
         return gyro, accel
 
     @property
@@ -265,14 +259,26 @@ class Campaign:
         effects: Sequence[Effect],
         prior_sigma: float,
         only: set[str] | None = None,
-        sharing: Sequence[Name] = (),
     ) -> System | None:
         """The equations of one sensor, `gyro` or `accel`; arguments as in `systems`."""
-        walk = self.solution.random_walks[SENSORS.index(sensor)]
+        walk = self._walk(sensor)
         drifting = self.equations(sensor, effects, prior_sigma, only, walking=bool(walk))
-        if drifting and sharing:
-            drifting = drifting.sharing(sharing)
         return drifting.system(walk=walk) if drifting else None
+
+    def information(
+        self, sensor: str, effects: Sequence[Effect], sharing: Sequence[Name] = ()
+    ) -> tuple[EffectInformation, Array] | None:
+        """The information of one sensor on each effect, and that without any other unknown.
+
+        `sharing`: errors that are not eliminated, but the last effects. For many effects this takes
+        less time and memory than their system.
+        """
+        walk = self._walk(sensor)
+        drifting = self.equations(sensor, effects, 1.0, walking=bool(walk))
+        return drifting.sharing(sharing).information(walk) if drifting else None
+
+    def _walk(self, sensor: str) -> float:
+        return self.solution.random_walks[SENSORS.index(sensor)]
 
     def equations(
         self,
@@ -420,8 +426,8 @@ class Campaign:
             measured=drift,
         )
 
-    def _responses(self, effects: Sequence[Effect]) -> list[Reading]:
-        """The responses of all readings to each effect, in all stretches."""
+    def _responses(self, effects: Sequence[Effect]) -> list[Mapping[str, Array]]:
+        """The responses to each effect, by sensor, (n, 3, k) for all n stretches of that sensor."""
         if not effects or not self.motions:
             return []
         unit = Triad(np.eye(3), np.zeros(3))
@@ -429,7 +435,11 @@ class Campaign:
         keys = [effect.key for effect in effects]
         every = dict(zip(keys, effects, strict=True))
         missing = {key: effect for key, effect in every.items() if key not in self._known}
-        found = signatures(self.motion, self.solution.site, *triads, list(missing.values()))
+        first = sum(len(motion.rate) for motion in self.gyro_motions)  # of the accelerometers
+        found = (
+            {"gyro": trace.gyro[:first].copy(), "accel": trace.accel[first:].copy()}
+            for trace in signatures(self.motion, self.solution.site, *triads, missing.values())
+        )
         responses = self._known | dict(zip(missing, found, strict=True))
         self._known.update(
             (key, responses[key]) for key, e in missing.items() if e.signature(self.motion) is None
@@ -441,18 +451,13 @@ class Campaign:
 
         Gyros: static positions, then rotations; accelerometers: as in `static_forces`.
         """
-        responses = self._responses(effects)
-        ends = [0, *accumulate(len(motion.rate) for motion in self.motions)]
-        parts = [slice(first, after) for first, after in pairwise(ends)]
         gyros = len(self.gyro_motions)
-        of_sensor = parts[:gyros] if sensor == "gyro" else parts[gyros:]
-        if not responses:
-            return [
-                Sensitivities(values=np.zeros((part.stop - part.start, 3, 0))) for part in of_sensor
-            ]
+        motions = self.motions[:gyros] if sensor == "gyro" else self.motions[gyros:]
+        ends = [0, *accumulate(len(motion.rate) for motion in motions)]
         names = tuple(name for effect in effects for name in effect.columns)
-        stacked = np.concatenate([getattr(trace, sensor) for trace in responses], axis=2)
-        return [Sensitivities(names, stacked[part]) for part in of_sensor]
+        responses = [response[sensor] for response in self._responses(effects)]
+        stacked = np.concatenate([np.zeros((ends[-1], 3, 0)), *responses], axis=2)
+        return [Sensitivities(names, stacked[first:after]) for first, after in pairwise(ends)]
 
 
 def _mean_of(responses: Sensitivities, seconds: Array) -> Sensitivities:

@@ -25,7 +25,14 @@ import numpy as np
 from scipy.linalg import block_diag, solve_triangular
 
 from inertial.arrays import Array
-from inertial.estimation.elimination import EquationBlock, Name, eliminate, partial_r_factor
+from inertial.estimation.effect_information import EffectInformation, NormalEquations
+from inertial.estimation.elimination import (
+    EquationBlock,
+    Name,
+    eliminate,
+    eliminate_into,
+    partial_r_factor,
+)
 from inertial.estimation.least_squares import Estimate, System, remaining, solve
 from inertial.estimation.random_walk import (
     NO_DRIFT,
@@ -70,14 +77,28 @@ class DriftingEquations:
 
     def system(self, scatter: float = 0.0, walk: float = 0.0) -> System:
         """All equations, the errors eliminated; unit of the readings, and the same per √s."""
+        left = eliminate(*self._with_drifts(scatter, walk))
+        return remaining(*left, self.prior, self.prior_sigma, self.parameters, self.names)
+
+    def information(self, walk: float = 0.0) -> tuple[EffectInformation, Array]:
+        """The normal equations of the effects, and the information of each, nothing else fitted."""
+        equations = NormalEquations(self.names, self.prior_sigma)
+        done = eliminate_into(equations.add, *self._with_drifts(0.0, walk))
+        return equations.information(done.count, self.parameters), equations.raw
+
+    def _with_drifts(
+        self, scatter: float, walk: float
+    ) -> tuple[Sequence[EquationBlock], int, Mapping[Name, float]]:
+        """What `eliminate` takes."""
         shared = len(self.prior)
         drift = (scatter, walk, self.measured)
         blocks, drift_sigma = with_drifts(self.blocks, shared, self.bias, *drift)
-        left = eliminate(blocks, shared, {**self.sigma, **drift_sigma})
-        return remaining(*left, self.prior, self.prior_sigma, self.parameters, self.names)
+        return blocks, shared, {**self.sigma, **drift_sigma}
 
     def sharing(self, errors: Sequence[Name]) -> "DriftingEquations":
         """The same with these errors as the last effects, so that they are not eliminated."""
+        if not errors:
+            return self
         shared, count = len(self.prior), len(errors)
         blocks = []
         for block, stretch in self.blocks:

@@ -8,11 +8,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from inertial.arrays import Array, Booleans
+from inertial.estimation.elimination import Name, partial_r_factor
 
 MIN_INFORMATION_SHARE = 1e-8  # of the information of a column on its own: what is less is rounding
 MIN_SPANNED_SHARE = 1 - 1e-6  # of a column within the combinations that the data determine
+MIN_ROWS_PER_PRODUCT = 1000  # of normal equations: fewer read and write them more often
 
 
 @dataclass(frozen=True)
@@ -171,6 +174,66 @@ def _sizes(information: Array) -> Array:
     """The roots of the diagonal, (k,), infinite where there is none: no combination has such."""
     own = np.diag(information)
     return np.sqrt(np.where(own > 0, own, np.inf))
+
+
+# ---- From the rows of all unknowns to the normal equations of the effects.
+
+
+class NormalEquations:
+    """Takes the equations of a sensor some rows at a time.
+
+    Rows that hold unknowns other than effects are made triangular, so that rounding is not squared
+    there; the others, as many as there are observations, become normal equations.
+
+    names, prior_sigma : (p,), of the unknowns
+    """
+
+    def __init__(self, names: Sequence[Name], prior_sigma: Array) -> None:
+        are_effects = np.array([kind == "effect" for kind, _ in names], bool)
+        effects, others = np.flatnonzero(are_effects), np.flatnonzero(~are_effects)
+        self._names = tuple(name for kind, name in names if kind == "effect")
+        self._order = np.concatenate([others, effects, [len(names)]])
+        self._sigma = prior_sigma[others]
+        # The prior of an unknown is an observation.
+        self._pending = [np.eye(len(others), len(names) + 1)]
+        self._squares = np.zeros((len(effects) + 1, len(effects) + 1))
+        self.raw = np.zeros(len(effects))  # information of each column, nothing else fitted
+
+    def add(self, rows: Array) -> None:
+        """Rows in units of sigma about the priors, (n, p + 1), the last column the observations."""
+        ordered, others = rows[:, self._order], len(self._sigma)
+        ordered[:, :others] *= self._sigma
+        self.raw += np.sum(ordered[:, others:-1] ** 2, axis=0)
+        self._pending.append(ordered)
+        if sum(map(len, self._pending)) > MIN_ROWS_PER_PRODUCT:
+            self._multiply()
+
+    def information(self, count: int, parameters: int) -> EffectInformation:
+        """The normal equations of the effects, all other unknowns fitted.
+
+        Chi-squared is that of `count` observations and errors. The vague priors of the first
+        `parameters` are none of either: a cross term of 2.5 % is a third of its σ, and beside
+        residuals in units of a scatter that they are all of, that would stand where an effect
+        leaves nothing.
+        """
+        self._multiply()
+        (upper,), others = self._pending, len(self._sigma)
+        fitted = solve_triangular(upper[:, :others], upper[:, -1])
+        vague = float(np.sum(fitted[:parameters] ** 2))
+        return EffectInformation(
+            self._names,
+            self._squares[:-1, :-1],
+            self._squares[:-1, -1],
+            float(self._squares[-1, -1]) - vague,
+            count - parameters,
+        )
+
+    def _multiply(self) -> None:
+        others = len(self._sigma)
+        factor = partial_r_factor(np.vstack(self._pending), others)
+        below = factor[others:, others:]
+        self._squares += below.T @ below
+        self._pending = [factor[:others]]
 
 
 # ---- Derivatives of readings with respect to the parameters of effects.

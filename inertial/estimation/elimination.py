@@ -8,7 +8,7 @@ rows hold only the unknowns that all stretches share (Bierman 1977, square-root 
 & Heath 1980, orthogonal factors of sparse least squares).
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -135,10 +135,27 @@ def eliminate(
     `sigma`: prior sigma of each error, which is an observation of zero as well; an error without a
     prior sigma is known through the equations alone.
     """
+    remaining = [np.zeros((0, shared + 1))]
+
+    def keep(rows: Array) -> None:
+        remaining.append(rows)
+        if sum(map(len, remaining)) > MAX_ROWS_PER_COLUMN * (shared + 1):
+            remaining[:] = [r_factor(np.vstack(remaining))]
+
+    eliminated = eliminate_into(keep, blocks, shared, sigma)
+    return np.vstack(remaining), eliminated
+
+
+def eliminate_into(
+    keep: Callable[[Array], None],
+    blocks: Sequence[EquationBlock],
+    shared: int,
+    sigma: Mapping[Name, float],
+) -> Eliminated:
+    """The same; rows of the shared unknowns are handed to `keep`, some at a time."""
     last = {key: i for i, block in enumerate(blocks) for key in block.own}
     pending: list[tuple[tuple[Name, ...], Array]] = []
     rows = 0
-    remaining = [np.zeros((0, shared + 1))]
     steps: list[_BackSubstitution] = []
     for i, block in enumerate(blocks):
         scaled = block.rows.copy()
@@ -159,13 +176,11 @@ def eliminate(
             steps.append(_BackSubstitution((*ready, *later), *step))
         rest = upper[own:every]
         pending = [(later, np.hstack([rest[:, every:-1], rest[:, own:every], rest[:, -1:]]))]
-        remaining.append(upper[every:, every:])
-        if sum(map(len, remaining)) > MAX_ROWS_PER_COLUMN * (shared + 1):
-            remaining = [r_factor(np.vstack(remaining))]
+        keep(upper[every:, every:])
         rows = 0
     of_errors = sum(2 * float(np.sum(np.log(np.abs(np.diag(step.upper))))) for step in steps)
     count, deviance = sum(block.count for block in blocks), sum(block.deviance for block in blocks)
-    return np.vstack(remaining), Eliminated(steps, sigma, count, of_errors + deviance)
+    return Eliminated(steps, sigma, count, of_errors + deviance)
 
 
 def _stacked(

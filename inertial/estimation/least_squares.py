@@ -14,8 +14,12 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from inertial.arrays import Array, Booleans
-from inertial.estimation.effect_information import MIN_SPANNED_SHARE, EffectInformation
-from inertial.estimation.elimination import Eliminated, partial_r_factor
+from inertial.estimation.effect_information import (
+    MIN_SPANNED_SHARE,
+    EffectInformation,
+    NormalEquations,
+)
+from inertial.estimation.elimination import Eliminated
 from inertial.estimation.probability import chi2_sf, f_sf
 
 MIN_SIGMA_REDUCTION = 4.0  # prior sigma over posterior sigma of a determined parameter
@@ -226,30 +230,10 @@ class System:
         return [self.names[base[i]][1] for i in own], changes[own] / sigma[own, None]
 
     def effect_information(self) -> EffectInformation:
-        """The normal equations of the effects, all other unknowns fitted.
-
-        Chi-squared is that of observations and errors. The vague prior of a parameter is none of
-        either: a cross term of 2.5 % is a third of its σ, and beside residuals in units of a
-        scatter that they are all of, that would stand where an effect leaves nothing.
-        """
-        effects = self._effects
-        others = self._all_but(effects)
-        scaled, residual = self._whitened()
-        base = scaled[:, others] * self.prior_sigma[others]
-        stacked = np.zeros((len(residual) + len(others), len(others) + len(effects) + 1))
-        stacked[: len(residual)] = np.column_stack([base, scaled[:, effects], residual])
-        stacked[len(residual) :, : len(others)] = np.eye(len(others))
-        factor, count = partial_r_factor(stacked, len(others)), len(others)
-        fitted = solve_triangular(factor[:count, :count], factor[:count, -1])
-        vague = float(np.sum(fitted[: self.parameters] ** 2))
-        columns, right = factor[count:, count:-1], factor[count:, -1]
-        return EffectInformation(
-            tuple(self.names[i][1] for i in effects),
-            columns.T @ columns,
-            columns.T @ right,
-            float(right @ right) - vague,
-            self.rows - self.parameters,
-        )
+        """The normal equations of the effects, all other unknowns fitted."""
+        equations = NormalEquations(self.names, self.prior_sigma)
+        equations.add(np.column_stack(self._whitened()))
+        return equations.information(self.rows, self.parameters)
 
 
 def remaining(

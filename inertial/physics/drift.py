@@ -356,6 +356,14 @@ def _of_short_runs(motion: Motion) -> bool:
     return bool(without_clock(motion)) and visits <= MIN_VISITS * runs
 
 
+def _ends(motion: Motion) -> tuple[Array, Array]:
+    """From when on, and until when, what sets in comes in or after each stretch, (n,) each."""
+    if without_clock(motion):
+        place = np.floor(motion.visit)
+        return place, place + 1
+    return motion.time - motion.seconds / 2, motion.time + motion.seconds / 2
+
+
 class ScaleJump(SettingIn):
     """Reading_i += k_i H(t − t₀) times what is sensed along i: scale factors that jump once.
 
@@ -375,19 +383,13 @@ class ScaleJump(SettingIn):
 
     def grid(self, motion: Motion) -> Array:
         every = super().grid(motion)
-        shown = [self._shown(motion, float(at)) for at in every]
-        return np.asarray(every[np.array(shown, bool)])
-
-    def _shown(self, motion: Motion, at: float) -> bool:
-        """Whether each axis is sensed both ways before a jump and after it."""
         sensed = motion.omega if self.sensor == "gyro" else motion.up
         clear = np.abs(sensed) > MIN_SENSED * np.abs(sensed).max(axis=0)
-        after = self.fixed(at).since(motion)
-        return all(
-            bool((clear & (way * sensed > 0))[after == side].any(axis=0).all())
-            for side in (0, 1)
-            for way in (1, -1)
-        )
+        begin, end = _ends(motion)
+        either_way = np.concatenate([clear & (way * sensed > 0) for way in (1, -1)], axis=1)
+        shown_before = np.where(either_way, end[:, None], np.inf).min(axis=0).max()
+        shown_after = np.where(either_way, begin[:, None], -np.inf).max(axis=0).min()
+        return np.asarray(every[(every >= shown_before) & (every <= shown_after)])
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         sensed = truth.rate if self.sensor == "gyro" else truth.force

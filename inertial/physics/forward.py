@@ -5,7 +5,7 @@ reading = M · truth + bias, for both triads,   truth: angular rate and specific
 with the earth's rate and gravity in body axes, and the effects one after another.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, sin, tan
 
@@ -76,8 +76,8 @@ def predict(
 
 
 def signatures(
-    motion: Motion, site: Site, gyro: Triad, accelerometer: Triad, effects: Sequence[Effect]
-) -> list[Reading]:
+    motion: Motion, site: Site, gyro: Triad, accelerometer: Triad, effects: Iterable[Effect]
+) -> Iterator[Reading]:
     """Change of the readings per unit of each parameter of effects that are absent.
 
     The derivative is central, about zero. It is zero where an effect is not observable, or its
@@ -109,7 +109,7 @@ def signatures(
             derivatives[1, :, :, i] = (plus.accel - minus.accel) / (2 * parameter.typical)
         return Reading(*np.nan_to_num(derivatives, posinf=0.0, neginf=0.0))
 
-    return [signature(effect) for effect in effects]
+    return map(signature, effects)
 
 
 # ---- The inverse of the forward model: specific force and angular rate from readings

@@ -31,7 +31,7 @@ from inertial.physics.effect import Effect
 from inertial.sensors import SENSORS
 from inertial.text.parameters import AXES
 from stages.criticism.bias_drift import WALK_WAVES, half_waves
-from stages.criticism.residual_structure import MIN_INFORMATION, PRIOR_SIGMA, Functions
+from stages.criticism.residual_structure import MIN_INFORMATION, Functions
 from stages.criticism.rivals import MAX_LOG_ODDS
 from stages.criticism.selection import Selection, walk_name
 
@@ -194,9 +194,9 @@ def _equations(
     campaign: Campaign, sensor: str, effects: Sequence[Effect]
 ) -> tuple[Equations, dict[str, int]]:
     """The normal equations of a sensor on effects, zero of what is fitted already."""
-    system = campaign.system(sensor, effects, PRIOR_SIGMA)
-    assert system is not None  # the sensor has equations
-    reduced, raw = system.effect_information(), system.raw_information()
+    found = campaign.information(sensor, effects)
+    assert found is not None  # the sensor has equations
+    reduced, raw = found
     kept = np.diag(reduced.information) > MIN_INFORMATION * raw
     equations = Equations(reduced.information * np.outer(kept, kept), reduced.right * kept)
     return equations, {name: i for i, name in enumerate(reduced.names)}

@@ -240,12 +240,11 @@ class _Search:
         self, models: Sequence[TemperatureModel], first: int = 1
     ) -> tuple[SensorEquations, dict[str, int]]:
         """The normal equations of the sensor; the noise is what the first models leave."""
-        system = self.campaign.system(self.sensor, [*models, *self.others], 1.0)
-        assert system is not None  # else there is no search
+        found = self.campaign.information(self.sensor, [*models, *self.others])
+        assert found is not None  # else there is no search
+        whole, raw = found
         degrees = self.campaign.noise_degrees(self.sensor, self.noise_degrees)
-        raw = system.raw_information()
-        whole = (system.effect_information(),)
-        equations = Evidence(whole, (self.sensor,), (degrees,), raw[None]).observable()
+        equations = Evidence((whole,), (self.sensor,), (degrees,), raw[None]).observable()
         own = equations.sensors[0]
         column = {name: i for i, name in enumerate(own.names)}
         given = tuple(column[name] for effect in self.others for name in effect.columns)

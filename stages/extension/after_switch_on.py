@@ -26,7 +26,6 @@ from inertial.text.messages import _
 from inertial.text.numbers import plus_minus, significant
 from inertial.text.units import quantity
 from stages.extension.estimates import Solved
-from stages.extension.models import PRIOR_SIGMA
 from stages.extension.named_effects import NamedClass
 
 Row = Mapping[str, Any]
@@ -142,10 +141,10 @@ def with_spreads(campaign: Campaign, classes: Sequence[NamedClass]) -> tuple[Nam
 def _spread(campaign: Campaign, restarts: Restarts, known: Sequence[Effect]) -> Array | None:
     """Sigma of the biases of runs about their mean, (3,), by restricted likelihood."""
     others = [effect for effect in known if effect.name != restarts.name]
-    system = campaign.system(restarts.sensor, [restarts, *others], PRIOR_SIGMA)
-    if system is None:
+    information = campaign.information(restarts.sensor, [restarts, *others])
+    if information is None:
         return None
-    whole = system.effect_information()
+    whole, _ = information
     place = {name: i for i, name in enumerate(whole.names)}
     rest = whole.given([place[name] for effect in others for name in effect.columns])
     found = []

@@ -80,7 +80,8 @@ class Channels:
         campaign = self.campaign
         triads = [campaign.solution.gyro, campaign.solution.accelerometer]
         gyro, accel = (triad or Triad(np.eye(3), np.zeros(3)) for triad in triads)
-        responses = signatures(campaign.motion, campaign.solution.site, gyro, accel, self.effects)
+        site = campaign.solution.site
+        responses = list(signatures(campaign.motion, site, gyro, accel, self.effects))
         traces = [
             np.concatenate([getattr(response, s) for response in responses], axis=2)
             for s in SENSORS
@@ -88,7 +89,7 @@ class Channels:
         stretches, start = [], 0
         for motion in campaign.motions:
             part = slice(start, start + len(motion.rate))
-            truth = truth_of(motion, campaign.solution.site)
+            truth = truth_of(motion, site)
             stretches.append((motion, truth, traces[0][part], traces[1][part]))
             start = part.stop
         return stretches

@@ -131,7 +131,7 @@ def test_a_table_that_turned_as_it_is_set_would_show_them(name, order, unit, sai
         campaign = PLANS[letter]().campaign()
         moved = joined(campaign.turn_motions)
         triads = (plans.SITE, plans.GYRO, plans.ACCELEROMETER)
-        trace = signatures(moved, *triads, [effect])[0].gyro[:, :, 0]
+        trace = next(signatures(moved, *triads, [effect])).gyro[:, :, 0]
         seen = np.sum(trace**2 * moved.seconds[:, None]) / plans.GYRO_NOISE**2
         assert 5 / np.sqrt(seen) / unit == pytest.approx(size, rel=0.3), letter
 
