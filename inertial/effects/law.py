@@ -8,7 +8,16 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.physics.effect import Constant, Effect, Parameter, Reading, Truth, by_grade
-from inertial.physics.laws import LAWS, OWN, SHAPED_IN_STATE, UNITS, functions, powers, unknown
+from inertial.physics.laws import (
+    LAWS,
+    OWN,
+    SHAPED_IN_STATE,
+    UNITS,
+    beside_product,
+    functions,
+    powers,
+    unknown,
+)
 from inertial.physics.motion import Motion
 from inertial.sensors import SENSORS
 from inertial.text.messages import _
@@ -66,6 +75,8 @@ class Law(Effect):
         if self.family == "polynomial":
             degree = self.shape[0] if self.shape else 2
             return [str(k) for k in powers(self.state, degree)]
+        if self.family == "product":
+            return ["", *(f"_{name}" for name in beside_product(self.state))]
         return ("_cos", "_sin") if self.family == "harmonic" else ("",)
 
     @property

@@ -34,6 +34,7 @@ UNITS = {  # of the states; of forces g
     "rate": "× 10 °/s",
     "temperature": "K",
     "temperature_rate": "K/min",
+    "other_forces": "g²",
 }
 SHAPED_IN_STATE = ("exponential", "ramp", "telegraph", "hysteresis")  # by values of the state
 OWN = ("own_force", "other_forces")  # states that differ from axis to axis: laws of all axes
@@ -41,6 +42,8 @@ FACTORS = ("time", "rate", "force_x", "force_y", "force_z", "temperature", "temp
 PRODUCTS = tuple(
     f"{first}*{second}" for i, first in enumerate(FACTORS) for second in FACTORS[i + 1 :]
 )
+WITHOUT_ZERO = ("time", "temperature")  # states that are counted from any value
+OF_DRIFTS = (*WITHOUT_ZERO, "temperature_rate")
 LAWS = (
     *((family, name) for name, families in OF_STATE.items() for family in families),
     *(("product", name) for name in (*PRODUCTS, "other_forces")),
@@ -107,7 +110,8 @@ def functions(family: str, name: str, shape: tuple[float, ...], motion: Motion, 
     polynomial (d): x … x^d, of the rate without x, which is the scale factor; power (p): |x|^p;
     odd_power (p): sign(x) |x|^p; harmonic (ν): cos νx and sin νx; exponential (c): e^(x/c); ramp
     (x₀): x − x₀ where above 0; telegraph (x₁, x₂ …): 1 between x₁ and x₂, x₃ and x₄, …; hysteresis
-    (w): the play operator of half width w in the order of time; product: the state itself.
+    (w): the play operator of half width w in the order of time; product: the state itself, and what
+    the zero of a factor adds, see `beside_product`.
     """
     x = state(name, motion, axis)
     if family == "telegraph":
@@ -127,8 +131,20 @@ def functions(family: str, name: str, shape: tuple[float, ...], motion: Motion, 
     elif family == "exponential":
         values = [np.exp(x / shape[0])]
     else:
-        values = [x]
+        values = [x, *(state(other, motion, axis) for other in beside_product(name))]
     return _known(np.column_stack([value @ WEIGHTS for value in values]))
+
+
+def beside_product(name: str) -> tuple[str, ...]:
+    """The factors of a drift that stand beside their product, for the zero of the other is free.
+
+    (t − t₀)(T − T₀) is t T, less T₀ t and t₀ T. Of other products, what a zero adds is a scale
+    factor or a sensitivity.
+    """
+    first, _, second = name.partition("*")
+    if not {first, second} <= set(OF_DRIFTS):
+        return ()
+    return tuple(other for one, other in ((first, second), (second, first)) if one in WITHOUT_ZERO)
 
 
 def powers(name: str, degree: float) -> range:

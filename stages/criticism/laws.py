@@ -134,6 +134,7 @@ FORMS = {
     "pulse": _("another level from {first_time} s to {last_time} s"),
     "hysteresis": _("hysteresis of {state}, {first} {unit} wide to either side"),
     "product": _("in proportion to {state}"),
+    "drift": _("in proportion to {state}, each counted from a value of its own"),
 }
 MIN_SIGMAS = 3.0  # of a size that is written
 EXPONENTS = {2.0: "²", 3.0: "³", 4.0: "⁴", 5.0: "⁵"}
@@ -173,7 +174,7 @@ def form_of(law: Law) -> str:
     if law.family == "telegraph" and len(times) <= 2:
         form = FORMS["pulse" if len(times) == 2 else "jump"]
         return form.format(first_time=times[0], last_time=times[-1])
-    return FORMS[law.family].format(
+    return FORMS["drift" if law.family == "product" and law.is_drift else law.family].format(
         state=state,
         first=significant(first, 3),
         degree=f"{first:.0f}",
@@ -204,6 +205,11 @@ def _per(law: Law, parameter: str) -> str:
         unit = f"({unit.removeprefix('× ')})" if " " in unit or "/" in unit else unit
         exponent = "" if power == 1 else EXPONENTS.get(power) or f"^{significant(power, 3)}"
         return f"/{unit}{exponent}"
+    if law.family == "product":
+        term = parameter[1:-2].removeprefix("_")  # none for the product itself
+        units = [UNITS.get(one, "g") for one in (term or law.state).split("*")]
+        together = " ".join(f"({u.removeprefix('× ')})" if "/" in u else u for u in units)
+        return f"/({together})" if " " in together else f"/{together}"
     if law.family == "ramp":
         return "/h"
     if law.family == "hysteresis" and law.state != "temperature":  # whose size is per K

@@ -26,6 +26,7 @@ def shaped(name, *shape):
         ("accel_x_polynomial_of_force_y", (3.0,)),
         ("gyro_z_telegraph_of_time", (0.1, 0.3)),
         ("gyro_all_product_of_time_and_rate", ()),
+        ("gyro_x_product_of_time_and_temperature", ()),
     ],
 )
 def test_a_proposed_file_keeps_the_contract_of_the_catalogue(

@@ -104,6 +104,17 @@ def test_a_law_of_what_differs_from_axis_to_axis():
 
 
 @pytest.mark.slow
+def test_a_temperature_coefficient_that_drifts():
+    """k t (T − T₀), T₀ that of the first sample: about the mean temperature a drift is beside."""
+    told = {"k_deg_h_k_h": [0.0, 1.0, 0.0]}
+    cause, sizes = named_in_memory(hiding("rates", "gyro_coefficient_drift", **told))
+    assert (cause["cause"], cause["verdict"]) == ("gyro_y_product_of_time_and_temperature", "law")
+    value, sigma = sizes.loc["k_y", ["value", "sigma"]] / DEGREE_PER_HOUR
+    assert value == pytest.approx(1.0, abs=4 * sigma) and sigma < 0.2
+    assert "°/h/(h K)" in cause["sentence"]
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("walk", [0.0, 0.3])
 def test_a_clean_campaign_and_a_random_walk_have_no_law(walk):
     document = PLANS["positions"](seed=99)
@@ -187,6 +198,19 @@ def test_states_and_their_functions():
     np.testing.assert_allclose(np.diff(cycles), 1 / 3)  # over the span of 30 °/s
     loops = laws.grid("hysteresis", "rate", motion)
     assert np.array(loops).max() < np.ptp(later[:, 2]) / 2
+
+
+def test_a_product_of_drifts_has_any_zero_of_its_factors():
+    """(t − 1 h)(T − 280 K) is no longer than its own product, the two factors and a constant."""
+    hours, kelvin = np.array([0.0, 0.5, 1.0, 2.0, 3.0]), np.array([290.0, 295.0, 291.0, 299.0, 290])
+    still = stretches(hours * HOUR, np.full(5, 4.0), kelvin)
+    product = laws.functions("product", "time*temperature", (), still, 0)
+    columns = np.column_stack([product, np.ones(5)])
+    moved = (hours - 1.0) * (kelvin - 280.0)
+    sizes, rest = np.linalg.lstsq(columns, moved, rcond=None)[:2]
+    assert rest == pytest.approx(0.0, abs=1e-6) and sizes[0] == pytest.approx(1.0, rel=1e-6)
+    of_force = replace(still, up=np.tile([0.2, 0.5, -0.6], (5, 1)))
+    assert laws.functions("product", "force_x*force_y", (), of_force, 0).shape == (5, 1)
 
 
 def test_what_is_odd_in_one_rate_is_the_scale_factor():
