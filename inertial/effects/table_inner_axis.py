@@ -11,6 +11,7 @@ from inertial.physics.motion import Motion, cross, turned_all, without_north
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
+MIN_KEPT = 0.1  # in a mean of what goes round; of less nothing is concluded
 MIN_INNER_COSINE = np.cos(np.radians(1))  # of the angle from the axis of a turn to the inner one
 
 
@@ -52,11 +53,12 @@ def is_inner(motion: Motion) -> Booleans:
 def off_its_axes(truth: Truth, motion: Motion, lean: Array, inner: Booleans) -> Truth:
     """What a case feels that is off by λ, (n, 3), rad, in all turns but those about the inner axis.
 
-    f −= λ × f, ω −= λ × (ω − Ω_i), Ω_i the rate of turns about the inner axis, (n,) of `inner`.
+    f −= λ × f, ω −= λ × (ω − Ω_i), Ω_i the rate of turns about the inner axis, (n,) of `inner`. In
+    these λ goes round as f does, and of means f is one.
     """
     carried = truth.rate - np.where(inner[:, None], motion.omega, 0.0)
-    return replace(
-        truth,
-        rate=truth.rate - cross(lean, carried),
-        force=truth.force - cross(lean, truth.force),
-    )
+    force = cross(lean, truth.force)
+    along = motion.about * np.sum(motion.about * force, axis=1, keepdims=True)
+    kept = np.maximum(motion.kept, MIN_KEPT)[:, None]
+    of_means = np.where(inner[:, None], along / kept + kept * (force - along), force)
+    return replace(truth, rate=truth.rate - cross(lean, carried), force=truth.force - of_means)

@@ -5,8 +5,8 @@ import numpy as np
 from inertial.arrays import Array, Booleans
 from inertial.effects.mounting_shift import SHIFT_TIMES
 from inertial.effects.table_axis_non_orthogonality import HOME, MIN_MIDDLE_SINE
-from inertial.effects.table_inner_axis import MIN_INNER_COSINE, is_inner, off_its_axes
-from inertial.physics.drift import SettingIn
+from inertial.effects.table_inner_axis import MIN_INNER_COSINE, MIN_KEPT, is_inner, off_its_axes
+from inertial.physics.drift import SettingIn, without_clock
 from inertial.physics.effect import Parameter, Scan, Truth, of_tables
 from inertial.physics.motion import Motion, cross, turned_all, without_north
 from inertial.text.messages import _
@@ -67,6 +67,10 @@ class TableZeroShift(SettingIn):
         lean = self.since(motion)[:, None] * turned_all(turned, HOME, of_tumble)
         return off_its_axes(truth, motion, lean, inner)
 
+    def grid(self, motion: Motion) -> Array:
+        every = super().grid(motion)
+        return every if without_clock(motion) else np.union1d(every, _settings(motion))
+
     def blind(self, motion: Motion) -> str:
         return super().blind(motion) or without_north(motion)
 
@@ -77,6 +81,15 @@ class TableZeroShift(SettingIn):
     def _upright(self, up: Array, north: Array, values: Array) -> Array:
         """The turn of the case where the inner axis is vertical, body axes, (n, 3), rad."""
         return cross(up, values[0] * north + values[1] * cross(north, up))
+
+
+def _settings(motion: Motion) -> Array:
+    """The times at which the table goes to another position, s; there an axis is likely to slip."""
+    order = np.argsort(motion.time, kind="stable")
+    half, position = motion.seconds[order] / 2, motion.position[order]
+    changes = np.flatnonzero(np.diff(position))
+    time = motion.time[order]
+    return np.asarray(((time + half)[changes] + (time - half)[changes + 1]) / 2)
 
 
 def _about_home(tumbled: Array) -> Array:
@@ -90,8 +103,11 @@ def _start(motion: Motion) -> tuple[Array, Array]:
     """Up and north in body axes, (n, 3) each, when the turn or the tumble began."""
     angle = np.linalg.norm(motion.tumbled, axis=1)
     axis = motion.tumbled / np.where(angle > 0, angle, 1.0)[:, None]
-    up, north = (
-        turned_all(np.nan_to_num(v), axis, -angle)
-        for v in (motion.up_at_start, motion.north_at_start)
-    )
-    return up, north
+    kept = np.maximum(motion.kept, MIN_KEPT)[:, None]
+    about = np.broadcast_to(motion.about, motion.up.shape)
+
+    def before(direction: Array) -> Array:
+        along = about * np.sum(about * direction, axis=1, keepdims=True)
+        return turned_all(along + (direction - along) / kept, axis, -angle)
+
+    return before(motion.up_at_start), before(np.nan_to_num(motion.north_at_start))
