@@ -50,6 +50,7 @@ class TableZeroShift(SettingIn):
         ),
     )
     sizes = of_tables(ARC_SECOND, 10, 60)
+    vector = True
     thinkable = 1000.0  # degrees, where a coupling comes loose
     times = SHIFT_TIMES
     scan = Scan("t0", "s", _("time of the shift since the first sample of all logs"))
