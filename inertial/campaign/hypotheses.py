@@ -23,7 +23,7 @@ PLANNED = "plan"  # the stage that repairs what the campaign file states
 TABLE_MOVING = "table_moving"
 SLIP = "mounting_slip"  # shown by one turn, it turns the axes of all that follows
 MOUNTINGS = ("mounting_shift", SLIP)  # effects that turn the axes of both sensors from then on
-# The middle axis counts from another zero; home up or down the inner or the outer one turns the case.
+# Another zero of the middle axis; with the inner one upright that turns, or the outer one.
 ZERO_SHIFTS = ("table_zero_shift", "table_zero_shift_outer")
 # Effects by which the case is not in the attitude that is stated.
 OF_ATTITUDES = frozenset(

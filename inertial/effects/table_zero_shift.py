@@ -46,12 +46,12 @@ class TableZeroShift(SettingIn):
             for to in ("north", "east")
         ),
         Parameter(
-            "shift", "rad", 2 * ARC_SECOND, _("ζ, by which the middle axis has turned further")
+            "zeta", "rad", 2 * ARC_SECOND, _("angle by which the middle axis has turned further")
         ),
     )
     sizes = of_tables(ARC_SECOND, 10, 60)
     vector = True
-    thinkable = 1000.0  # degrees, where a coupling comes loose
+    thinkable = 30.0  # half a degree
     times = SHIFT_TIMES
     scan = Scan("t0", "s", _("time of the shift since the first sample of all logs"))
 

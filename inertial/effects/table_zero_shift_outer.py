@@ -29,7 +29,7 @@ class TableZeroShiftOuter(TableZeroShift):
                 f"upright_{axis}",
                 "rad",
                 2 * ARC_SECOND,
-                _("turn of the case about its {axis} axis where the inner axis is vertical", axis=axis),
+                _("turn about the {axis} axis where the inner axis is vertical", axis=axis),
             )
             for axis in "xy"
         ),

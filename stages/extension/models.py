@@ -15,7 +15,7 @@ from inertial.estimation.effect_information import (
     EffectInformation,
     whitening,
 )
-from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.least_squares import Estimate, System, with_columns
 from inertial.model_selection.size_after_selection import corrected, regressed
 from inertial.physics.effect import Effect
 from stages.extension.named_effects import NamedClass
@@ -141,8 +141,8 @@ def _evidence(system: System, joint: System | None) -> SensorEvidence:
     return SensorEvidence(plain, system.effect_information(), drop)
 
 
-# The information of a sensor's equations on each observable column, all else fitted; and the columns
-# that are in its readings, which would be observable if nothing else were fitted.
+# The information of a sensor's equations on each observable column, all else fitted; and the
+# columns in its readings, which would be observable if nothing else were fitted.
 Observable = tuple[Mapping[str, float], frozenset[str]]
 
 
@@ -175,20 +175,6 @@ def given(system: System, estimates: Mapping[str, tuple[float, float]]) -> Syste
         if kind == "effect" and name in estimates:
             prior[i], sigma[i] = estimates[name]
     return replace(system, prior=prior, prior_sigma=sigma)
-
-
-def with_columns(system: System, shown: frozenset[str]) -> System:
-    """The equations with these columns of effects only."""
-    kept = [i for i, (kind, name) in enumerate(system.names) if kind != "effect" or name in shown]
-    return replace(
-        system,
-        design=system.design[:, kept],
-        prior=system.prior[kept],
-        prior_sigma=system.prior_sigma[kept],
-        names=tuple(system.names[i] for i in kept),
-        # The eliminated errors are not used here, and refer to the other columns.
-        eliminated=system.eliminated and replace(system.eliminated, steps=()),
-    )
 
 
 def compressed(system: System) -> System:

@@ -15,13 +15,13 @@ from types import MappingProxyType
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.least_squares import Estimate, System, with_columns
 from inertial.estimation.mixture import mixture
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Solved
-from stages.extension.models import PRIOR_SIGMA, compressed, with_columns
+from stages.extension.models import PRIOR_SIGMA, compressed
 
 STEP = 0.05  # of the scanned value, of the derivative
 NEAR = 1.5  # spacings of the moments, within which two are the same

@@ -16,7 +16,7 @@ from inertial.campaign.records import rows_of
 from inertial.campaign.scatter_given_effects import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
-from inertial.estimation.least_squares import System
+from inertial.estimation.least_squares import System, with_columns
 from inertial.estimation.scatter_and_random_walk import SwitchOns
 from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Effect
@@ -44,7 +44,6 @@ from stages.extension.models import (
     given,
     models_of,
     selected_sizes,
-    with_columns,
 )
 from stages.extension.named_effects import NamedEffects, combinations_of, compared, named_of
 from stages.extension.navigation_error import change_of, worth
