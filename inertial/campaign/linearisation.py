@@ -9,6 +9,7 @@ from inertial.campaign import equations_by_hand
 from inertial.campaign.equations import Campaign
 from inertial.campaign.equations_by_hand import ByHand, of_a_table
 from inertial.estimation import accelerometers
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE
 from inertial.estimation.least_squares import Estimate, with_columns
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Effect
@@ -84,14 +85,15 @@ def _determined(
 ) -> Estimate | None:
     """A sensor's unknowns with effects, where these determine its M and bias.
 
-    Of the effects without what M and bias absorb, so that nothing tells the one from the other.
+    Of the effects without what M and bias absorb but for rounding, which would bend them by any
+    angle.
     """
     system = campaign.system(sensor, effects, prior_sigma)
     if system is None:
         return None
+    reduced = system.effect_information()
+    shown = np.diag(reduced.information) > MIN_INFORMATION_SHARE * system.raw_information()
+    if not shown.all():
+        system = with_columns(system, frozenset(np.array(reduced.names)[shown].tolist()))
     estimate = system.solve_shared()
-    if not estimate.determined[:UNKNOWNS].all():
-        own = zip(estimate.names, estimate.determined, strict=True)
-        shown = frozenset(name for (kind, name), known in own if kind == "effect" and known)
-        estimate = with_columns(system, shown).solve_shared()
     return estimate if estimate.determined[:UNKNOWNS].all() else None
