@@ -104,18 +104,25 @@ def lay_out(
     placements: Mapping[str, Placement],
     handling: Handling,
     actual_profiles: Callable[[Manoeuvre], Profile],
-    axis_error: Callable[[Manoeuvre, Array], Array],
+    begin: float,
+    later_error: Callable[[Manoeuvre, Array, float], Array],
+    axis_error: Callable[[Manoeuvre, Array, float], Array],
 ) -> list[Segment]:
     """The segments of one log. A change of position is one rotation about one axis.
 
-    actual_profiles: the actual course of a turn, by the course that is set; axis_error: by how much
-    its axis leans at a set attitude, a rotation in the level frame.
+    actual_profiles: the actual course of a turn, by the course that is set; begin: of the log, s;
+    later_error: of an attitude, axis_error: by how much the axis of a turn leans there, rotations
+    in the level frame, by manoeuvre, set attitude, and time at which it was set, s.
     """
     segments: list[Segment] = []
     before: Manoeuvre | None = None
+    set_at = begin
     for manoeuvre in manoeuvres:
         placement = placements[manoeuvre.position]
-        leaning = axis_error(manoeuvre, placement.set_attitude)
+        if before is not None and before.position != manoeuvre.position:
+            set_at = begin + handling.interval * sum(segment.samples for segment in segments)
+        placement = placement.missed(later_error(manoeuvre, placement.set_attitude, set_at))
+        leaning = axis_error(manoeuvre, placement.set_attitude, set_at)
         axis = placement.true_axis(manoeuvre.about, leaning)
         if before is not None and changes_between(before, manoeuvre):
             segments.append(change(segments[-1].end, placement.attitude, handling))

@@ -56,8 +56,12 @@ def perform(specification: Specification) -> Recording:
             placements,
             handling,
             actual_profiles(effects),
-            lambda manoeuvre, set_attitude: product(
-                effect.axis_error(manoeuvre, set_attitude, specification.chance)
+            first / NANOSECONDS,
+            lambda manoeuvre, set_attitude, set_at: product(
+                effect.later_error(manoeuvre, set_attitude, set_at) for effect in effects.values()
+            ),
+            lambda manoeuvre, set_attitude, set_at: product(
+                effect.axis_error(manoeuvre, set_attitude, set_at, specification.chance)
                 for effect in effects.values()
             ),
         )

@@ -1,7 +1,8 @@
 """Attitude of the IMU at every position of the plan: as set, and true."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 
@@ -25,6 +26,10 @@ class Placement:
     def attitude(self) -> Array:
         """C = base · tilt · set attitude · mounting."""
         return self.base @ self.tilt @ self.set_attitude @ self.mounting
+
+    def missed(self, error: Array) -> Self:
+        """The same with a further error of the position, (3, 3), level frame."""
+        return replace(self, tilt=self.tilt @ error)
 
     def true_axis(self, about: Array, error: Array) -> Array:
         """The table's axis in body axes, (3,), where the plan names `about`.

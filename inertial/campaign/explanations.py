@@ -14,6 +14,7 @@ from inertial.campaign.hypotheses import (
     POSITIONS,
     RECORDING,
     STEP_IN_TURN,
+    ZERO_SHIFTS,
     Hypothesis,
 )
 from inertial.campaign.where_causes_act import (
@@ -119,6 +120,7 @@ IN_PROPORTION = frozenset(
         "table_tilt_jump",
         "table_axis_non_orthogonality",
         "table_inner_axis",
+        *ZERO_SHIFTS,
         "table_position_error",
         "table_axis_error",
         "table_wobble",

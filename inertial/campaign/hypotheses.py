@@ -23,6 +23,8 @@ PLANNED = "plan"  # the stage that repairs what the campaign file states
 TABLE_MOVING = "table_moving"
 SLIP = "mounting_slip"  # shown by one turn, it turns the axes of all that follows
 MOUNTINGS = ("mounting_shift", SLIP)  # effects that turn the axes of both sensors from then on
+# Another zero of the middle axis; with the inner one upright that turns, or the outer one.
+ZERO_SHIFTS = ("table_zero_shift", "table_zero_shift_outer")
 # Effects by which the case is not in the attitude that is stated.
 OF_ATTITUDES = frozenset(
     {
@@ -31,6 +33,7 @@ OF_ATTITUDES = frozenset(
         "table_axis_error",
         "table_axis_non_orthogonality",
         "table_inner_axis",
+        *ZERO_SHIFTS,
         "table_tilt",
         "table_tilt_ramp",
         "table_tilt_jump",

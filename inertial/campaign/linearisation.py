@@ -9,7 +9,8 @@ from inertial.campaign import equations_by_hand
 from inertial.campaign.equations import Campaign
 from inertial.campaign.equations_by_hand import ByHand, of_a_table
 from inertial.estimation import accelerometers
-from inertial.estimation.least_squares import Estimate
+from inertial.estimation.effect_information import MIN_INFORMATION_SHARE
+from inertial.estimation.least_squares import Estimate, with_columns
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Effect
 from inertial.physics.forward import Triad
@@ -82,7 +83,17 @@ def _bent(before: Triad, after: Triad, unit: float) -> float:
 def _determined(
     campaign: Campaign, sensor: str, effects: Sequence[Effect], prior_sigma: float
 ) -> Estimate | None:
-    """A sensor's unknowns with effects, where these determine its M and bias."""
+    """A sensor's unknowns with effects, where these determine its M and bias.
+
+    Of the effects without what M and bias absorb but for rounding, which would bend them by any
+    angle.
+    """
     system = campaign.system(sensor, effects, prior_sigma)
-    estimate = system.solve_shared() if system else None
-    return estimate if estimate and estimate.determined[:UNKNOWNS].all() else None
+    if system is None:
+        return None
+    reduced = system.effect_information()
+    shown = np.diag(reduced.information) > MIN_INFORMATION_SHARE * system.raw_information()
+    if not shown.all():
+        system = with_columns(system, frozenset(np.array(reduced.names)[shown].tolist()))
+    estimate = system.solve_shared()
+    return estimate if estimate.determined[:UNKNOWNS].all() else None

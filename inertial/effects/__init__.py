@@ -72,6 +72,8 @@ from inertial.effects.table_tilt import TableTilt
 from inertial.effects.table_tilt_jump import TableTiltJump
 from inertial.effects.table_tilt_ramp import TableTiltRamp
 from inertial.effects.table_wobble import TableWobble
+from inertial.effects.table_zero_shift import TableZeroShift
+from inertial.effects.table_zero_shift_outer import TableZeroShiftOuter
 from inertial.effects.temperature_model import TemperatureModel
 from inertial.effects.thermal_hysteresis import ThermalHysteresis
 from inertial.effects.turn_angle_error import TurnAngleError
@@ -136,6 +138,8 @@ CATALOGUE: dict[str, Effect] = {
         TableTiltJump(),
         TableAxisNonOrthogonality(),
         TableInnerAxis(),
+        TableZeroShift(),
+        TableZeroShiftOuter(),
         TablePositionError(),
         TableAxisError(),
         TableWobble(),

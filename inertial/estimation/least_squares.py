@@ -317,6 +317,20 @@ def counted(estimate: Estimate, vague: Mapping[tuple[str, str], float]) -> Estim
     return replace(estimate, degrees=max(round(estimate.rows - taken), 0))
 
 
+def with_columns(system: System, shown: frozenset[str]) -> System:
+    """The equations with these columns of effects only."""
+    kept = [i for i, (kind, name) in enumerate(system.names) if kind != "effect" or name in shown]
+    return replace(
+        system,
+        design=system.design[:, kept],
+        prior=system.prior[kept],
+        prior_sigma=system.prior_sigma[kept],
+        names=tuple(system.names[i] for i in kept),
+        # The eliminated errors are not used here, and refer to the other columns.
+        eliminated=system.eliminated and replace(system.eliminated, steps=()),
+    )
+
+
 @dataclass(frozen=True)
 class PseudoInverse:
     """The pseudo-inverse of a design, its rank, and the columns that it determines.

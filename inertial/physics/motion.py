@@ -198,6 +198,17 @@ class Motion:
         return self.square[:, None] * cross(self.about, cross(self.about, arm))
 
     @property
+    def kept(self) -> Array:
+        """What is left of a vector that goes round, in its mean over each stretch, (n,).
+
+        As `up` shows it; of a turn about the vertical, in which that stays, all.
+        """
+        along = self.about * np.sum(self.about * self.up, axis=1, keepdims=True)
+        across = np.sqrt(np.maximum(1 - np.sum(along**2, axis=1), 0.0))
+        seen = np.linalg.norm(self.up - along, axis=1)
+        return np.where(across > NEARLY, seen / np.maximum(across, NEARLY), 1.0)
+
+    @property
     def up_at_start(self) -> Array:
         """The upward direction in body axes when the manoeuvre began, (n, 3): fixed to the case."""
         return turned_all(self.up, self.about, -self.angle)

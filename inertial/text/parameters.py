@@ -44,7 +44,7 @@ BIAS, SCALE, CROSS, MOUNTING, SYMMETRIC = (
 SIGNS = {"bias": "b", "scale": "s", "cross": "m", "mounting": "ρ", "symmetric": "p"}
 # Letters that parameters of effects are written with where a person reads them.
 LETTERS = {
-    **{"theta": "θ", "phi": "φ", "tau": "τ", "delta": "δ"},
+    **{"theta": "θ", "phi": "φ", "tau": "τ", "delta": "δ", "zeta": "ζ"},
     **{"dphi": "Δφ", "dpsi": "Δψ", "dg": "Δg"},
 }
 

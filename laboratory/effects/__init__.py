@@ -93,6 +93,7 @@ from laboratory.effects.table_tilt import TableTilt
 from laboratory.effects.table_tilt_jump import TableTiltJump
 from laboratory.effects.table_tilt_ramp import TableTiltRamp
 from laboratory.effects.table_wobble import TableWobble
+from laboratory.effects.table_zero_shift import TableZeroShift
 from laboratory.effects.temperature_curves import TemperatureCurves
 from laboratory.effects.temperature_hysteresis import TemperatureHysteresis
 from laboratory.effects.turn_angle_error import TurnAngleError
@@ -112,6 +113,7 @@ EFFECTS: Final[dict[str, Callable[[Mapping[str, Any]], Effect]]] = {
     "table_tilt": TableTilt.specified,
     "table_axis_non_orthogonality": TableAxisNonOrthogonality.specified,
     "table_inner_axis": TableInnerAxis.specified,
+    "table_zero_shift": TableZeroShift.specified,
     "table_position_error": TablePositionError.specified,
     "table_axis_error": TableAxisError.specified,
     "table_speed_error": TableSpeedError.specified,

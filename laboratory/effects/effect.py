@@ -56,8 +56,17 @@ class Effect:
         """
         return np.eye(3)
 
-    def axis_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
-        """The part of `position_error` by which the axis of the turn leans too: a rotation."""
+    def later_error(self, manoeuvre: Manoeuvre, set_attitude: Array, set_at: float) -> Array:
+        """Error of the attitude where the position is set at a time: a rotation, as above.
+
+        set_at: s since the campaign's first sample.
+        """
+        return np.eye(3)
+
+    def axis_error(
+        self, manoeuvre: Manoeuvre, set_attitude: Array, set_at: float, chance: Chance
+    ) -> Array:
+        """The part of these two by which the axis of the turn leans too: a rotation."""
         return np.eye(3)
 
     def actual_profile(self, profile: Profile) -> Profile:

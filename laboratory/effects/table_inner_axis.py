@@ -36,7 +36,9 @@ class TableInnerAxis(Effect):
         across = np.cross(set_attitude @ self.home, middle)
         return rotation_about(across / np.linalg.norm(across), np.asarray(self.lean))
 
-    def axis_error(self, manoeuvre: Manoeuvre, set_attitude: Array, chance: Chance) -> Array:
+    def axis_error(
+        self, manoeuvre: Manoeuvre, set_attitude: Array, set_at: float, chance: Chance
+    ) -> Array:
         if np.linalg.norm(np.cross(manoeuvre.about, self.home)) > 1e-9:
             return np.eye(3)
         return self.position_error(manoeuvre, set_attitude, chance)

@@ -11,14 +11,14 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
 from inertial.estimation.effect_information import EffectInformation
-from inertial.estimation.least_squares import System
+from inertial.estimation.least_squares import System, with_columns
 from inertial.estimation.periodic_in_time import without_line
 from inertial.estimation.random_walk import MeasuredDrift
 from inertial.sensors import SENSORS
 from inertial.tables import AXES
 from stages.extension.channels import Channels, Mean, system_of
 from stages.extension.cross_validation import CrossValidation, Fold, drop_of, fold_of, snr_squared
-from stages.extension.models import Models, with_columns
+from stages.extension.models import Models
 
 Row = Mapping[str, Any]
 TableRow = tuple[str, Row]  # the name of a table that the stage writes, and a row of it

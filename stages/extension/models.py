@@ -7,7 +7,7 @@ from operator import add
 
 import numpy as np
 
-from inertial.arrays import Array
+from inertial.arrays import Array, Booleans
 from inertial.campaign.effect_evidence import MIN_OBSERVABLE_SIGMAS
 from inertial.campaign.equations import Campaign
 from inertial.estimation.effect_information import (
@@ -15,7 +15,7 @@ from inertial.estimation.effect_information import (
     EffectInformation,
     whitening,
 )
-from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.least_squares import Estimate, System, with_columns
 from inertial.model_selection.size_after_selection import corrected, regressed
 from inertial.physics.effect import Effect
 from stages.extension.named_effects import NamedClass
@@ -62,22 +62,21 @@ class Models:
         where the largest plausible size would not be observable, or where the other sensor tells
         so much more that its own adds nothing: there the sensor's parameters take the effect up.
         """
-        gyro, accel = self._information
+        (gyro, _), (accel, _) = self._information
         return _told_by(gyro, accel), _told_by(accel, gyro)
 
     @cached_property
     def absorbed(self) -> tuple[frozenset[str], frozenset[str]]:
         """The columns that the parameters of a sensor absorb, and that the other sensor shows."""
         some = {name for e in self.effects if e.absorbed_by for name in e.columns}
-        (gyro, accel), (by_gyro, by_accel) = self.shown, self._information
-        return (
-            frozenset((some | by_gyro.keys()) & (accel - gyro)),
-            frozenset((some | by_accel.keys()) & (gyro - accel)),
+        (gyro, accel), ((_, in_gyro), (_, in_accel)) = self.shown, self._information
+        return frozenset((some | in_gyro) & (accel - gyro)), frozenset(
+            (some | in_accel) & (gyro - accel)
         )
 
     @cached_property
-    def _information(self) -> tuple[Mapping[str, float], Mapping[str, float]]:
-        """By sensor the information of its equations on each observable column, all else fitted."""
+    def _information(self) -> "tuple[Observable, Observable]":
+        """Of both sensors."""
         largest = np.array([e.largest_of(p) for e in self.effects for p in e.parameters])
         gyro, accel = (
             _observable(system, largest)
@@ -142,17 +141,26 @@ def _evidence(system: System, joint: System | None) -> SensorEvidence:
     return SensorEvidence(plain, system.effect_information(), drop)
 
 
-def _observable(system: System | None, largest: Array) -> Mapping[str, float]:
-    """The information on the columns that are observable, by column."""
+# The information of a sensor's equations on each observable column, all else fitted; and the
+# columns in its readings, which would be observable if nothing else were fitted.
+Observable = tuple[Mapping[str, float], frozenset[str]]
+
+
+def _observable(system: System | None, largest: Array) -> Observable:
     if system is None:
-        return {}
+        return {}, frozenset()
     reduced = system.effect_information()
-    information = np.diag(reduced.information)
-    determined = information > MIN_INFORMATION_SHARE * system.raw_information()
-    observable = largest * np.sqrt(np.maximum(information, 0.0)) > MIN_OBSERVABLE_SIGMAS
-    there = determined & observable
-    names = np.array(reduced.names)[there].tolist()
-    return dict(zip(names, information[there].tolist(), strict=True))
+    names, information = np.array(reduced.names), np.diag(reduced.information)
+    felt = system.raw_information()
+    determined = information > MIN_INFORMATION_SHARE * felt
+    there = determined & _is_large(largest, information)
+    known = dict(zip(names[there].tolist(), information[there].tolist(), strict=True))
+    return known, frozenset(names[_is_large(largest, felt)].tolist())
+
+
+def _is_large(largest: Array, information: Array) -> Booleans:
+    """Whether the largest plausible size of each column is observable, (k,)."""
+    return np.asarray(largest * np.sqrt(np.maximum(information, 0.0)) > MIN_OBSERVABLE_SIGMAS)
 
 
 def _told_by(own: Mapping[str, float], other: Mapping[str, float]) -> frozenset[str]:
@@ -167,20 +175,6 @@ def given(system: System, estimates: Mapping[str, tuple[float, float]]) -> Syste
         if kind == "effect" and name in estimates:
             prior[i], sigma[i] = estimates[name]
     return replace(system, prior=prior, prior_sigma=sigma)
-
-
-def with_columns(system: System, shown: frozenset[str]) -> System:
-    """The equations with these columns of effects only."""
-    kept = [i for i, (kind, name) in enumerate(system.names) if kind != "effect" or name in shown]
-    return replace(
-        system,
-        design=system.design[:, kept],
-        prior=system.prior[kept],
-        prior_sigma=system.prior_sigma[kept],
-        names=tuple(system.names[i] for i in kept),
-        # The eliminated errors are not used here, and refer to the other columns.
-        eliminated=system.eliminated and replace(system.eliminated, steps=()),
-    )
 
 
 def compressed(system: System) -> System:

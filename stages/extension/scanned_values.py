@@ -15,13 +15,13 @@ from types import MappingProxyType
 import numpy as np
 
 from inertial.arrays import Array
-from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.least_squares import Estimate, System, with_columns
 from inertial.estimation.mixture import mixture
 from inertial.estimation.triad import UNKNOWNS
 from inertial.physics.effect import Effect, Parameter, Reading, Truth
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Solved
-from stages.extension.models import PRIOR_SIGMA, compressed, with_columns
+from stages.extension.models import PRIOR_SIGMA, compressed
 
 STEP = 0.05  # of the scanned value, of the derivative
 NEAR = 1.5  # spacings of the moments, within which two are the same
@@ -95,6 +95,7 @@ def sets_in(effect: Effect) -> bool:
 
 def over_moments(
     solution: Solved,
+    uncertain: Sequence[Effect],
     effects: Sequence[Effect],
     of_both: Sequence[Effect],
     motion: Motion,
@@ -102,13 +103,14 @@ def over_moments(
 ) -> Solved:
     """The fit as the mixture over the moments at which its effects may have set in.
 
-    `of_both`: the effects that were named in both sensors; `system_of`: as above. One moment is
-    varied at a time, the others are those that were named; of several with one name none is.
+    `uncertain`: those of which this sensor is to tell the moment; `of_both`: the effects that were
+    named in both sensors; `system_of`: as above. One moment is varied at a time, the others are
+    those that were named; of several with one name none is.
     Only the parameters that the sensor shows at the moment named are unknown at the others.
     """
     beside = [other for other in of_both if sets_in(other)]
     names = [effect.name for effect in effects]
-    for effect in effects:
+    for effect in uncertain:
         if sets_in(effect) and names.count(effect.name) == 1:
             solution = _over_moments_of(effect, effects, beside, solution, motion, system_of)
     return solution

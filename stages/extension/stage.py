@@ -16,7 +16,7 @@ from inertial.campaign.records import rows_of
 from inertial.campaign.scatter_given_effects import scattered
 from inertial.campaign.solution import joint_rows
 from inertial.campaign.steady_residuals import steady_turns
-from inertial.estimation.least_squares import System
+from inertial.estimation.least_squares import System, with_columns
 from inertial.estimation.scatter_and_random_walk import SwitchOns
 from inertial.estimation.triad import linear_names
 from inertial.physics.effect import Effect
@@ -44,11 +44,10 @@ from stages.extension.models import (
     given,
     models_of,
     selected_sizes,
-    with_columns,
 )
 from stages.extension.named_effects import NamedEffects, combinations_of, compared, named_of
 from stages.extension.navigation_error import change_of, worth
-from stages.extension.scanned_values import over_moments, with_scanned_values
+from stages.extension.scanned_values import of_effect, over_moments, with_scanned_values
 from stages.extension.temperature_shapes import with_shapes
 from stages.extension.without_one import LEFT_OUT, carried_alone, fit_without, joint_fit
 
@@ -290,8 +289,15 @@ class Extension:
         `shown`: by method the fits of the sensor that shows what this one absorbs.
         """
         told = shown[candidate.method].of_effects if candidate.method in shown else []
-        sized = {row["parameter"]: (row["value"], row["sigma"]) for row in told if row["sigma"]}
-        sized = {name: sized[name] for name in candidate.absorbed if name in sized}
+        by_name = {row["parameter"]: (row["value"], row["sigma"]) for row in told if row["sigma"]}
+        sized = {
+            column: by_name[name]
+            for effect in candidate.effects
+            for name, column in zip(of_effect(effect), effect.columns, strict=True)
+            if column in candidate.absorbed and name in by_name
+        }
+        # The moment of what the other sensor tells is told by it, too.
+        own_moments = [e for e in candidate.effects if sized.keys().isdisjoint(e.columns)]
         walk = self.random_walks[SENSORS.index(sensor)]
         motion = models.extended.motion
 
@@ -313,7 +319,9 @@ class Extension:
         if not solution.effects:
             return None
         solution = with_scanned_values(solution, candidate.effects, system_of)
-        solution = over_moments(solution, candidate.effects, models.effects, motion, system_of)
+        solution = over_moments(
+            solution, own_moments, candidate.effects, models.effects, motion, system_of
+        )
         mean = with_shapes(solution, candidate.effects, motion, system_of)
         stretches = models.extended.stretches(sensor)
         return solution, with_drift_in_the_bias(mean, candidate.effects, motion, stretches)

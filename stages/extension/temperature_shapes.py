@@ -28,14 +28,14 @@ from inertial.effects.temperature_model import (
     TemperatureModel,
     polynomials,
 )
-from inertial.estimation.least_squares import Estimate, System
+from inertial.estimation.least_squares import Estimate, System, with_columns
 from inertial.estimation.mixture import mixture
 from inertial.estimation.triad import UNKNOWNS
 from inertial.model_selection.effect_classes import log_evidence
 from inertial.physics.effect import Effect
 from inertial.physics.motion import Motion
 from stages.extension.estimates import Row, Solved
-from stages.extension.models import compressed, with_columns
+from stages.extension.models import compressed
 
 GRID = 25  # knots over the range
 FINE, FINE_SIGMAS = 17, 4.0  # about the knot that was named, to so many of its sigma

@@ -201,6 +201,45 @@ def test_an_inner_axis_that_leans_by_exact_rotations(turning_axis):
         assert np.abs(gyro).max() > 1e-4  # of 1.9 rad/s
 
 
+@pytest.mark.parametrize("turning_axis", ["inner", "middle", "outer"])
+def test_another_zero_of_the_middle_axis_by_exact_rotations(turning_axis):
+    """The middle axis, which points south, has turned further; the inner one goes along."""
+    further, south = 1e-4, np.array([0.0, -1.0, 0.0])
+    tilted = Rotation.from_rotvec(np.arccos(UP[2]) * south)
+    on_table = tilted.inv() * AT_START
+    shifted = Rotation.from_rotvec(further * south)
+    about = {"inner": VERTICAL, "middle": on_table.inv().apply(south), "outer": UP}[turning_axis]
+    motion = on_a_turn(ANGLES, about)
+
+    def attitudes(missed: Rotation) -> Rotation:
+        if turning_axis == "inner":
+            return missed * tilted * about_the_vertical(ANGLES) * on_table
+        axis = south if turning_axis == "middle" else VERTICAL
+        return Rotation.from_rotvec(np.outer(ANGLES, axis)) * missed * tilted * on_table
+
+    off, right = sensed(attitudes(shifted)), sensed(attitudes(Rotation.identity()))
+    for name in ("table_zero_shift", "table_zero_shift_outer"):
+        gyro, accel = acted(name, [0.0, 0.0, further], motion, at=-1.0)
+        np.testing.assert_allclose(accel[1:-1], off[1] - right[1], atol=2e-7)
+        np.testing.assert_allclose(gyro[1:-1], off[0] - right[0], atol=5e-8)
+        assert np.abs(accel).max() > 2e-4 and (np.abs(gyro).max() > 1e-4) == (
+            turning_axis == "outer"
+        )
+        assert not any(part.any() for part in acted(name, [0.0, 0.0, further], motion, at=9.0))
+
+
+def test_in_means_over_a_turn_about_the_inner_axis_its_lean_stays():
+    """A side turned about its level inner axis by 60° a mean, where up is shorter by 5 %."""
+    angle, about, east = np.arange(6) * np.pi / 3, VERTICAL, np.array([1.0, 0.0, 0.0])
+    rate, still = np.full(6, np.pi / 3), np.zeros(6)
+    motion = turning(about, east, NORTH, angle, rate, still, np.arange(6.0), np.ones(6))
+    share = np.sinc(1 / 6)
+    _gyro, accel = acted(
+        "table_zero_shift", [0.0, 0.0, 1e-4], replace(motion, up=share * motion.up), at=-1.0
+    )
+    np.testing.assert_allclose(accel, [[0.0, 0.0, -1e-4 * GRAVITY]] * 6, atol=1e-9)
+
+
 def test_axes_at_other_than_right_angles_leave_a_case_upright_alone():
     flat = replace(on_a_turn(ANGLES), up=np.tile(VERTICAL, (len(ANGLES), 1)), about=VERTICAL)
     assert not acted("table_axis_non_orthogonality", [1e-4, 1e-4], flat)[1].any()

@@ -140,6 +140,14 @@ def _axis_off(random: Random) -> Told:
     return {"table_axis_error": lean}, {}
 
 
+def _from_another_zero(random: Random) -> Told:
+    shift = float(random.choice([-1, 1])) * between(random, 60, 300)
+    told = {"shift_arcsec": shift, "at_s": float(random.uniform(400, 1000))}
+    if random.uniform() < 0.5:  # the outer axis turns the case where z is up or down
+        told["upright"] = str(random.choice(["+x", "-x", "+y", "-y"]))
+    return {"table_zero_shift": told}, {}
+
+
 ELSEWHERE: tuple[Elsewhere, ...] = (
     Elsewhere(("oscillation",), "positions", _ringing),
     Elsewhere(("table_ripple",), "positions", _ripple),
@@ -182,4 +190,5 @@ ELSEWHERE: tuple[Elsewhere, ...] = (
     ),
     Elsewhere(("turn_angle_error",), "rates", _turned_too_far),
     Elsewhere(("table_axis_error",), "stops", _axis_off),
+    Elsewhere(("table_zero_shift", "table_zero_shift_outer"), "stops", _from_another_zero),
 )

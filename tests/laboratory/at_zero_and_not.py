@@ -19,6 +19,10 @@ AT_ZERO_AND_NOT: dict[str, tuple[Parameters, Parameters]] = {
     ),
     "table_axis_non_orthogonality": ({"lean_arcsec": 0}, {"lean_arcsec": 30}),
     "table_inner_axis": ({"lean_arcsec": 0}, {"lean_arcsec": 30}),
+    "table_zero_shift": (
+        {"shift_arcsec": 0, "at_s": 5},
+        {"shift_arcsec": 30, "at_s": 5},
+    ),
     "table_position_error": (
         {"sigma_arcsec": 0, "backlash_arcsec": 0},
         {"sigma_arcsec": 0, "backlash_arcsec": 30},

@@ -32,7 +32,7 @@ def test_every_unit_of_an_effect_has_one_of_the_laboratory():
 
 def test_no_letter_of_a_parameter_is_spelled_out_where_it_is_read():
     """Words (north, frequency) stay; Greek letters and differences are signs."""
-    words = {"north", "east", "lean", "quarter", "limit", "frequency", "amplitude"}
+    words = {"north", "east", "lean", "quarter", "limit", "frequency", "amplitude", "upright"}
     names = {p.name.partition("_")[0] for effect in CATALOGUE.values() for p in effect.parameters}
-    assert {sign_of(name) for name in names if len(name) > 2} - words == set("θφτδ") | {"Δφ", "Δψ"}
+    assert {sign_of(name) for name in names if len(name) > 2} - words == set("θφτδζ") | {"Δφ", "Δψ"}
     assert [sign_of(name) for name in ("theta_z", "g_xy", "dg")] == ["θ_z", "g_xy", "Δg"]
