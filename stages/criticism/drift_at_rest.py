@@ -124,8 +124,8 @@ def unsteady_rests(
         return found
     slow = allan[(allan["tau"] >= MIN_WANDER_S) & (allan["tau"] <= WITHIN)]
     largest = slow.sort_values("lower").groupby("channel").last().reindex(channels).fillna(0.0)
-    columns = (largest[name].to_numpy(np.float64) for name in ("tau", "lower"))
-    return _worst(*columns, np.nanmin(scatters, axis=0))
+    tau, deviation = (largest[name].to_numpy(np.float64) for name in ("tau", "lower"))
+    return _worst(tau, deviation, np.nanmin(scatters, axis=0))
 
 
 def _worst(seconds: Array, wander: Array, scatter: Array) -> Unsteady | None:

@@ -1,6 +1,6 @@
 """What may have happened to a campaign as a whole: each supposition with what is then found."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from itertools import combinations, groupby
 from typing import Any
@@ -217,7 +217,7 @@ def _with_names_exchanged(case: Case, a: int, b: int) -> Case:
     return _exchanging(case, plans, Exchanged(names, logs))
 
 
-def _with_positions_exchanged(case: Case, taken: Collection[str]) -> Iterator[Case]:
+def _with_positions_exchanged(case: Case, taken: Set[str]) -> Iterator[Case]:
     """All logs of two positions, as many of each: the IMU stood in the other one each time."""
     windows = dict[str, list[int]]()
     for k, plan in enumerate(case.plans):
