@@ -252,23 +252,28 @@ def _diagnosed(path: Path) -> list[Row]:
 
 
 def _beside_bias(diagnosed: Sequence[Row], result: Path) -> Iterator[tuple[str, str]]:
-    """By identifier of a cause what it changes a bias by at 1 g, where force changes a bias."""
+    """By identifier of a cause what it changes a bias by at 1 g, where force changes a bias.
+
+    The largest parameter where the result has them: the size is that of the surest one.
+    """
     if not result.exists():
         return
     rows = rows_of(tables.PARAMETERS.read(result))
     for cause in diagnosed:
         if cause["unit"] not in OF_FORCE or cause["size"] is None:
             continue
-        biases = [
-            abs(row["value"])
+        own = [
+            row
             for row in rows
             if row["sensor"] == cause["sensor"]
             and row["mount"] == cause["mount"]
-            and row["parameter"].startswith("bias_")
             and row["value"] is not None
         ]
+        biases = [abs(row["value"]) for row in own if row["parameter"].startswith("bias_")]
         if biases:
-            at_1_g = abs(cause["size"]) * STANDARD_GRAVITY ** OF_FORCE[cause["unit"]]
+            sizes = [abs(row["value"]) for row in own if row["effect"] == cause["cause"]]
+            size = max(sizes, default=abs(cause["size"]))
+            at_1_g = size * STANDARD_GRAVITY ** OF_FORCE[cause["unit"]]
             yield (
                 cause["id"].removeprefix("diagnosis/"),
                 _(

@@ -377,7 +377,7 @@ def test_a_session_of_one_manoeuvre_says_what_it_holds() -> None:
 def test_what_a_force_does_to_a_bias_stands_beside_the_bias(data: Path) -> None:
     """5.66 × 10⁻⁵ (rad/s)/(m/s²) are 114 °/h at 1 g."""
     cause = {"id": "diagnosis/criticism/g", "unit": "(rad/s)/(m/s²)", "size": -5.66e-5}
-    cause |= {"sensor": "gyro", "mount": ""}
+    cause |= {"sensor": "gyro", "mount": "", "cause": "gyro_g_sensitivity"}
     path = data / f"derived/{NAME}/gyroscope/parameters.parquet"
     biases = pq.read_table(path).to_pandas().query("parameter.str.startswith('bias_')")["value"]
     largest = significant(float(np.degrees(biases.abs().max()) * 3600), 3)
@@ -387,3 +387,10 @@ def test_what_a_force_does_to_a_bias_stands_beside_the_bias(data: Path) -> None:
         f"the largest bias is {largest} °/h."
     }
     assert not dict(_beside_bias([cause | {"unit": "1"}], path))
+    rows = tables.PARAMETERS.read(path)
+    terms = rows[rows["parameter"].str.startswith("bias_")].head(3)
+    terms = terms.assign(effect="gyro_g_sensitivity")
+    terms = terms.assign(parameter=["g_xy", "g_xz", "g_yx"], value=[1e-5, -1e-4, 2e-5])
+    result = data / "result.parquet"
+    write_once(tables.PARAMETERS, result, pd.concat([rows, terms], ignore_index=True))
+    assert "by up to 202 °/h;" in dict(_beside_bias([cause], result))["criticism/g"]

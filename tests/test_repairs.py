@@ -522,3 +522,31 @@ def test_two_positions_that_changed_places_are_exchanged_with_all_their_manoeuvr
             row = result.loc[sensor, f"scale_{axis}"]
             true_scale = document["truth"][name]["matrix"][i][i] - 1
             assert abs(row["value"] - true_scale) < 4 * row["sigma"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("faces", [True, False])
+def test_logs_of_two_faces_are_exchanged_together_and_those_of_turns_by_their_sizes(faces):
+    """All logs of two positions, or those of the turns alone: of one axis and sense, two sizes."""
+    document = chain.short(seed=7)
+    for one in document["campaign"]["plan"]:
+        if one["id"].endswith("backward"):
+            one["degrees"] = 1080
+        if faces and one["up"].startswith("+"):
+            one["position"] = one["up"]
+    true = laboratory.perform(laboratory.specify(document))
+    other = {"x": "y", "y": "x", "z": "z"}
+    told = [
+        one | {"log": other[one["id"][0]] + one["log"][1:]}
+        if one["up"].startswith("+") and (faces or one["do"] == "turn")
+        else one
+        for one in true.campaign["plan"]
+    ]
+    recording = replace(true, campaign={**true.campaign, "plan": told})
+    results = chain.in_memory(recording, "diagnosis", chain.BESIDE)
+    pairs = {f"exchanged_manoeuvres/x-{one}/y-{one}" for one in ("forward", "backward")}
+    repairs = results["segment/repairs"]
+    assert {*repairs["id"]} == ({"exchanged_manoeuvres/x-backward/y-backward"} if faces else pairs)
+    assert {*repairs["state"]} == {"applied"}
+    assert list(results["diagnosis/causes"]["cause"]) == ["manoeuvre_swapped"] * len(repairs)
+    assert {*results["diagnosis/verdict"]["verdict"]} == {"on_condition"}

@@ -14,7 +14,7 @@ from inertial.campaign.records import Manoeuvre, runs_of
 from inertial.campaign.static_positions import Blocks, StaticPosition, by_manoeuvre
 from inertial.effects.gyro_hysteresis import BREAK_AWAY
 from inertial.estimation.gyroscope_observations import RateSegment, SteadyRate
-from inertial.physics.forward import measured_angles
+from inertial.physics.forward import UNKNOWN_TRIAD, measured_angles
 from inertial.physics.motion import Motion, Profile, turning
 from inertial.signal.rests_and_motions import bridged
 from inertial.signal.stamps import samples_passed
@@ -270,7 +270,13 @@ class CampaignMotions:
             senses=senses,
             since=since,
             turned=turned,
+            felt=self._felt(m, blocks),
         )
+
+    def _felt(self, m: Manoeuvre, blocks: Blocks) -> Array:
+        """The specific force in the blocks of a turn as measured, (k, 3), m/s²; or NaN."""
+        triad = self._data.result.since(m.switch_on).accelerometer or UNKNOWN_TRIAD
+        return np.asarray((blocks.accel - triad.bias) @ np.linalg.inv(triad.matrix).T)
 
     def _on_the_way(self, name: str, count: int) -> tuple[Array, Array]:
         """Peaks and senses on the way to a manoeuvre, (count, 3) each; see `Motion`."""

@@ -375,7 +375,19 @@ class ManoeuvreSwapped(PlanDetector):
         own = [i for i, name in enumerate(recorded.name) if name in swapped.names]
         half = len(swapped.names) // 2
         first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
-        if len(swapped.logs) == 2:
+        if len(swapped.logs) > 2:
+            many = len(swapped.logs) // 2
+            sentence = _(
+                "The {count} logs from {first} to {first_last} and the {count} from {second} to "
+                "{second_last} are in each other's place, one by one: the names of two positions "
+                "are exchanged, or the IMU stood in the other one.",
+                count=many,
+                first=swapped.logs[0],
+                first_last=swapped.logs[many - 1],
+                second=swapped.logs[many],
+                second_last=swapped.logs[-1],
+            )
+        elif len(swapped.logs) == 2:
             one, other = swapped.logs
             sentence = _(
                 "{value} contains {second}, and {other} contains {first}: their names are "

@@ -295,7 +295,11 @@ class Effect(ABC):
 
 
 class OfSensed(Effect):
-    """An effect on the readings of a sensor, gyro or accel, by what is sensed at the moment."""
+    """An effect on the readings of a sensor, gyro or accel, by what is sensed at the moment.
+
+    Gyros feel the force that the accelerometers beside them measure, where that is known: off the
+    axis of the table a turn pulls with ω × (ω × r), too.
+    """
 
     sensor: str
 
@@ -304,6 +308,9 @@ class OfSensed(Effect):
         """What it adds to them, (n, 3); `values` follow `parameters`."""
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
+        if self.sensor == "gyro":
+            force = np.where(np.isfinite(motion.felt), motion.felt, truth.force)
+            truth = replace(truth, force=force)
         return reading.plus(self.sensor, self.change(truth, values))
 
 

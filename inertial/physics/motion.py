@@ -152,7 +152,8 @@ class Motion:
 
     `since`: (n, 3), s, from the end of the last turn about each axis in the same log to the middle
     of the stretch, negative in a turn, NaN where none is known; `turned`: (n, 3), its sense, ±1, 0
-    where none is known.
+    where none is known. `felt`: (n, 3), m/s², the specific force that the accelerometers measured
+    in a turn, that of a lever arm with it; NaN where it is not known, or at rest.
     """
 
     time: Array
@@ -177,6 +178,7 @@ class Motion:
     log_time: Array
     since: Array
     turned: Array
+    felt: Array
 
     @property
     def running(self) -> Array:
@@ -281,6 +283,7 @@ def turning(
         np.full(n, np.nan),
         np.full((n, 3), np.nan),
         np.zeros((n, 3)),
+        np.full((n, 3), np.nan),
     )
 
 
@@ -303,6 +306,7 @@ def stretches(time: Array, seconds: Array, temperature: Array) -> Motion:
         np.full(n, np.nan),
         unknown,
         np.zeros((n, 3)),
+        unknown,
     )
 
 

@@ -44,6 +44,10 @@ CURES = {
         "no rests differ enough along {axis}: add one with +{axis} up, one with -{axis} up"
     ),
 }
+NO_REST = _(
+    "there is no rest whose upward direction is known, and turns alone are not enough: record one "
+    "with each axis up and one with each axis down"
+)
 OFF = "table_position_error"
 MIN_NOTABLE_SIGMA = 1.0  # sigmas of the estimate by which a term must move to be named
 WORDS = {
@@ -70,7 +74,7 @@ def accelerometer(
         raised += add_free_accelerometers(estimates, data)
         positions, left_out = data.accelerometer_positions
         if not positions:
-            estimates.add_nothing("joint", omissions(left_out))
+            estimates.add_nothing("joint", omissions(left_out) or NO_REST)
             continue
         turns = turning_rests(data)
         effect_sigma = LEVER_ARM if turns else None

@@ -7,6 +7,7 @@ DECLARED = Declared(
     reads={
         "simulated": From("simulation", tables.SIMULATED),
         "gaps": From("quality", tables.GAPS),
+        "allan": From("noise", tables.ALLAN),
         **RECORDED,
         **FITTED,
     },

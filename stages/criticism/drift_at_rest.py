@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pandas as pd
 
 from inertial.arrays import Array
 from inertial.campaign.campaign_data import CampaignData
@@ -85,9 +86,11 @@ def _with_alternatives(selection: Selection, other: Selection) -> Selection:
 # The spectrum of a slow oscillation, or of one that the sampling folds to a low frequency, falls
 # with the frequency as that of a random walk does. But a bias wanders within a minute by less than
 # its readings scatter from one to the next: of all grades, from a phone's sensors to a navigation
-# grade.
+# grade. An oscillation that begins in the course of a campaign is no random walk within a rest: its
+# Allan deviation is largest at half a period, and there beyond the readings of the quietest rest.
 
 WITHIN = 60.0  # s
+MIN_WANDER_S = 1.0  # s, in which what a sensor filters or shares from reading to reading is over
 
 
 @dataclass(frozen=True)
@@ -102,8 +105,13 @@ class Unsteady:
     scatter: float
 
 
-def unsteady_rests(data: CampaignData, sensor: str, sizes: Array) -> Unsteady | None:
-    """The worst axis, by random walks `sizes`, (3,), rad/s/√s or m/s²/√s; None: like a sensor's."""
+def unsteady_rests(
+    data: CampaignData, sensor: str, sizes: Array, allan: pd.DataFrame
+) -> Unsteady | None:
+    """The worst axis, by random walks `sizes`, (3,), rad/s/√s or m/s²/√s; None: like a sensor's.
+
+    By the Allan deviations of the rests, where they do not show it.
+    """
     positions, _ = data.gyro_positions if sensor == "gyro" else data.accelerometer_positions
     if not positions:
         return None
@@ -111,9 +119,19 @@ def unsteady_rests(data: CampaignData, sensor: str, sizes: Array) -> Unsteady | 
     scatters = [data.noise.of_samples(p.manoeuvre.name, "rest", channels) for p in positions]
     longest = max(float(position.seconds.sum()) for position in positions)
     seconds = min(WITHIN, longest)
-    wander, scatter = sizes * np.sqrt(seconds), np.nanmedian(scatters, axis=0)
+    found = _worst(np.full(3, seconds), sizes * np.sqrt(seconds), np.nanmedian(scatters, axis=0))
+    if found or data.noise.rounded(sensor):
+        return found
+    slow = allan[(allan["tau"] >= MIN_WANDER_S) & (allan["tau"] <= WITHIN)]
+    largest = slow.sort_values("lower").groupby("channel").last().reindex(channels).fillna(0.0)
+    tau, deviation = (largest[name].to_numpy(np.float64) for name in ("tau", "lower"))
+    return _worst(tau, deviation, np.nanmin(scatters, axis=0))
+
+
+def _worst(seconds: Array, wander: Array, scatter: Array) -> Unsteady | None:
+    """The axis that wanders most, (3,) each, if by more than its readings scatter."""
     known = np.where(scatter > 0, scatter, np.inf)  # an axis that is not read, or stands still
     worst = int(np.argmax(wander / known))
     if not wander[worst] > known[worst]:
         return None
-    return Unsteady(seconds, float(wander[worst]), float(scatter[worst]))
+    return Unsteady(float(seconds[worst]), float(wander[worst]), float(scatter[worst]))

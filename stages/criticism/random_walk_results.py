@@ -115,7 +115,12 @@ def other_scores(
 
 
 def random_walk_rows(
-    sensor: str, walk: Walk, alternatives: Sequence[str], lawless: WithoutLaw, mount: str
+    sensor: str,
+    walk: Walk,
+    unsteady: Unsteady | None,
+    alternatives: Sequence[str],
+    lawless: WithoutLaw,
+    mount: str,
 ) -> Iterator[TableRow]:
     """The random walk of a sensor, `gyro` or `accel`, and the effects that may be it as well.
 
@@ -138,6 +143,8 @@ def random_walk_rows(
     finding = _walk_finding(sensor, mount, walk.size, walk.p_value, sentence)
     finding["action"] = REPEAT if others else SHORTEN
     finding["verdict"] = ONE_OF_CLASS if certain else UNKNOWN_STRUCTURE
+    if unsteady is not None and not others:
+        finding |= _too_fast(sensor, unsteady)
     yield "findings", finding
     yield from member_rows(identifier, mount, [cause, *others])
     sigma = walk.sigma if np.isfinite(walk.sigma) else None

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
+import numpy as np
 import pandas as pd
 
 from inertial.campaign.campaign_data import MOUNTS, CampaignData
@@ -63,6 +64,7 @@ def criticism(
     mounts: Sequence[CampaignData],
     simulated: Stream,
     gaps: pd.DataFrame,
+    allan: pd.DataFrame,
     *,
     level: float,
     lowest_hz: float,
@@ -73,7 +75,7 @@ def criticism(
     """
     rows: dict[str, list[Row]] = {name: [] for name in DECLARED.writes}
     for data in mounts:
-        for table, row in _of_mount(data, simulated, gaps, level, lowest_hz):
+        for table, row in _of_mount(data, simulated, gaps, allan, level, lowest_hz):
             rows[table].append(row)
     return {
         name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
@@ -84,7 +86,12 @@ def criticism(
 
 
 def _of_mount(
-    data: CampaignData, simulated: Stream, gaps: pd.DataFrame, level: float, lowest_hz: float
+    data: CampaignData,
+    simulated: Stream,
+    gaps: pd.DataFrame,
+    allan: pd.DataFrame,
+    level: float,
+    lowest_hz: float,
 ) -> Iterator[TableRow]:
     """Oscillations are removed first: in block means they would be taken for other effects."""
     mount, degrees = data.mount, data.noise.degrees
@@ -113,14 +120,17 @@ def _of_mount(
     lawful = {selection.sensor(cause) for cause in selection.named.causes if cause.verdict in NAMED}
     drifts = measured.drifts.items()
     walks = {s: drift.walk for s, drift in drifts if drift.walk.any()}
-    unsteady = {s: unsteady_rests(data, s, walk) for s, walk in walks.items()}
+    shown = {s: walks.get(s, np.zeros(3)) for s in {**walks, **random_walks}}
+    unsteady = {s: unsteady_rests(data, s, walk, allan) for s, walk in shown.items()}
     at_rest = {s: walk for s, walk in walks.items() if unsteady[s] or s not in lawful}
     lawless = without_law(selection, {*random_walks, *at_rest}, tested)
     for sensor, sizes in at_rest.items():
         if sensor not in random_walks:
             yield from walk_at_rest_rows(sensor, sizes, unsteady[sensor], lawless, mount)
     for sensor, walk in random_walks.items():
-        yield from random_walk_rows(sensor, walk, selection.alternatives, lawless, mount)
+        yield from random_walk_rows(
+            sensor, walk, unsteady[sensor], selection.alternatives, lawless, mount
+        )
     yield from BlockResults(
         campaign, selection, ExtendedCampaigns(selection, extended), lawless, mount
     ).rows()

@@ -50,7 +50,7 @@ def left_out(
     why: dict[str, str] = {}
     for exchanged in explained.exchanged:
         names, half = exchanged.names, len(exchanged.names) // 2
-        what = _("its log holds") if len(exchanged.logs) == 2 else _("in its place stands")
+        what = _("its log holds") if len(exchanged.logs) > 1 else _("in its place stands")
         for name, other in zip(names, names[half:] + names[:half], strict=True):
             why[name] = _("{name} is left out: {what} {other}.", name=name, what=what, other=other)
     for m in plan:

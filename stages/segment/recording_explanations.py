@@ -91,6 +91,9 @@ def explain(
     while case.lacking:
         supposed = list(suppositions(case, with_sense, gyros_confirmed))
         best = max(supposed, key=lambda one: one.balance, default=case)
+        if best.of_exchange:  # turns of one axis and sense differ by their sizes
+            exchanges = [one for one in supposed if one.of_exchange]
+            best = max(exchanges, key=lambda one: (one.balance, one.of_planned_size))
         gain = best.balance - case.balance
         # Two turns the other way, or in each other's place, of one log cost one of them at most:
         # the other one fits.
@@ -169,6 +172,9 @@ def _rivals(case: Case, best: Case, other: Case) -> bool:
         return False
     if not (best.fitting - case.fitting) & (other.fitting - case.fitting):
         return False  # they explain different things, and both may be
+    exchanges = best.of_exchange and other.of_exchange
+    if exchanges and other.of_planned_size < best.of_planned_size:
+        return False
     if (best.of_sense or other.of_sense) and _turns_each_other(best, other):
         return False
     if other.axes is None or best.axes is None:
@@ -207,7 +213,8 @@ def in_order(exchanged: Exchanged, plan: Sequence[Manoeuvre]) -> Swapped:
     if names.index(exchanged.names[0]) <= names.index(exchanged.names[half]):
         return Swapped(exchanged.names, exchanged.logs, repair)
     later_first = exchanged.names[half:] + exchanged.names[:half]
-    return Swapped(later_first, exchanged.logs[::-1], repair)
+    logs = len(exchanged.logs) // 2
+    return Swapped(later_first, exchanged.logs[logs:] + exchanged.logs[:logs], repair)
 
 
 def misread_in(plan: Sequence[Manoeuvre], explained: ExplainedRecording) -> list[Misread]:

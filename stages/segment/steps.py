@@ -138,6 +138,16 @@ def exchange_in_words(swapped: Swapped) -> str:
     """That manoeuvres are in each other's place."""
     half = len(swapped.names) // 2
     first, second = ", ".join(swapped.names[:half]), ", ".join(swapped.names[half:])
+    if len(swapped.logs) > 2:
+        return _(
+            "the {count} logs from {first} to {first_last} and the {count} from {second} to "
+            "{second_last} are in each other's place, one by one",
+            count=len(swapped.logs) // 2,
+            first=swapped.logs[0],
+            first_last=swapped.logs[len(swapped.logs) // 2 - 1],
+            second=swapped.logs[len(swapped.logs) // 2],
+            second_last=swapped.logs[-1],
+        )
     if len(swapped.logs) == 2:
         return _(
             "{one} contains {second}, and {other} contains {first}",

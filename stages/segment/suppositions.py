@@ -1,6 +1,6 @@
 """What may have happened to a campaign as a whole: each supposition with what is then found."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
 from itertools import combinations, groupby
 from typing import Any
@@ -67,6 +67,17 @@ class Case:
         return sum(2 * right - total for right, total in counts) + sum(earth)
 
     @property
+    def of_exchange(self) -> bool:
+        """Whether it adds to another case that manoeuvres are exchanged."""
+        return self.step is not None and self.step.exchanged is not None
+
+    @property
+    def of_planned_size(self) -> int:
+        """Turns that have the size of their plan, in one sense or the other."""
+        ratios = [located.ratio(m, m) for located in self.located for m in located.plan]
+        return sum(abs(abs(ratio) - 1) <= MAX_WHOLE_DIFFERENCE for ratio in ratios)
+
+    @property
     def lacking(self) -> list[int]:
         """The windows in which something does not agree with the plan."""
         counts = [located.agreeing for located in self.located]
@@ -105,11 +116,12 @@ def of_names_and_turns(case: Case, with_sense: bool, gyros_confirmed: bool) -> I
 
 
 def _exchanges(case: Case) -> Iterator[Case]:
-    """Two windows of as many manoeuvres exchanged, or two manoeuvres or positions of one window.
+    """Two positions, or windows, of as many manoeuvres, or what is in one window exchanged.
 
     None that is exchanged already.
     """
     taken = {name for exchanged in case.exchanged for name in exchanged.names}
+    yield from _with_positions_exchanged(case, taken)
     whole = [k for k in case.lacking if taken.isdisjoint(m.name for m in case.plans[k])]
     for a, b in combinations(whole, 2):
         if len(case.plans[a]) == len(case.plans[b]):
@@ -203,6 +215,28 @@ def _with_names_exchanged(case: Case, a: int, b: int) -> Case:
     plans[a], plans[b] = plans[b], plans[a]
     logs = tuple(dict.fromkeys(case.windows[k].log for k in (a, b)))
     return _exchanging(case, plans, Exchanged(names, logs))
+
+
+def _with_positions_exchanged(case: Case, taken: Set[str]) -> Iterator[Case]:
+    """All logs of two positions, as many of each: the IMU stood in the other one each time."""
+    windows = dict[str, list[int]]()
+    for k, plan in enumerate(case.plans):
+        stood = {m.position for m in plan}
+        if len(stood) == 1 and taken.isdisjoint(m.name for m in plan):
+            windows.setdefault(stood.pop(), []).append(k)
+    lacking = {*case.lacking}
+    for one, two in combinations(windows.values(), 2):
+        if len(one) == len(two) > 1 and lacking.issuperset([*one, *two]):
+            plans = list(case.plans)
+            for a, b in zip(one, two, strict=True):
+                plans[a], plans[b] = plans[b], plans[a]
+            both = [case.plans[k] for k in (*one, *two)]
+            if all(
+                len(a) == len(b) for a, b in zip(both[: len(one)], both[len(one) :], strict=True)
+            ):
+                names = tuple(m.name for plan in both for m in plan)
+                logs = tuple(dict.fromkeys(case.windows[k].log for k in (*one, *two)))
+                yield _exchanging(case, plans, Exchanged(names, logs))
 
 
 def _with_places_exchanged(case: Case, k: int, one: Sequence[str], two: Sequence[str]) -> Case:

@@ -78,3 +78,16 @@ def test_a_table_whose_rate_is_off_is_told_by_gravity_in_turns_about_level_axes(
     findings = results["segment/findings"]
     ratios = findings.loc[findings["cause"] == "table_rate_off", "size"].tolist()
     assert ratios == ([pytest.approx(1 + 1e-6 * off, abs=5e-5)] if off else [])
+
+
+def test_turns_alone_give_accelerometers_nothing_and_it_is_said_what_would():
+    document = chain.short()
+    turns = [m for m in document["campaign"]["plan"] if m["do"] == "turn"]
+    document["campaign"]["plan"] = [{**m, "recorded": "steady", "seconds": 12} for m in turns]
+    for m in document["campaign"]["plan"]:
+        m["rate_deg_s"] *= -1 if m.pop("degrees") < 0 else 1
+    reasons = chain.in_memory_of(document, "accelerometer")["accelerometer/parameters"]["reason"]
+    assert set(reasons) == {
+        "there is no rest whose upward direction is known, and turns alone are not enough: record "
+        "one with each axis up and one with each axis down"
+    }
