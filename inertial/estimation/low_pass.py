@@ -7,8 +7,10 @@ moving average over T, sinc²(fT) with f_c = 0.443/T. Quantisation comes after i
 and f_c, are where the likelihood of all frequencies is largest, down to where the density is
 3 %: farther down every filter is built another way.
 
-A filter leaves next to nothing above its band, and acts in all rests alike. What moves the case in
-some of them leaves the white noise above, or contradicts the other rests.
+A filter leaves next to nothing above its band, and acts in all rests alike. What moves the case
+leaves the white noise of the sensor above, or contradicts the other rests. So in the highest octave
+there is what the shape leaves, a thousandth where the filter is built another way, and the rounding
+of the readings, which comes after it.
 """
 
 from collections.abc import Sequence
@@ -26,6 +28,9 @@ ORDERS = (1, 2, 3, 4, AVERAGE)
 HALF_OF_AVERAGE = 0.44295  # f T, where sinc² is a half
 FALLEN = 0.03  # of the density at the lowest frequencies, down to which a shape is fitted
 FAINT = 0.01  # of the same, that a filter leaves of the highest octave
+STOPPED = 1e-3  # of the same, that a filter of another shape leaves there
+MOST_OF_SHAPE = 2.0  # times what the shape leaves there
+CARRIED = 4.0  # times the density of rounding at the highest frequencies, where counts carry over
 LOW_BINS = 16  # that tell this density
 SMOOTHED = 8  # bins in a mean that shows how far the density has fallen
 CORNERS = 16  # of each kind that are tried
@@ -92,10 +97,12 @@ class Passed:
     spread: float
 
 
-def likeliest(bins: Bins, lowest: Sequence[Lowest], channel: int, lines: Booleans) -> Passed | None:
+def likeliest(
+    bins: Bins, lowest: Sequence[Lowest], channel: int, lines: Booleans, rounding: float = 0.0
+) -> Passed | None:
     """The low pass of a channel; None where the density does not fall to next to nothing.
 
-    `lines`: (b,), bins with oscillations.
+    `lines`: (b,), bins with oscillations; `rounding`: density of that of the readings.
     """
     within = _passed(bins, channel, lines)
     if within is None:
@@ -121,6 +128,10 @@ def likeliest(bins: Bins, lowest: Sequence[Lowest], channel: int, lines: Boolean
     best = min(found, key=deviance)
     if deviance(LowPass(np.inf, 1)) < deviance(best) + CERTAIN:
         return None  # as well without, by a random walk
+    level, highest = _level(bins, channel, lines), _highest(bins, lines)
+    left = MOST_OF_SHAPE * float(best.power(bins.frequency[highest]).mean()) + STOPPED
+    if bins.density[highest, channel].mean() > left * level + CARRIED * rounding:
+        return None  # the sensor's own white noise, which no filter lets pass
     beside = [replace(best, corner=best.corner * share) for share in (1 / BESIDE, BESIDE)]
     rise = sum(map(deviance, beside)) - 2 * deviance(best)
     whites = [float(found[each].variances[WHITE]) for each in beside]
@@ -134,8 +145,7 @@ def likeliest(bins: Bins, lowest: Sequence[Lowest], channel: int, lines: Boolean
 def _passed(bins: Bins, channel: int, lines: Booleans) -> Booleans | None:
     """The bins below where the density has fallen, (b,); None where it does not fall so far."""
     density, clear = bins.density[:, channel], np.flatnonzero(~lines)
-    level = float(np.median(density[clear[:LOW_BINS]]))
-    highest = density[clear[bins.frequency[clear] > bins.frequency.max() / 2]]
+    level, highest = _level(bins, channel, lines), density[_highest(bins, lines)]
     if len(clear) < LOW_BINS or not len(highest) or highest.mean() > FAINT * level:
         return None
     degrees = np.convolve(bins.degrees[clear], np.ones(SMOOTHED), "valid")
@@ -143,3 +153,13 @@ def _passed(bins: Bins, channel: int, lines: Booleans) -> Booleans | None:
     fallen = powers < FALLEN * level * degrees
     within = np.arange(len(density)) < clear[np.argmax(fallen)]
     return within if within.sum() >= LOW_BINS else None
+
+
+def _level(bins: Bins, channel: int, lines: Booleans) -> float:
+    """The density at the lowest frequencies."""
+    return float(np.median(bins.density[~lines, channel][:LOW_BINS]))
+
+
+def _highest(bins: Bins, lines: Booleans) -> Booleans:
+    """The bins of the highest octave, (b,)."""
+    return np.asarray(~lines & (bins.frequency > bins.frequency.max() / 2))

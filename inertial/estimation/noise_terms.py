@@ -100,22 +100,32 @@ class NoiseTerms:
         return np.asarray(through * self.low_pass.power(frequency) + after)
 
 
-def noise_terms(powers: Powers) -> list[NoiseTerms | None]:
+def noise_terms(powers: Powers, counts: Array | None = None) -> list[NoiseTerms | None]:
     """The terms of every channel; None where there is no stretch, or nothing but one value.
+
+    `counts`: (c,), size of a count of each channel, NaN where its readings are not counted.
 
     None, too, where the power of some bins is no more than rounding: in all stretches that are long
     enough for these the channel stood still, and what is left of the others is no fair sample.
     """
     bins, lowest = powers.bins(), list(powers.lowest())
-    return [_of_channel(bins, lowest, channel) for channel in range(powers.channels)]
+    rounding = np.zeros(powers.channels)
+    if counts is not None:
+        rounding = np.nan_to_num(counts) ** 2 / 12 * powers.interval
+    return [
+        _of_channel(bins, lowest, channel, density)
+        for channel, density in enumerate(rounding.tolist())
+    ]
 
 
-def _of_channel(bins: Bins, lowest: Sequence[Lowest], channel: int) -> NoiseTerms | None:
+def _of_channel(
+    bins: Bins, lowest: Sequence[Lowest], channel: int, rounding: float
+) -> NoiseTerms | None:
     density = bins.density[:, channel]
     if not len(density) or (density <= ROUNDING * density.max()).any():
         return None
     lines, leaked, within = _usable(bins, lowest, channel)
-    passed = likeliest(bins, lowest, channel, lines)
+    passed = likeliest(bins, lowest, channel, lines, rounding)
     if passed is not None:
         own, beside, worst = _lines(passed.bins, passed.lowest, channel, passed.within)
         if worst <= 1:

@@ -155,7 +155,7 @@ def noise(
         carried,
         (from_hz, to_hz),
     )
-    noises = list(static.noises(by_hand))
+    noises = list(static.noises(by_hand, counts))
     _without_quantisation(spectra, noises)
     shapes = shapes_of(spectra)
     rows = [

@@ -249,17 +249,18 @@ class StaticStretches:
         self._pools.append(pool)
         return pool
 
-    def noises(self, by_hand: bool) -> Iterator["SensorNoise"]:
+    def noises(self, by_hand: bool, counts: Array) -> Iterator["SensorNoise"]:
         """The noise of each sensor, where there is a stretch that is long enough.
 
-        `by_hand`: whether the support may tilt.
+        `by_hand`: whether the support may tilt; `counts`: (6,), see `noise_terms`.
         """
         for sensor in COLUMNS:
             own = [pool for pool in self._pools if pool.sensor == sensor]
             for pool in sorted(own, key=lambda pool: -pool.samples * pool.interval)[:1]:
                 pool.end()
                 if max(pool.powers.seconds, default=0.0) >= MIN_WHOLE * pool.interval:
-                    yield _noise_of(pool, by_hand)
+                    own_counts = counts[COLUMNS[sensor]][np.array(pool.recorded)]
+                    yield _noise_of(pool, by_hand, own_counts)
 
 
 class Filtered(NamedTuple):
@@ -389,8 +390,8 @@ class SensorNoise:
                 }
 
 
-def _noise_of(pool: _Pool, by_hand: bool) -> SensorNoise:
-    terms = noise_terms(pool.powers)
+def _noise_of(pool: _Pool, by_hand: bool, counts: Array) -> SensorNoise:
+    terms = noise_terms(pool.powers, counts)
     models = [NoiseModel(white_noise=1.0) if each is None else each.model for each in terms]
     return SensorNoise(
         pool.sensor,

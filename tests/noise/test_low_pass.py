@@ -17,8 +17,16 @@ BEFORE = 3000  # samples, in which a filter settles
 Samples = NDArray[np.float64]
 
 
-def terms(filtered: Callable[[Samples], Samples], seed: int, moved: float = 0.0) -> NoiseTerms:
-    """The terms of white noise of 1 through a filter; `moved`: of what moves the first rest."""
+def terms(
+    filtered: Callable[[Samples], Samples],
+    seed: int,
+    moved: float = 0.0,
+    count: float | None = None,
+) -> NoiseTerms:
+    """The terms of white noise of 1 through a filter.
+
+    `moved`: of what moves the first rest; `count`: size of a count, of readings that are counted.
+    """
     chance, powers = np.random.default_rng(seed), Powers(1, INTERVAL)
     for number, seconds in enumerate(RESTS):
         white = chance.normal(size=round(seconds / INTERVAL) + BEFORE) / np.sqrt(INTERVAL)
@@ -28,7 +36,7 @@ def terms(filtered: Callable[[Samples], Samples], seed: int, moved: float = 0.0)
             read = read + moved * np.cumsum(slow) * INTERVAL
         powers.add(read[:, None])
         powers.end()
-    (result,) = noise_terms(powers)
+    (result,) = noise_terms(powers, None if count is None else np.array([count]))
     assert result is not None
     return result
 
@@ -68,6 +76,28 @@ def test_a_slow_filter_is_seen_and_leaves_no_drift(filtered, corner, delay, seed
 @pytest.mark.parametrize("moved", [0.3e3, 3e3, 3e4])
 def test_what_moves_in_one_rest_is_no_filter(moved):
     assert terms(lambda white: white, 3, moved).low_pass is None
+
+
+@pytest.mark.parametrize(("hertz", "size"), [(0.2, 92.0), (0.05, 640.0), (0.12, 180.0)])
+def test_an_oscillation_in_all_rests_is_no_filter(hertz, size):
+    """White noise of the sensor stays above it, 10 in each reading; a filter lets none pass."""
+
+    def shaken(white: Samples) -> Samples:
+        return white + size * np.sin(2 * np.pi * hertz * INTERVAL * np.arange(len(white)) + hertz)
+
+    assert terms(shaken, 6).low_pass is None
+
+
+def test_rounding_after_a_filter_is_above_it():
+    """Counts of 1.7 have a density of 1.7²/12 · 0.01 = 0.0024, more than filters leave."""
+    passed, count = butterworth(2, 3.0), 1.7
+
+    def rounded(white: Samples) -> Samples:
+        return count * np.round(passed(white) / count)
+
+    found = terms(rounded, 7, count=count).low_pass
+    assert found is not None and found.corner == pytest.approx(3.0, rel=0.2)
+    assert terms(rounded, 7).low_pass is None  # where no count is known it may be the sensor's own
 
 
 def test_white_noise_and_a_random_walk_are_behind_none():
