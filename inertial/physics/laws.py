@@ -34,7 +34,6 @@ UNITS = {  # of the states; of forces g
     "rate": "× 10 °/s",
     "temperature": "K",
     "temperature_rate": "K/min",
-    "other_forces": "g²",
 }
 SHAPED_IN_STATE = ("exponential", "ramp", "telegraph", "hysteresis")  # by values of the state
 OWN = ("own_force", "other_forces")  # states that differ from axis to axis: laws of all axes

@@ -15,7 +15,7 @@ from inertial.campaign.records import Manoeuvre, Performed
 from inertial.estimation.effect_information import EffectInformation
 from inertial.model_selection.splitting import MIN_SEPARATION, split
 from inertial.physics.effect import Effect
-from inertial.tables import GYRO, STATIC_PHASES
+from inertial.tables import ACCEL, GYRO, STATIC_PHASES
 from inertial.text.messages import _
 from stages.criticism.effect_selection import evidence_of
 from stages.criticism.selection import Selection
@@ -73,6 +73,9 @@ def extended_plans(
         copies["count"] /= factor
         moving = ~copies["phase"].isin(STATIC_PHASES).to_numpy(bool)
         copies[GYRO] *= np.where(moving, factor, 1.0)[:, None]
+        # With the axis down accelerometers read the force the other way, but for a lever arm.
+        signs = np.array([_sign_of_force(original, copy) for original, copy, _ in pairs])
+        copies[ACCEL] *= signs[each][:, None]
         manoeuvres = [*plan, *(copy for _, copy, _ in pairs)]
         return ExtendedPlan(manoeuvres, done, pd.concat([blocks, copies], ignore_index=True))
 
@@ -107,6 +110,11 @@ def _named(m: Manoeuvre, what: str) -> Manoeuvre:
 def _turned_over(m: Manoeuvre) -> Manoeuvre:
     assert m.up is not None  # else it is not copied
     return replace(_named(m, "turned over"), up=-m.up)
+
+
+def _sign_of_force(original: Manoeuvre, copy: Manoeuvre) -> float:
+    assert original.up is not None and copy.up is not None  # else it is not copied
+    return -1.0 if np.allclose(original.up, -copy.up) else 1.0
 
 
 def _alike(one: Manoeuvre, other: Manoeuvre) -> bool:

@@ -137,6 +137,7 @@ FORMS = {
     "drift": _("in proportion to {state}, each counted from a value of its own"),
 }
 MIN_SIGMAS = 3.0  # of a size that is written
+UNITS_OF_FACTORS = {**UNITS, "other_forces": "g²"}
 EXPONENTS = {2.0: "²", 3.0: "³", 4.0: "⁴", 5.0: "⁵"}
 
 
@@ -207,7 +208,7 @@ def _per(law: Law, parameter: str) -> str:
         return f"/{unit}{exponent}"
     if law.family == "product":
         term = parameter[1:-2].removeprefix("_")  # none for the product itself
-        units = [UNITS.get(one, "g") for one in (term or law.state).split("*")]
+        units = [UNITS_OF_FACTORS.get(one, "g") for one in (term or law.state).split("*")]
         together = " ".join(f"({u.removeprefix('× ')})" if "/" in u else u for u in units)
         return f"/({together})" if " " in together else f"/{together}"
     if law.family == "ramp":

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.campaign.records import Manoeuvre, Performed
-from inertial.tables import GYRO
+from inertial.tables import ACCEL, GYRO
 from stages.criticism.class_splitting import TURNED_OVER, extended_plans
 
 RATE = float(np.radians(72.0))
@@ -19,7 +19,8 @@ def turn(name: str, axis: str, up: float, rate: float) -> Manoeuvre:
 
 def plans(*turns: Manoeuvre) -> dict[str, Any]:
     done = {m.name: Performed(m.name, "", rate=m.rate) for m in turns}
-    one = {"time": 1.0, "seconds": 0.2, "count": 20, "phase": "steady", **dict.fromkeys(GYRO, 1.0)}
+    one = {"time": 1.0, "seconds": 0.2, "count": 20, "phase": "steady"}
+    one |= dict.fromkeys((*GYRO, *ACCEL), 1.0)
     blocks = pd.DataFrame([one | {"manoeuvre": m.name} for m in turns])
     return extended_plans(turns, done, blocks)
 
