@@ -7,7 +7,12 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.equations import PRIOR_SIZE, Campaign
-from inertial.estimation.effect_information import EffectInformation
+from inertial.estimation.effect_information import (
+    EffectInformation,
+    deviance_as_errors,
+    split,
+    with_prior,
+)
 from inertial.estimation.elimination import OF_AXIS, OF_CASE, TILTS, Name, case_by_both, names_of
 from inertial.estimation.gyroscope_equations import is_upright
 from inertial.estimation.triad import linear_names
@@ -62,16 +67,19 @@ def _informative(
 ) -> tuple[list[tuple[str, EffectInformation]], list[Array]]:
     """The information on the effects by sensor, made independent, and without other unknowns."""
     tilts = shared_tilts(campaign)
-    shared = tilts.names if tilts else {}
-    every = {s: campaign.information(s, effects, shared.get(s, ())) for s in SENSORS}
-    there = {sensor: own for sensor, own in every.items() if own is not None}
-    informative = [(sensor, own) for sensor, (own, _) in there.items()]
+    errors = tilts.names if tilts else {}
+    every = {s: campaign.information(s, effects, errors.get(s, ())) for s in SENSORS}
+    there = {sensor: told for sensor, told in every.items() if told is not None}
+    informative = {sensor: told.on_effects for sensor, told in there.items()}
     if tilts:
-        (_, gyro), (_, accel) = informative
-        gyro, before = tilts.by_those_of_accelerometers(gyro, accel), tilts.before["accel"]
-        independent = gyro.following(accel, before), accel.eliminated(before)
-        informative = list(zip(SENSORS, independent, strict=True))
-    return informative, [raw for _, raw in there.values()]
+        gyro, accel = there["gyro"].on_errors, there["accel"].on_errors
+        known, by_accel = split(
+            with_prior(accel, tilts.before["accel"]), len(tilts.before["accel"])
+        )
+        _, by_gyro = split(np.vstack([known, tilts.by_those_of_accelerometers(gyro)]), len(known))
+        for sensor, rows in (("gyro", by_gyro), ("accel", by_accel)):
+            informative[sensor] = informative[sensor].with_rows(rows)
+    return list(informative.items()), [told.raw for told in there.values()]
 
 
 def _restricted(reduced: EffectInformation, observable: Array) -> EffectInformation:
@@ -107,12 +115,11 @@ class SharedTilts:
         kinds = {"gyro": OF_CASE, "accel": (*TILTS, *OF_AXIS)}
         return {sensor: names_of(self.positions, of) for sensor, of in kinds.items()}
 
-    def by_those_of_accelerometers(
-        self, gyro: EffectInformation, accel: EffectInformation
-    ) -> EffectInformation:
-        """The information of gyros, of which the last columns are their tilts, by those of both."""
-        tilts = accel.names[len(accel.names) - len(self.before["accel"]) :]
-        return gyro.by_others(case_by_both(len(self.positions)), tilts)
+    def by_those_of_accelerometers(self, of_gyros: Array) -> Array:
+        """Rows of gyros, of which the first columns are their tilts, by those of both."""
+        tilts = 2 * len(self.positions)
+        by_both = of_gyros[:, :tilts] @ case_by_both(len(self.positions))
+        return np.hstack([by_both, of_gyros[:, tilts:]])
 
 
 def shared_tilts(campaign: Campaign) -> SharedTilts | None:
@@ -147,12 +154,12 @@ def deviance(campaign: Campaign) -> float:
     alone = sum(deviances(campaign).values())
     if (tilts := shared_tilts(campaign)) is None:
         return alone
-    found = (campaign.information(sensor, [], tilts.names[sensor]) for sensor in SENSORS)
-    gyro, accel = (own for own, _ in filter(None, found))
-    both = tilts.by_those_of_accelerometers(gyro, accel) + accel
-    counted = gyro.deviance_as_errors(tilts.before["gyro"])
-    counted += accel.deviance_as_errors(tilts.before["accel"])
-    return alone - counted + both.deviance_as_errors(tilts.before["accel"])
+    told = (campaign.information(sensor, [], tilts.names[sensor]) for sensor in SENSORS)
+    gyro, accel = (own.on_errors for own in told if own is not None)
+    both = np.vstack([accel, tilts.by_those_of_accelerometers(gyro)])
+    counted = deviance_as_errors(gyro, tilts.before["gyro"])
+    counted += deviance_as_errors(accel, tilts.before["accel"])
+    return alone - counted + deviance_as_errors(both, tilts.before["accel"])
 
 
 # ---- How far an effect that is not detected moves the parameters of the result.

@@ -16,7 +16,7 @@ from inertial.estimation import accelerometers, gyroscopes
 from inertial.estimation.accelerometers import Reference, StaticForce
 from inertial.estimation.carried_effects import CarriedEquations
 from inertial.estimation.drifting_equations import DriftingEquations
-from inertial.estimation.effect_information import EffectInformation, Sensitivities
+from inertial.estimation.effect_information import Sensitivities, SensorInformation
 from inertial.estimation.elimination import Name
 from inertial.estimation.gyroscope_equations import Linearisation
 from inertial.estimation.gyroscope_observations import EARTH_UP, SteadyRate
@@ -266,16 +266,15 @@ class Campaign:
         return drifting.system(walk=walk) if drifting else None
 
     def information(
-        self, sensor: str, effects: Sequence[Effect], sharing: Sequence[Name] = ()
-    ) -> tuple[EffectInformation, Array] | None:
-        """The information of one sensor on each effect, and that without any other unknown.
+        self, sensor: str, effects: Sequence[Effect], errors: Sequence[Name] = ()
+    ) -> SensorInformation | None:
+        """What one sensor says of effects, and of errors that the other one shows, too.
 
-        `sharing`: errors that are not eliminated, but the last effects. For many effects this takes
-        less time and memory than their system.
+        For many effects this takes less time and memory than their system.
         """
         walk = self._walk(sensor)
         drifting = self.equations(sensor, effects, 1.0, walking=bool(walk))
-        return drifting.sharing(sharing).information(walk) if drifting else None
+        return drifting.information(walk, errors) if drifting else None
 
     def _walk(self, sensor: str) -> float:
         return self.solution.random_walks[SENSORS.index(sensor)]

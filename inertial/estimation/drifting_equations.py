@@ -25,7 +25,7 @@ import numpy as np
 from scipy.linalg import block_diag, solve_triangular
 
 from inertial.arrays import Array
-from inertial.estimation.effect_information import EffectInformation, NormalEquations
+from inertial.estimation.effect_information import NormalEquations, SensorInformation
 from inertial.estimation.elimination import (
     EquationBlock,
     Name,
@@ -80,11 +80,12 @@ class DriftingEquations:
         left = eliminate(*self._with_drifts(scatter, walk))
         return remaining(*left, self.prior, self.prior_sigma, self.parameters, self.names)
 
-    def information(self, walk: float = 0.0) -> tuple[EffectInformation, Array]:
-        """The normal equations of the effects, and the information of each, nothing else fitted."""
-        equations = NormalEquations(self.names, self.prior_sigma)
-        done = eliminate_into(equations.add, *self._with_drifts(0.0, walk))
-        return equations.information(done.count, self.parameters), equations.raw
+    def information(self, walk: float = 0.0, errors: Sequence[Name] = ()) -> SensorInformation:
+        """What the equations say of the effects, and of errors that another sensor shows, too."""
+        shared = self._sharing(errors)
+        equations = NormalEquations(shared.names, shared.prior_sigma, len(errors))
+        done = eliminate_into(equations.add, *shared._with_drifts(0.0, walk))
+        return equations.information(done.count, self.parameters)
 
     def _with_drifts(
         self, scatter: float, walk: float
@@ -95,8 +96,8 @@ class DriftingEquations:
         blocks, drift_sigma = with_drifts(self.blocks, shared, self.bias, *drift)
         return blocks, shared, {**self.sigma, **drift_sigma}
 
-    def sharing(self, errors: Sequence[Name]) -> "DriftingEquations":
-        """The same with these errors as the last effects, so that they are not eliminated."""
+    def _sharing(self, errors: Sequence[Name]) -> "DriftingEquations":
+        """The same with these errors as the last unknowns, so that they are not eliminated."""
         if not errors:
             return self
         shared, count = len(self.prior), len(errors)
@@ -117,7 +118,7 @@ class DriftingEquations:
             sigma={name: size for name, size in self.sigma.items() if name not in errors},
             prior=np.append(self.prior, np.zeros(count)),
             prior_sigma=np.append(self.prior_sigma, [self.sigma.get(name, 1.0) for name in errors]),
-            names=(*self.names, *(("effect", " ".join(name)) for name in errors)),
+            names=(*self.names, *errors),
         )
 
     @cached_property

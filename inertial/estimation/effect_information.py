@@ -6,6 +6,7 @@ its values with their covariance, and the same beside others.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import solve_triangular
@@ -74,66 +75,15 @@ class EffectInformation:
             degrees=self.degrees - used,
         )
 
-    def eliminated(self, prior: Array) -> "EffectInformation":
-        """The same without the last columns, errors with the information `prior` each, (t,)."""
-        k = len(self.names) - len(prior)
-        own = self.information[k:, k:] + np.diag(prior)
-        across = np.linalg.solve(own, np.column_stack([self.information[k:, :k], self.right[k:]]))
-        drop = self.information[:k, k:] @ across
+    def with_rows(self, rows: Array) -> "EffectInformation":
+        """The same with further equations of the effects alone, (n, k + 1), in units of sigma."""
+        design, observed = rows[:, :-1], rows[:, -1]
         return replace(
             self,
-            names=self.names[:k],
-            information=self.information[:k, :k] - drop[:, :-1],
-            right=self.right[:k] - drop[:, -1],
-            chi_squared=self.chi_squared - float(self.right[k:] @ across[:, -1]),
+            information=self.information + design.T @ design,
+            right=self.right + design.T @ observed,
+            chi_squared=self.chi_squared + float(observed @ observed),
         )
-
-    def by_others(self, matrix: Array, names: Sequence[str]) -> "EffectInformation":
-        """The same with the last columns, errors, as a function of others, (t, u), by name."""
-        k = len(self.names) - len(matrix)
-        own, across = self.information[:k, :k], self.information[:k, k:] @ matrix
-        return replace(
-            self,
-            names=(*self.names[:k], *names),
-            information=np.block(
-                [[own, across], [across.T, matrix.T @ self.information[k:, k:] @ matrix]]
-            ),
-            right=np.append(self.right[:k], matrix.T @ self.right[k:]),
-        )
-
-    def deviance_as_errors(self, prior: Array) -> float:
-        """−2 log of the likelihood with these as errors less that without; see `eliminated`."""
-        with_prior = self.information + np.diag(prior)
-        log_det = np.linalg.slogdet(with_prior)[1] - np.sum(np.log(prior))
-        return float(log_det - self.right @ np.linalg.solve(with_prior, self.right))
-
-    def following(self, other: "EffectInformation", prior: Array) -> "EffectInformation":
-        """What these equations add to those of another sensor that has the same errors.
-
-        The errors δ are the last columns. The others say δ ~ (S⁻¹ b − S⁻¹ F β, S⁻¹) for effects β,
-        with S their information on δ and its `prior`, (t,). About that these equations have
-        columns and residuals of their own, and what remains of δ is eliminated from them; so the
-        information of both adds up as that of independent equations.
-        """
-        k = len(self.names) - len(prior)
-        of_errors = other.information[k:, k:] + np.diag(prior)
-        other_right = np.column_stack([other.information[k:, :k], other.right[k:]])
-        known = np.linalg.solve(of_errors, other_right)
-        change, centre = known[:, :-1], known[:, -1]
-        own, mixed = self.information[k:, k:], self.information[:k, k:]
-        turned = mixed - change.T @ own
-        information = self.information.copy()
-        information[:k, :k] += change.T @ own @ change - mixed @ change - change.T @ mixed.T
-        information[:k, k:], information[k:, :k] = turned, turned.T
-        information[k:, k:] += other.information[k:, k:]
-        right = np.append(
-            self.right[:k] - change.T @ self.right[k:] - turned @ centre,
-            self.right[k:] - own @ centre,
-        )
-        chi_squared = self.chi_squared + float(centre @ (own @ centre - 2 * self.right[k:]))
-        return replace(
-            self, information=information, right=right, chi_squared=chi_squared
-        ).eliminated(prior)
 
     def estimate(self, chosen: Sequence[int]) -> tuple[Array, Array]:
         """Values and covariance of the chosen columns; NaN for unobservable ones."""
@@ -151,7 +101,7 @@ class EffectInformation:
         their information (m,), the combinations (k, m), and which columns they do not span (k,)
         """
         block = self.information[np.ix_(chosen, chosen)]
-        size = _sizes(block)
+        size = sizes_of(block)
         values, vectors = np.linalg.eigh(block / np.outer(size, size))
         observable = values > MIN_INFORMATION_SHARE
         spanned = np.sum(vectors[:, observable] ** 2, axis=1)
@@ -164,16 +114,19 @@ def whitening(information: Array, least: float = MIN_INFORMATION_SHARE) -> Array
 
     `least`: of the information scaled to unit diagonal, below which one is not observable.
     """
-    size = _sizes(information)
+    size = sizes_of(information)
     values, vectors = np.linalg.eigh(information / np.outer(size, size))
     observable = values > least
     return np.asarray(vectors[:, observable] / np.sqrt(values[observable]) / size[:, None])
 
 
-def _sizes(information: Array) -> Array:
-    """The roots of the diagonal, (k,), infinite where there is none: no combination has such."""
+def sizes_of(information: Array) -> Array:
+    """The roots of the diagonal, (k,), as large as can be where there is none.
+
+    So no combination has a column of which rounding leaves less than nothing.
+    """
     own = np.diag(information)
-    return np.sqrt(np.where(own > 0, own, np.inf))
+    return np.sqrt(np.where(own > 0, own, np.finfo(np.float64).max))
 
 
 # ---- From the rows of all unknowns to the normal equations of the effects.
@@ -186,30 +139,33 @@ class NormalEquations:
     there; the others, as many as there are observations, become normal equations.
 
     names, prior_sigma : (p,), of the unknowns
+    errors : how many of the last unknowns are errors that another sensor shows, too; they are free
     """
 
-    def __init__(self, names: Sequence[Name], prior_sigma: Array) -> None:
-        are_effects = np.array([kind == "effect" for kind, _ in names], bool)
+    def __init__(self, names: Sequence[Name], prior_sigma: Array, errors: int = 0) -> None:
+        last = len(names) - errors
+        are_effects = np.array([kind == "effect" for kind, _ in names[:last]], bool)
         effects, others = np.flatnonzero(are_effects), np.flatnonzero(~are_effects)
-        self._names = tuple(name for kind, name in names if kind == "effect")
-        self._order = np.concatenate([others, effects, [len(names)]])
+        self._names = tuple(name for kind, name in names[:last] if kind == "effect")
+        self._order = np.concatenate([others, np.arange(last, len(names)), effects, [len(names)]])
         self._sigma = prior_sigma[others]
+        self._fitted = len(others) + errors
         # The prior of an unknown is an observation.
         self._pending = [np.eye(len(others), len(names) + 1)]
         self._squares = np.zeros((len(effects) + 1, len(effects) + 1))
-        self.raw = np.zeros(len(effects))  # information of each column, nothing else fitted
+        self._raw = np.zeros(len(effects))
 
     def add(self, rows: Array) -> None:
         """Rows in units of sigma about the priors, (n, p + 1), the last column the observations."""
-        ordered, others = rows[:, self._order], len(self._sigma)
-        ordered[:, :others] *= self._sigma
-        self.raw += np.sum(ordered[:, others:-1] ** 2, axis=0)
+        ordered = rows[:, self._order]
+        ordered[:, : len(self._sigma)] *= self._sigma
+        self._raw += np.sum(ordered[:, self._fitted : -1] ** 2, axis=0)
         self._pending.append(ordered)
         if sum(map(len, self._pending)) > MIN_ROWS_PER_PRODUCT:
             self._multiply()
 
-    def information(self, count: int, parameters: int) -> EffectInformation:
-        """The normal equations of the effects, all other unknowns fitted.
+    def information(self, count: int, parameters: int) -> "SensorInformation":
+        """What the equations say of the effects, all other unknowns fitted.
 
         Chi-squared is that of `count` observations and errors. The vague priors of the first
         `parameters` are none of either: a cross term of 2.5 % is a third of its σ, and beside
@@ -218,22 +174,56 @@ class NormalEquations:
         """
         self._multiply()
         (upper,), others = self._pending, len(self._sigma)
-        fitted = solve_triangular(upper[:, :others], upper[:, -1])
+        fitted = solve_triangular(upper[:others, :others], upper[:others, -1])
         vague = float(np.sum(fitted[:parameters] ** 2))
-        return EffectInformation(
+        on_effects = EffectInformation(
             self._names,
             self._squares[:-1, :-1],
             self._squares[:-1, -1],
             float(self._squares[-1, -1]) - vague,
             count - parameters,
         )
+        return SensorInformation(on_effects, self._raw, upper[others:, others:])
 
     def _multiply(self) -> None:
-        others = len(self._sigma)
-        factor = partial_r_factor(np.vstack(self._pending), others)
-        below = factor[others:, others:]
+        upper, below = split(np.vstack(self._pending), self._fitted)
         self._squares += below.T @ below
-        self._pending = [factor[:others]]
+        self._pending = [upper]
+
+
+class SensorInformation(NamedTuple):
+    """What a sensor says of k effects and t errors that another sensor shows, too.
+
+    `on_effects`: the errors fitted; `raw`: (k,), information on each effect, nothing else fitted;
+    `on_errors`: (t, t + k + 1), rows of the errors, triangular, with effects and observations.
+    """
+
+    on_effects: EffectInformation
+    raw: Array
+    on_errors: Array
+
+
+def split(rows: Array, first: int) -> tuple[Array, Array]:
+    """Rows that make the first unknowns triangular, and those of the others alone."""
+    factor = partial_r_factor(rows, first)
+    return factor[:first], factor[first:, first:]
+
+
+def with_prior(on_errors: Array, prior: Array) -> Array:
+    """The rows, and that errors are zero with the information `prior`, (t,)."""
+    of_prior = np.zeros((len(prior), on_errors.shape[1]))
+    of_prior[:, : len(prior)] = np.diag(np.sqrt(prior))
+    return np.vstack([on_errors, of_prior])
+
+
+def deviance_as_errors(on_errors: Array, prior: Array) -> float:
+    """−2 log of the likelihood of rows without effects, (n, t + 1), as errors; less that of none.
+
+    `prior`: (t,), information on the errors beforehand.
+    """
+    upper, rest = split(with_prior(on_errors, prior), len(prior))
+    log_det = 2 * np.sum(np.log(np.abs(np.diag(upper)))) - np.sum(np.log(prior))
+    return float(log_det + np.sum(rest[:, -1] ** 2) - np.sum(on_errors[:, -1] ** 2))
 
 
 # ---- Derivatives of readings with respect to the parameters of effects.

@@ -233,7 +233,7 @@ class System:
         """The normal equations of the effects, all other unknowns fitted."""
         equations = NormalEquations(self.names, self.prior_sigma)
         equations.add(np.column_stack(self._whitened()))
-        return equations.information(self.rows, self.parameters)
+        return equations.information(self.rows, self.parameters).on_effects
 
 
 def remaining(

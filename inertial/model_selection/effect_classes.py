@@ -7,6 +7,7 @@ import numpy as np
 from scipy.special import gammaln, ive
 
 from inertial.arrays import Array, Booleans, Integers
+from inertial.estimation.effect_information import sizes_of
 from inertial.model_selection.search import Candidates, Set
 
 MIN_CLASS_PROBABILITY = 0.95  # posterior, of all members together
@@ -175,7 +176,7 @@ def fitted(
     """Right-hand side of all columns if the estimate of some were the truth, (k,)."""
     joint = list(dict.fromkeys([*columns, *given]))
     block = information[np.ix_(joint, joint)]
-    size = np.sqrt(np.maximum(np.diag(block), np.finfo(float).tiny))
+    size = sizes_of(block)
     beta = np.linalg.pinv(block / np.outer(size, size), rcond=1e-6, hermitian=True) @ (
         right[joint] / size
     )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array, Integers
+from inertial.estimation.effect_information import sizes_of
 from inertial.model_selection.cause import NamedCauses
 from inertial.model_selection.evidence import Evidence, SearchedEffect
 
@@ -89,7 +90,7 @@ class Candidates:
 
         `right`: (k,), or (k, n) for n data sets at once: then the drops are (c, n).
         """
-        size = np.sqrt(np.maximum(np.diag(information), np.finfo(float).tiny))
+        size = sizes_of(information)
         many = right.reshape(len(right), -1)
         projection = np.zeros((0, len(right)))
         if len(given):
@@ -140,8 +141,7 @@ def joint_drop(information: Array, right: Array, columns: Sequence[int]) -> floa
 def _white(information: Array, columns: Sequence[int]) -> Array:
     """Combinations of the columns, (w, w), that are independent and of unit information."""
     block = information[np.ix_(columns, columns)]
-    size = np.sqrt(np.maximum(np.diag(block), np.finfo(float).tiny))
-    values, vectors = _modes(block[None], size[None])
+    values, vectors = _modes(block[None], sizes_of(block)[None])
     white: Array = (vectors[0] * _inverse(values[0])).T
     return white
 

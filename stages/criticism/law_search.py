@@ -196,7 +196,7 @@ def _equations(
     """The normal equations of a sensor on effects, zero of what is fitted already."""
     found = campaign.information(sensor, effects)
     assert found is not None  # the sensor has equations
-    reduced, raw = found
+    reduced, raw, _ = found
     kept = np.diag(reduced.information) > MIN_INFORMATION * raw
     equations = Equations(reduced.information * np.outer(kept, kept), reduced.right * kept)
     return equations, {name: i for i, name in enumerate(reduced.names)}

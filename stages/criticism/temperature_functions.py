@@ -242,7 +242,7 @@ class _Search:
         """The normal equations of the sensor; the noise is what the first models leave."""
         found = self.campaign.information(self.sensor, [*models, *self.others])
         assert found is not None  # else there is no search
-        whole, raw = found
+        whole, raw, _ = found
         degrees = self.campaign.noise_degrees(self.sensor, self.noise_degrees)
         equations = Evidence((whole,), (self.sensor,), (degrees,), raw[None]).observable()
         own = equations.sensors[0]

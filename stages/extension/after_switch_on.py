@@ -144,7 +144,7 @@ def _spread(campaign: Campaign, restarts: Restarts, known: Sequence[Effect]) -> 
     information = campaign.information(restarts.sensor, [restarts, *others])
     if information is None:
         return None
-    whole, _ = information
+    whole = information.on_effects
     place = {name: i for i, name in enumerate(whole.names)}
     rest = whole.given([place[name] for effect in others for name in effect.columns])
     found = []
