@@ -64,6 +64,9 @@ MAX_MISSING_INTERVALS = 8  # intervals that are missing: what lies beyond is no 
 BESIDE = np.arange(MAX_SPIKE_READINGS, MEDIAN_WIDTH)
 AROUND = np.concatenate([-BESIDE, BESIDE])
 PARABOLA_AT_MIDDLE = np.linalg.pinv(np.vander(AROUND, 3))[-1]
+# Places on one side of a reading, and what a parabola through them reads at it.
+BEYOND = np.arange(MEDIAN_WIDTH // 2, 2 * MEDIAN_WIDTH)
+PARABOLA_AT_END = np.linalg.pinv(np.vander(BEYOND, 3))[-1]
 
 
 @dataclass(frozen=True)
@@ -148,8 +151,10 @@ def _off(values: Array, course: Array, least: Array) -> Array:
     far off by its scatter, `least`, is compared once more, the slope between the medians before
     and after taken off, and the smaller distance holds. At the corner of a ramp, where what is
     beside lies on one side, it must be off the straight lines through five readings before and
-    five after as well; at the turning point of a bend, such as gravity's while the IMU is tilted
-    over, where the median lies inside of the bend, off a parabola through six before and six after.
+    five after as well, and off parabolas through fourteen, for the pull of a lever arm grows with
+    the square of the time; at the turning point of a bend, such as gravity's while the IMU is
+    tilted over, where the median lies inside of the bend, off a parabola through six before and six
+    after.
     """
     off = values - course
     half, last = MEDIAN_WIDTH // 2, len(values) - 1
@@ -162,7 +167,9 @@ def _off(values: Array, course: Array, least: Array) -> Array:
     for side in (-1, 1):
         beyond = values[np.clip(far[:, None] + side * np.arange(half, MEDIAN_WIDTH), 0, last)]
         steep = np.abs(slope) * (after - before) > MIN_SLOPE_SCATTER * least[far]
-        distances.append(np.where(steep, values[far] - _continued(beyond), off[far]))
+        longer = values[np.clip(far[:, None] + side * BEYOND, 0, last)]
+        for read in (_continued(beyond), longer @ PARABOLA_AT_END):
+            distances.append(np.where(steep, values[far] - read, off[far]))
     bend = np.abs(course[before] - 2 * course[far] + course[after])
     bent = bend > MIN_BEND_SCATTER * least[far]
     bent &= (far >= MEDIAN_WIDTH) & (far <= last - MEDIAN_WIDTH)

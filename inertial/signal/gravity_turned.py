@@ -8,7 +8,8 @@ gyros read w, over a time T
 which is linear in the 24 unknowns G, H, c, d, so neither a bias nor a scale factor of
 either sensor matters. Where an IMU is moved by hand its acceleration is noise. G is near the unit
 matrix, or near that signed permutation by which the axes of the sensors differ. A turn about the
-vertical says nothing. Accelerometers that all read their negative turn in the same way.
+vertical says nothing, and what changes there is the pull of a lever arm, which does not stay where
+it is in space. Accelerometers that all read their negative turn in the same way.
 
 A gyro may read its negative in a part of a recording alone. A motion from rest to rest, consecutive
 spans of it, tells its sign by which of both fits: a motion that tells nothing fits either way.
@@ -26,6 +27,7 @@ from inertial.text.units import STANDARD_GRAVITY
 
 SPAN_S = 0.5  # over which a change of the force is compared with the gyros
 MIN_TURNED = 0.05  # rad, of the gyros and of the force, within it: less tells nothing
+MAX_PULL = 0.4  # m, times the rate squared: a change of the force within that may be an arm's
 MIN_SPANS, MAX_SPANS = 20, 20_000
 MIN_ENTRY_SIGMA = 10.0  # sigmas of the entries of G that decide
 MAX_ENTRY_SIGMA = 0.15  # of any entry
@@ -208,6 +210,8 @@ def _spans(forces: Array, rates: Array, step: float) -> tuple[Array, Array, Inte
     moved = (np.linalg.norm(whole, axis=1) > MIN_TURNED) & (
         np.arctan2(across_both, along) > MIN_TURNED
     )
+    fastest = np.sum(rate**2, axis=2).max(axis=1)
+    moved &= np.linalg.norm(change, axis=1) > MAX_PULL * fastest
     there = np.isfinite(of_matrix).all(axis=(1, 2)) & moved
     design = np.concatenate([of_matrix, of_bias, of_level, of_both], axis=2)
     return design[there], change[there], starts[there]

@@ -103,6 +103,25 @@ def test_a_turn_about_the_vertical_tells_nothing():
     assert found is None or found.axes is None
 
 
+@pytest.mark.parametrize("acceleration", [300.0, 400.0])
+def test_the_pull_of_a_lever_arm_in_turns_about_the_vertical_tells_nothing(acceleration):
+    """To 300 °/s and back, four times about each axis: it read as three reversed gyros."""
+    arm, rng, ramp = np.array([0.06, 0.02, -0.03]), np.random.default_rng(3), 300.0 / acceleration
+    time = np.arange(round((16 + 2 * ramp) * RATE)) / RATE
+    spun = np.clip(np.minimum(time - 2, time[-1] - 2 - time), 0.0, ramp)
+    stretches = []
+    for number in range(12):
+        axis = np.eye(3)[number % 3]
+        rates = np.outer(np.radians(acceleration) * spun, axis)
+        forces = GRAVITY * axis * (1 if number < 6 else -1) + np.cross(rates, np.cross(rates, arm))
+        forces += np.cross(np.gradient(rates, axis=0) * RATE, arm)
+        noise = rng.standard_normal((2, *rates.shape))
+        read = in_bins(forces + 0.001 * noise[0]), in_bins(rates + 1e-5 * noise[1])
+        stretches.append((*read, 0.1))
+    found = turned(stretches)
+    assert found is None or found.axes is None
+
+
 def test_shaking_without_turning_tells_nothing():
     rng = np.random.default_rng(2)
     forces = [0, 0, GRAVITY] + 3 * rng.standard_normal((6000, 3))

@@ -64,6 +64,23 @@ def test_a_spike_in_a_steady_turn_and_on_a_ramp_is_found():
     assert places(values) == [(0, 2600, 2601), (5, 1200, 1201), (5, 2500, 2501)]
 
 
+@pytest.mark.parametrize("acceleration", [200.0, 300.0, 400.0])
+def test_the_end_of_a_ramp_beside_a_lever_arm_has_no_spike(acceleration):
+    """What pulls grows with the square of the time, and what swings ends at once: a cusp.
+
+    Up to 300 °/s, an arm of 6 cm outwards and 2 cm across; degrees and seconds.
+    """
+    ways = np.arange(-200, 3800) / 100
+    for start in np.arange(0.0, 36.0, 4.0) + 0.003:  # at any place in an interval
+        values = rest(4000)
+        rate = np.radians(np.clip((ways - start) * acceleration, 0.0, 300.0))
+        ramp = (rate > 0) & (rate < np.radians(300.0))
+        values[:, 0] += -0.06 * rate**2 - 0.02 * np.radians(acceleration) * ramp
+        values[:, 1] += -0.02 * rate**2 + 0.06 * np.radians(acceleration) * ramp
+        values[:, 5] += rate
+        assert not places(values)
+
+
 def test_gravity_while_the_case_is_tilted_over_has_no_spike_at_its_turning_point():
     values = rest(60_000)
     tops = np.arange(500, 59_500, 500)
