@@ -121,12 +121,9 @@ def whitening(information: Array, least: float = MIN_INFORMATION_SHARE) -> Array
 
 
 def sizes_of(information: Array) -> Array:
-    """The roots of the diagonal, (k,), as large as can be where there is none.
-
-    So no combination has a column of which rounding leaves less than nothing.
-    """
+    """The roots of the diagonal, (k,), infinite where there is none: no combination has such."""
     own = np.diag(information)
-    return np.sqrt(np.where(own > 0, own, np.finfo(np.float64).max))
+    return np.sqrt(np.where(own > 0, own, np.inf))
 
 
 # ---- From the rows of all unknowns to the normal equations of the effects.

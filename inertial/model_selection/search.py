@@ -120,7 +120,8 @@ class Candidates:
         only = self.only[places]
         fixed = ~np.isnan(only)
         misfit = np.zeros((len(places), along.shape[2]))
-        root = np.sqrt(values[fixed, 0]) / vectors[fixed, 0, 0]
+        own = values[fixed, 0]  # 0 where there is no information
+        root = np.sqrt(own) / np.where(own > 0, vectors[fixed, 0, 0], 1.0)
         misfit[fixed] = (along[fixed, 0] - (only[fixed] * root)[:, None]) ** 2
         return misfit
 

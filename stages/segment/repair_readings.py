@@ -14,7 +14,7 @@ from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import AS_NAMED, Permutation
 from inertial.signal.detector import Given, Log
-from inertial.signal.gravity_turned import Turned, turned
+from inertial.signal.gravity_turned import MAX_PULL, Turned, turned
 from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import Misread
 from inertial.signal.rests_and_motions import steady_part
@@ -37,9 +37,10 @@ from stages.segment.windows import Binned
 
 def axes_by_gravity(binned: Sequence[Binned], level: Array) -> Turned | None:
     """How the gyros turn gravity; `level`: (3,), rad/s, the gyros at rest."""
-    return turned(
-        [(one.forces, one.read_rates - level, one.bin_seconds) for one in binned if one.bins]
-    )
+    stretches = [
+        (one.forces, one.read_rates - level, one.bin_seconds) for one in binned if one.bins
+    ]
+    return turned(stretches, MAX_PULL)
 
 
 def misread_by_gravity(binned: Sequence[Binned], seen: Turned) -> list[Misread]:

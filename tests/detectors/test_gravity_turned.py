@@ -9,7 +9,7 @@ from diagnosis.test_real_recordings import campaign, columns
 from moved_by_hand import TWENTY_FOUR, attitudes, by_hand
 
 from inertial.signal.axis_permutations import AS_NAMED, Permutation
-from inertial.signal.gravity_turned import turned
+from inertial.signal.gravity_turned import MAX_PULL, turned
 
 GRAVITY, RATE, FINE = 9.81, 100, 10
 BIAS = np.array([4.0, -1.0, 6.0])  # m/s², 0.75 g
@@ -118,7 +118,7 @@ def test_the_pull_of_a_lever_arm_in_turns_about_the_vertical_tells_nothing(accel
         noise = rng.standard_normal((2, *rates.shape))
         read = in_bins(forces + 0.001 * noise[0]), in_bins(rates + 1e-5 * noise[1])
         stretches.append((*read, 0.1))
-    found = turned(stretches)
+    found = turned(stretches, MAX_PULL)
     assert found is None or found.axes is None
 
 
