@@ -203,7 +203,7 @@ def motion_of(
         log_time=np.full(n, np.nan),
         since=unknown,
         turned=np.zeros((n, 3)),
-        felt=unknown,
+        measured_force=unknown,
     )
 
 

@@ -270,10 +270,10 @@ class CampaignMotions:
             senses=senses,
             since=since,
             turned=turned,
-            felt=self._felt(m, blocks),
+            measured_force=self._measured_force(m, blocks),
         )
 
-    def _felt(self, m: Manoeuvre, blocks: Blocks) -> Array:
+    def _measured_force(self, m: Manoeuvre, blocks: Blocks) -> Array:
         """The specific force in the blocks of a turn as measured, (k, 3), m/s²; or NaN."""
         triad = self._data.result.since(m.switch_on).accelerometer or UNKNOWN_TRIAD
         return np.asarray((blocks.accel - triad.bias) @ np.linalg.inv(triad.matrix).T)

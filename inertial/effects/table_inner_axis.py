@@ -11,7 +11,7 @@ from inertial.physics.motion import Motion, cross, turned_all, without_north
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
-MIN_KEPT = 0.1  # in a mean of what goes round; of less nothing is concluded
+MIN_AVERAGING_FACTOR = 0.1  # in a mean of what goes round; of less nothing is concluded
 MIN_INNER_COSINE = np.cos(np.radians(1))  # of the angle from the axis of a turn to the inner one
 
 
@@ -59,6 +59,6 @@ def off_its_axes(truth: Truth, motion: Motion, lean: Array, inner: Booleans) -> 
     carried = truth.rate - np.where(inner[:, None], motion.omega, 0.0)
     force = cross(lean, truth.force)
     along = motion.about * np.sum(motion.about * force, axis=1, keepdims=True)
-    kept = np.maximum(motion.kept, MIN_KEPT)[:, None]
-    of_means = np.where(inner[:, None], along / kept + kept * (force - along), force)
+    factor = np.maximum(motion.averaging_factor, MIN_AVERAGING_FACTOR)[:, None]
+    of_means = np.where(inner[:, None], along / factor + factor * (force - along), force)
     return replace(truth, rate=truth.rate - cross(lean, carried), force=truth.force - of_means)

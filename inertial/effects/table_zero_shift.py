@@ -5,7 +5,12 @@ import numpy as np
 from inertial.arrays import Array, Booleans
 from inertial.effects.mounting_shift import SHIFT_TIMES
 from inertial.effects.table_axis_non_orthogonality import HOME, MIN_MIDDLE_SINE
-from inertial.effects.table_inner_axis import MIN_INNER_COSINE, MIN_KEPT, is_inner, off_its_axes
+from inertial.effects.table_inner_axis import (
+    MIN_AVERAGING_FACTOR,
+    MIN_INNER_COSINE,
+    is_inner,
+    off_its_axes,
+)
 from inertial.physics.drift import SettingIn, without_clock
 from inertial.physics.effect import Parameter, Scan, Truth, of_tables
 from inertial.physics.motion import Motion, cross, turned_all, without_north
@@ -104,11 +109,11 @@ def _start(motion: Motion) -> tuple[Array, Array]:
     """Up and north in body axes, (n, 3) each, when the turn or the tumble began."""
     angle = np.linalg.norm(motion.tumbled, axis=1)
     axis = motion.tumbled / np.where(angle > 0, angle, 1.0)[:, None]
-    kept = np.maximum(motion.kept, MIN_KEPT)[:, None]
+    factor = np.maximum(motion.averaging_factor, MIN_AVERAGING_FACTOR)[:, None]
     about = np.broadcast_to(motion.about, motion.up.shape)
 
     def before(direction: Array) -> Array:
         along = about * np.sum(about * direction, axis=1, keepdims=True)
-        return turned_all(along + (direction - along) / kept, axis, -angle)
+        return turned_all(along + (direction - along) / factor, axis, -angle)
 
     return before(motion.up_at_start), before(np.nan_to_num(motion.north_at_start))

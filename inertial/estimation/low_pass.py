@@ -28,7 +28,7 @@ ORDERS = (1, 2, 3, 4, AVERAGE)
 HALF_OF_AVERAGE = 0.44295  # f T, where sinc² is a half
 FALLEN = 0.03  # of the density at the lowest frequencies, down to which a shape is fitted
 FAINT = 0.01  # of the same, that a filter leaves of the highest octave
-STOPPED = 1e-3  # of the same, that a filter of another shape leaves there
+STOP_BAND = 1e-3  # of the same, that a filter of another shape leaves there
 MOST_OF_SHAPE = 2.0  # times what the shape leaves there
 CARRIED = 4.0  # times the density of rounding at the highest frequencies, where counts carry over
 LOW_BINS = 16  # that tell this density
@@ -129,7 +129,7 @@ def likeliest(
     if deviance(LowPass(np.inf, 1)) < deviance(best) + CERTAIN:
         return None  # as well without, by a random walk
     level, highest = _level(bins, channel, lines), _highest(bins, lines)
-    left = MOST_OF_SHAPE * float(best.power(bins.frequency[highest]).mean()) + STOPPED
+    left = MOST_OF_SHAPE * float(best.power(bins.frequency[highest]).mean()) + STOP_BAND
     if bins.density[highest, channel].mean() > left * level + CARRIED * rounding:
         return None  # the sensor's own white noise, which no filter lets pass
     beside = [replace(best, corner=best.corner * share) for share in (1 / BESIDE, BESIDE)]

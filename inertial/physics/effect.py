@@ -309,7 +309,7 @@ class OfSensed(Effect):
 
     def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
         if self.sensor == "gyro":
-            force = np.where(np.isfinite(motion.felt), motion.felt, truth.force)
+            force = np.where(np.isfinite(motion.measured_force), motion.measured_force, truth.force)
             truth = replace(truth, force=force)
         return reading.plus(self.sensor, self.change(truth, values))
 

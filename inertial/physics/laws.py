@@ -41,8 +41,8 @@ FACTORS = ("time", "rate", "force_x", "force_y", "force_z", "temperature", "temp
 PRODUCTS = tuple(
     f"{first}*{second}" for i, first in enumerate(FACTORS) for second in FACTORS[i + 1 :]
 )
-WITHOUT_ZERO = ("time", "temperature")  # states that are counted from any value
-OF_DRIFTS = (*WITHOUT_ZERO, "temperature_rate")
+OF_ANY_ORIGIN = ("time", "temperature")  # states that are counted from any value
+OF_DRIFTS = (*OF_ANY_ORIGIN, "temperature_rate")
 LAWS = (
     *((family, name) for name, families in OF_STATE.items() for family in families),
     *(("product", name) for name in (*PRODUCTS, "other_forces")),
@@ -143,7 +143,7 @@ def beside_product(name: str) -> tuple[str, ...]:
     first, _, second = name.partition("*")
     if not {first, second} <= set(OF_DRIFTS):
         return ()
-    return tuple(other for one, other in ((first, second), (second, first)) if one in WITHOUT_ZERO)
+    return tuple(other for one, other in ((first, second), (second, first)) if one in OF_ANY_ORIGIN)
 
 
 def powers(name: str, degree: float) -> range:

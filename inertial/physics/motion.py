@@ -152,8 +152,8 @@ class Motion:
 
     `since`: (n, 3), s, from the end of the last turn about each axis in the same log to the middle
     of the stretch, negative in a turn, NaN where none is known; `turned`: (n, 3), its sense, ±1, 0
-    where none is known. `felt`: (n, 3), m/s², the specific force that the accelerometers measured
-    in a turn, that of a lever arm with it; NaN where it is not known, or at rest.
+    where none is known. `measured_force`: (n, 3), m/s², the specific force in a turn as the
+    accelerometers measured it, that of a lever arm with it; NaN where not known, or at rest.
     """
 
     time: Array
@@ -178,7 +178,7 @@ class Motion:
     log_time: Array
     since: Array
     turned: Array
-    felt: Array
+    measured_force: Array
 
     @property
     def running(self) -> Array:
@@ -200,7 +200,7 @@ class Motion:
         return self.square[:, None] * cross(self.about, cross(self.about, arm))
 
     @property
-    def kept(self) -> Array:
+    def averaging_factor(self) -> Array:
         """What is left of a vector that goes round, in its mean over each stretch, (n,).
 
         As `up` shows it; of a turn about the vertical, in which that stays, all.

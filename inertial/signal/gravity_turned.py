@@ -27,7 +27,9 @@ from inertial.text.units import STANDARD_GRAVITY
 
 SPAN_S = 0.5  # over which a change of the force is compared with the gyros
 MIN_TURNED = 0.05  # rad, of the gyros and of the force, within it: less tells nothing
-MAX_PULL = 0.4  # m, times the rate squared: a change of the force within that may be an arm's
+MAX_ARM = (
+    0.4  # m: a change of the force within that times the rate squared may be the pull of an arm
+)
 MIN_SPANS, MAX_SPANS = 20, 20_000
 MIN_ENTRY_SIGMA = 10.0  # sigmas of the entries of G that decide
 MAX_ENTRY_SIGMA = 0.15  # of any entry
@@ -83,16 +85,16 @@ class Turned:
         return Permutation(tuple(sources.tolist()), tuple(signs.tolist()))
 
 
-def turned(stretches: Sequence[Stretch], pull: float = 0.0) -> Turned | None:
+def turned(stretches: Sequence[Stretch], arm: float = 0.0) -> Turned | None:
     """How the gyros turn gravity; None where too little is turned.
 
     Parameters
     ----------
     stretches : of consecutive short means: forces, (k, 3), m/s²; rates less their level at rest,
         (k, 3), rad/s; the time from one to the next, s
-    pull : m, `MAX_PULL` where the units of the rates and of the time are known
+    arm : m, `MAX_ARM` where the units of the rates and of the time are known
     """
-    spans = [_spans(*stretch, pull) for stretch in stretches]
+    spans = [_spans(*stretch, arm) for stretch in stretches]
     design = np.concatenate([np.empty((0, 3, UNKNOWNS)), *(part for part, _, _ in spans)])
     change = np.concatenate([np.empty((0, 3)), *(part for _, part, _ in spans)])
     if len(change) < MIN_SPANS:
@@ -146,7 +148,7 @@ def motions(stretch: Stretch, seen: Turned, most: float = MAX_MISFIT) -> Iterato
     """
     forces, rates, step = stretch
     steps = max(round(SPAN_S / step), 1)
-    design, change, starts = _spans(forces, rates, step, MAX_PULL)
+    design, change, starts = _spans(forces, rates, step, MAX_ARM)
     losses = np.empty((4, len(starts)))
     for way in range(4):  # as it is, and each gyro with the other sign
         of_gyros = design
@@ -185,11 +187,11 @@ def signs_of_motions(
         for one in motions((forces, rates, step), seen, np.inf):
             read[one.first : one.after + 1] *= np.where(one.reversed < 0, -1.0, 1.0)
         alike.append((forces, read, step))
-    anew = turned(alike, MAX_PULL) or seen
+    anew = turned(alike, MAX_ARM) or seen
     return anew, [list(motions(stretch, anew)) for stretch in stretches]
 
 
-def _spans(forces: Array, rates: Array, step: float, pull: float) -> tuple[Array, Array, Integers]:
+def _spans(forces: Array, rates: Array, step: float, arm: float) -> tuple[Array, Array, Integers]:
     """The equations of all spans: ∂/∂(G, H, c, d), (n, 3, 24), the change of f, (n, 3), begins."""
     steps = max(round(SPAN_S / step), 1)
     starts = np.arange(0, len(forces) - steps, steps)
@@ -212,7 +214,7 @@ def _spans(forces: Array, rates: Array, step: float, pull: float) -> tuple[Array
         np.arctan2(across_both, along) > MIN_TURNED
     )
     fastest = np.sum(rate**2, axis=2).max(axis=1)
-    moved &= np.linalg.norm(change, axis=1) > pull * fastest
+    moved &= np.linalg.norm(change, axis=1) > arm * fastest
     there = np.isfinite(of_matrix).all(axis=(1, 2)) & moved
     design = np.concatenate([of_matrix, of_bias, of_level, of_both], axis=2)
     return design[there], change[there], starts[there]

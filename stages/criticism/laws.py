@@ -134,7 +134,7 @@ FORMS = {
     "pulse": _("another level from {first_time} s to {last_time} s"),
     "hysteresis": _("hysteresis of {state}, {first} {unit} wide to either side"),
     "product": _("in proportion to {state}"),
-    "drift": _("in proportion to {state}, each counted from a value of its own"),
+    "product_of_drifts": _("in proportion to {state}, each counted from a value of its own"),
 }
 MIN_SIGMAS = 3.0  # of a size that is written
 UNITS_OF_FACTORS = {**UNITS, "other_forces": "g²"}
@@ -175,7 +175,8 @@ def form_of(law: Law) -> str:
     if law.family == "telegraph" and len(times) <= 2:
         form = FORMS["pulse" if len(times) == 2 else "jump"]
         return form.format(first_time=times[0], last_time=times[-1])
-    return FORMS["drift" if law.family == "product" and law.is_drift else law.family].format(
+    of_drifts = law.family == "product" and law.is_drift
+    return FORMS["product_of_drifts" if of_drifts else law.family].format(
         state=state,
         first=significant(first, 3),
         degree=f"{first:.0f}",

@@ -151,11 +151,11 @@ def _observable(system: System | None, largest: Array) -> Observable:
         return {}, frozenset()
     reduced = system.effect_information()
     names, information = np.array(reduced.names), np.diag(reduced.information)
-    felt = system.raw_information()
-    determined = information > MIN_INFORMATION_SHARE * felt
+    raw = system.raw_information()
+    determined = information > MIN_INFORMATION_SHARE * raw
     there = determined & _is_large(largest, information)
     known = dict(zip(names[there].tolist(), information[there].tolist(), strict=True))
-    return known, frozenset(names[_is_large(largest, felt)].tolist())
+    return known, frozenset(names[_is_large(largest, raw)].tolist())
 
 
 def _is_large(largest: Array, information: Array) -> Booleans:

@@ -14,7 +14,7 @@ from inertial.campaign.masked_samples import Repairs
 from inertial.campaign.records import Manoeuvre
 from inertial.signal.axis_permutations import AS_NAMED, Permutation
 from inertial.signal.detector import Given, Log
-from inertial.signal.gravity_turned import MAX_PULL, Turned, turned
+from inertial.signal.gravity_turned import MAX_ARM, Turned, turned
 from inertial.signal.misread_axes import determinant
 from inertial.signal.plan_detector import Misread
 from inertial.signal.rests_and_motions import steady_part
@@ -40,7 +40,7 @@ def axes_by_gravity(binned: Sequence[Binned], level: Array) -> Turned | None:
     stretches = [
         (one.forces, one.read_rates - level, one.bin_seconds) for one in binned if one.bins
     ]
-    return turned(stretches, MAX_PULL)
+    return turned(stretches, MAX_ARM)
 
 
 def misread_by_gravity(binned: Sequence[Binned], seen: Turned) -> list[Misread]:

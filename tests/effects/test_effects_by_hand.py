@@ -175,23 +175,34 @@ def test_a_middle_axis_that_leans_by_exact_rotations(lean, quarter):
     np.testing.assert_allclose(gyro[1:-1], off[0] - right[0], atol=5e-8)
 
 
+SOUTH = np.array([0.0, -1.0, 0.0])
+TILTED = Rotation.from_rotvec(np.arccos(UP[2]) * SOUTH)
+
+
+def on_three_axes(turning_axis):
+    """A turn about an axis of a table of which the middle one points south, turned as `TILTED`.
+
+    The motion, and its attitudes as a function of the rotation by the middle axis.
+    """
+    on_table = TILTED.inv() * AT_START  # the case with the middle axis at zero
+    about = {"inner": VERTICAL, "middle": on_table.inv().apply(SOUTH), "outer": UP}[turning_axis]
+
+    def attitudes(tilted: Rotation) -> Rotation:
+        if turning_axis == "inner":
+            return tilted * about_the_vertical(ANGLES) * on_table
+        axis = SOUTH if turning_axis == "middle" else VERTICAL
+        return Rotation.from_rotvec(np.outer(ANGLES, axis)) * tilted * on_table
+
+    return on_a_turn(ANGLES, about), attitudes
+
+
 @pytest.mark.parametrize("turning_axis", ["inner", "middle", "outer"])
 def test_an_inner_axis_that_leans_by_exact_rotations(turning_axis):
     """The inner axis, on which the case sits, leans towards the south, the middle axis."""
-    lean, south = 1e-4, np.array([0.0, -1.0, 0.0])
-    tilted = Rotation.from_rotvec(np.arccos(UP[2]) * south)
-    on_table = tilted.inv() * AT_START  # the case with the middle axis at zero
-    leaning = Rotation.from_rotvec(lean * np.cross(VERTICAL, south))
-    about = {"inner": VERTICAL, "middle": on_table.inv().apply(south), "outer": UP}[turning_axis]
-    motion = on_a_turn(ANGLES, about)
-
-    def attitudes(missed: Rotation) -> Rotation:
-        if turning_axis == "inner":
-            return tilted * missed * about_the_vertical(ANGLES) * on_table
-        axis = south if turning_axis == "middle" else VERTICAL
-        return Rotation.from_rotvec(np.outer(ANGLES, axis)) * tilted * missed * on_table
-
-    off, right = sensed(attitudes(leaning)), sensed(attitudes(Rotation.identity()))
+    lean = 1e-4
+    motion, attitudes = on_three_axes(turning_axis)
+    leaning = TILTED * Rotation.from_rotvec(lean * np.cross(VERTICAL, SOUTH))
+    off, right = sensed(attitudes(leaning)), sensed(attitudes(TILTED))
     gyro, accel = acted("table_inner_axis", [lean], motion)
     np.testing.assert_allclose(accel[1:-1], off[1] - right[1], atol=2e-7)
     np.testing.assert_allclose(gyro[1:-1], off[0] - right[0], atol=5e-8)
@@ -203,21 +214,11 @@ def test_an_inner_axis_that_leans_by_exact_rotations(turning_axis):
 
 @pytest.mark.parametrize("turning_axis", ["inner", "middle", "outer"])
 def test_another_zero_of_the_middle_axis_by_exact_rotations(turning_axis):
-    """The middle axis, which points south, has turned further; the inner one goes along."""
-    further, south = 1e-4, np.array([0.0, -1.0, 0.0])
-    tilted = Rotation.from_rotvec(np.arccos(UP[2]) * south)
-    on_table = tilted.inv() * AT_START
-    shifted = Rotation.from_rotvec(further * south)
-    about = {"inner": VERTICAL, "middle": on_table.inv().apply(south), "outer": UP}[turning_axis]
-    motion = on_a_turn(ANGLES, about)
-
-    def attitudes(missed: Rotation) -> Rotation:
-        if turning_axis == "inner":
-            return missed * tilted * about_the_vertical(ANGLES) * on_table
-        axis = south if turning_axis == "middle" else VERTICAL
-        return Rotation.from_rotvec(np.outer(ANGLES, axis)) * missed * tilted * on_table
-
-    off, right = sensed(attitudes(shifted)), sensed(attitudes(Rotation.identity()))
+    """The middle axis has turned further; the inner one goes along."""
+    further = 1e-4
+    motion, attitudes = on_three_axes(turning_axis)
+    shifted = Rotation.from_rotvec(further * SOUTH) * TILTED
+    off, right = sensed(attitudes(shifted)), sensed(attitudes(TILTED))
     for name in ("table_zero_shift", "table_zero_shift_outer"):
         gyro, accel = acted(name, [0.0, 0.0, further], motion, at=-1.0)
         np.testing.assert_allclose(accel[1:-1], off[1] - right[1], atol=2e-7)
