@@ -144,10 +144,8 @@ NAMES = {
     "table_backlash": _("backlash of the table"),
     "table_axis_non_orthogonality": _("table axis non-orthogonality"),
     "table_inner_axis": _("inner table axis non-orthogonality"),
-    "table_zero_shift": _("another zero of the middle table axis from a time on"),
-    "table_zero_shift_outer": _(
-        "another zero of the middle table axis from a time on, about the outer one where upright"
-    ),
+    "table_zero_shift": _("shifted zero of the middle table axis"),
+    "table_zero_shift_outer": _("shifted zero of the middle table axis (outer axis where upright)"),
     "turn_angle_error": _("turn whose angle is off"),
     "table_position_error": _("set position that is off"),
     "table_axis_error": _("set position that is off, with the axis of its turns"),
