@@ -45,9 +45,8 @@
 #   make injections               puts effects and faults into the bytes of the real recordings, which are not
 #                                 part of the project, and reports what is detected, in docs/injections.md; an
 #                                 hour of one core, can be resumed; with DRAWS=40 so many of them
-#   make laws                     hides laws of no effect of the catalogue, and nothing, in 1000 campaigns
-#                                 each, in docs/laws.md; eight hours on two cores, can be resumed; with
-#                                 DRAWS=100 so many of each
+#   make laws                     hides laws of no effect of the catalogue in 240 campaigns, in docs/laws.md;
+#                                 an hour on two cores, can be resumed; with DRAWS=60 so many of them
 #   make walks                    random walks of gyro biases against ramps, jumps and warm-ups, in
 #                                 docs/walks.md; five hours on two cores, can be resumed; with DRAWS=10 so
 #                                 many of each kind
@@ -234,7 +233,7 @@ injections: .venv/complete
 	PYTHONPATH=tests:tests/hidden OPENBLAS_NUM_THREADS=1 $(BIN)/python -m injections $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",400) data/derived/injections
 
 laws: .venv/complete
-	PYTHONPATH=tests:tests/hidden:tests/laws OPENBLAS_NUM_THREADS=1 $(BIN)/python -m laws $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",1000) data/derived/laws
+	PYTHONPATH=tests:tests/hidden:tests/laws OPENBLAS_NUM_THREADS=1 $(BIN)/python -m laws $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",240) data/derived/laws
 
 walks: .venv/complete
 	PYTHONPATH=tests:tests/hidden:tests/walks OPENBLAS_NUM_THREADS=1 $(BIN)/python -m walks $(if $(filter DRAWS=%,$(MAKEOVERRIDES)),"$$DRAWS",200) data/derived/walks

@@ -1,9 +1,9 @@
-"""`make laws`: hidden laws and clean campaigns, in docs/laws.md; can be resumed.
+"""`make laws`: hidden laws, in docs/laws.md; can be resumed.
 
     PYTHONPATH=tests:tests/hidden:tests/laws python -m laws <draws> <folder>
 
-Of so many draws each, of laws and of clean campaigns, every outcome is a line of `laws.jsonl` in
-the folder. At the end docs/laws.md is written of what is there.
+Every outcome is a line of `laws.jsonl` in the folder. At the end docs/laws.md is written of what
+is there.
 """
 
 import sys
@@ -16,10 +16,10 @@ from law_page import write
 
 def main(draws: int, folder: Path) -> None:
     """Draw what is missing, then write the page of all."""
-    jobs = [(kind, number) for number in range(draws) for kind in ("law", "clean")]
+    jobs = [(number,) for number in range(draws)]
     resumable.with_all_stages()
     file = folder / "laws.jsonl"
-    resumable.drawn(file, code(), ("kind", "number"), outcome, jobs)
+    resumable.drawn(file, code(), ("number",), outcome, jobs)
     sys.stdout.write(write(resumable.outcomes_of(file, code())))
 
 

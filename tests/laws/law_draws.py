@@ -1,4 +1,4 @@
-"""A campaign with a hidden law, or a clean one, drawn by number, and what the stages say of it."""
+"""A campaign with a hidden law, drawn by number, and what the stages say of it."""
 
 from functools import cache
 from typing import Any
@@ -9,7 +9,6 @@ from hidden_plans import sensors
 from law_bayes import chosen
 from law_families import FAMILIES, Family, Random, plan_document
 from law_reference import captured, clean, course, equations_of, remaining
-from silence.silent_campaigns import document_of
 
 from inertial.campaign.equations import Campaign
 from inertial.effects import CATALOGUE, LAWS
@@ -24,7 +23,6 @@ BESIDE = ("studies", "comparison", "compensation")
 CLEAR = ("found", "one_of_class")
 MIN_CAPTURED = 0.90  # of each other: one class of form
 SINGLE = 0.75  # share of the draws in one axis alone
-CLEAN = 50_000  # numbers of clean campaigns begin here, apart from those of docs/silence.md
 
 
 @cache
@@ -45,22 +43,13 @@ def direction(random: Random) -> np.ndarray:
     return every / np.linalg.norm(every)
 
 
-def outcome(kind: str, number: int) -> dict[str, Any]:
-    """Of a draw of a kind, `law` or `clean`."""
-    made = {"kind": kind, "number": number, "code": code()}
+def outcome(number: int) -> dict[str, Any]:
+    """Of a draw; an error is counted, and the others go on."""
+    made = {"number": number, "code": code()}
     try:
-        return made | (hidden(number) if kind == "law" else silent(number))
-    except Exception as error:  # it is counted, and the others go on
+        return made | hidden(number)
+    except Exception as error:
         return made | {"error": f"{type(error).__name__}: {error}"}
-
-
-def silent(number: int) -> dict[str, Any]:
-    """Which laws are named in a clean campaign."""
-    plan, sort, _there, document = document_of(CLEAN + number)
-    results = chain.in_memory_of(document, "criticism", BESIDE)
-    findings = results["criticism/findings"]
-    laws = [row.cause for row in findings.itertuples() if row.cause in LAWS]
-    return {"plan": plan, "sort": sort, "laws": laws}
 
 
 def hidden(number: int) -> dict[str, Any]:

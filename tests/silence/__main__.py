@@ -9,9 +9,8 @@ import sys
 from pathlib import Path
 
 import resumable
-from hidden_sizes import code
 
-from silence.silent_campaigns import outcome
+from silence.silent_campaigns import code, outcome
 from silence.silent_page import write
 
 

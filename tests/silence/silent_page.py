@@ -26,7 +26,9 @@ Row = tuple[str, ...]
 
 def write(outcomes: Sequence[Outcome], draws: int, page: Path = PAGE) -> str:
     """Write the page; its first sentence for the terminal."""
-    false = [one for one in outcomes if one["named"]]
+    false, laws, unexplained = (
+        [one for one in outcomes if one[what]] for what in ("named", "laws", "unexplained")
+    )
     chances = list(_even(outcomes, "chances", lambda values: kstest(values, "uniform").pvalue))
     errors = list(_even(outcomes, "errors", lambda values: kstest(values, "norm").pvalue))
     figures = {
@@ -34,9 +36,13 @@ def write(outcomes: Sequence[Outcome], draws: int, page: Path = PAGE) -> str:
         "wanted": WANTED,
         "falsely": len(false),
         "bound": f"{100 * upper(len(false), len(outcomes)):.1f}",
+        "laws": len(laws),
+        "law_bound": f"{100 * upper(len(laws), len(outcomes)):.1f}",
+        "unexplained": len(unexplained),
         "by_sort": list(_rates(outcomes, "sort")),
         "by_plan": list(_rates(outcomes, "plan")),
         "names": sorted({name for one in false for name in one["named"]}),
+        "law_names": sorted({name for one in laws for name in one["laws"]}),
         "chances": chances,
         "errors": errors,
         "sure": SURE,
