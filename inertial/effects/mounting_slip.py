@@ -29,6 +29,7 @@ class MountingSlip(MountingShift):
         "and its orientation in the fixture differs from then on"
     )
     scan = Scan("t0", "s", _("time of the slip since the first sample of all logs"))
+    by_share = False
 
     def grid(self, motion: Motion) -> Array:
         turns = np.unique(np.floor(motion.visit[_turning(motion)]))

@@ -292,6 +292,7 @@ class SettingIn(Effect):
     """
 
     times: int  # that are tried
+    by_share = True  # what each stretch has of it is in proportion to its share that is after
 
     def blind(self, motion: Motion) -> str:
         return "" if len(np.unique(motion.run)) > 1 else without_clock(motion)

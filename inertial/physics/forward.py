@@ -12,6 +12,7 @@ from math import cos, sin, tan
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.physics.drift import SettingIn
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import Motion, cross, turned_all
 from inertial.physics.site import EARTH_RATE, normal_gravity, radii
@@ -95,11 +96,22 @@ def signatures(
         before = plain if moved is truth else sensed(moved, gyro, accelerometer)
         return effect.reads(before, moved, motion, values)
 
+    whole: dict[tuple[object, ...], Reading] = {}  # of what sets in, as if before all
+
     def signature(effect: Effect) -> Reading:
         if (known := effect.signature(motion)) is not None:
             return known
         if (added := effect.added(truth, motion)) is not None:
             return Reading(*np.nan_to_num([added.gyro, added.accel]))
+        if not (isinstance(effect, SettingIn) and effect.by_share):
+            return derivative(effect)
+        ever = effect.fixed(-np.inf)
+        if ever.key not in whole:
+            whole[ever.key] = derivative(ever)
+        share = np.nan_to_num(effect.since(motion))[:, None, None]
+        return Reading(share * whole[ever.key].gyro, share * whole[ever.key].accel)
+
+    def derivative(effect: Effect) -> Reading:
         derivatives = np.zeros((2, len(motion.rate), 3, len(effect.parameters)))
         for i, parameter in enumerate(effect.parameters if not effect.blind(motion) else ()):
             step = np.zeros(len(effect.parameters))
