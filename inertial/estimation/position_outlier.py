@@ -28,6 +28,7 @@ FREE_TILT_SIGMA = 0.02  # rad, of a tilt that is fitted freely: a degree
 SIGNIFICANCE = 0.001  # accepted probability of a false alarm
 MIN_OFF = np.sqrt(2e-5)  # rad: from there 1 − cos, which no linear error has, is above 10 µg
 MIN_OFF_SIGMAS = 20.0  # of the table: less is an error that it makes
+MIN_BEYOND = MIN_OFF_SIGMAS**2 / 4  # of chi-squared: so much is left even of half of such an error
 MAX_OFF = np.radians(15.0)  # more is another position
 MAX_OFF_POSITIONS = 3
 MAX_REST = 1 / 3  # of what is beyond noise: else the positions are not what is wrong
@@ -139,7 +140,7 @@ def far_off(
 
     fitted = first = freed(frozenset())
     found: list[str] = []
-    while len(found) < MAX_OFF_POSITIONS and _beyond(fitted) > MIN_CLEAR:
+    while len(found) < MAX_OFF_POSITIONS and _beyond(fitted) > MIN_BEYOND:
         tried = {one: freed(frozenset({*found, one})) for one in ups if one not in found}
         ranked = sorted(tried, key=lambda one: tried[one].chi_squared)
         least, *others = (tried[one].chi_squared for one in ranked)
