@@ -69,7 +69,7 @@ def page(report: Report) -> str:
     environment.finalize = lambda text: typeset(text) if type(text) is str else text
     environment.filters["drawn"] = Markup
     environment.globals["words"] = WORDS
-    environment.tests["long"] = _long
+    environment.tests |= {"long": _long, "words": _words}
     style, script = (
         Markup((FOLDER / file).read_text(encoding="utf-8")) for file in ("report.css", "report.js")
     )
@@ -89,6 +89,11 @@ def page(report: Report) -> str:
 def _long(text: str, kind: str) -> bool:
     """Whether a cell holds a word that must be broken anywhere."""
     return any(len(word) > MOST_LETTERS.get(kind, MOST_LETTERS_ELSE) for word in text.split())
+
+
+def _words(text: str, kind: str) -> bool:
+    """Whether a cell for a number holds words, which need not stand in one line."""
+    return kind == "number" and " " in text and not any(map(str.isdigit, text))
 
 
 @dataclass(frozen=True)

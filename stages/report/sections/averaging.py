@@ -5,9 +5,11 @@ from math import hypot, sqrt
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from inertial.campaign.records import grouped
 from inertial.sensors import unit_of
+from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
 from inertial.text.parameters import PARTS, SENSOR_OF, STAGES
@@ -239,12 +241,19 @@ def _scatter(rows: Sequence[Record]) -> outline.Figure:
     places = sorted(panels_of, key=lambda place: (place[0], list(KINDS).index(place[1])))
     with drawing.style():
         figure, [axes] = drawing.panels(
-            1, len(places), 1.25, drawing.Margins(left=0.45, across=0.34, top=0.24)
+            1, len(places), 1.25, drawing.Margins(left=0.45, across=0.34, top=0.36)
         )
         for panel, (stage, kind) in zip(axes, places, strict=True):
             _scatter_panel(panel, panels_of[stage, kind])
-            panel.set_title(f"{sensor_of_stage(stage)}, {KINDS[kind]}", pad=3, fontsize=6.8)
+            panel.set_title(f"{sensor_of_stage(stage)}\n{KINDS[kind]}", pad=3)
             panel.set_xlabel(_("Epoch, s"))
+        axes[0].legend(
+            handles=[Line2D([], [], color=drawing.AXIS_COLOUR[axis], label=axis) for axis in AXES],
+            loc="lower left",
+            ncols=len(AXES),
+            columnspacing=1.0,
+            handlelength=1.0,
+        )
         axes[0].set_ylabel(_("σ / σ of white noise"))
         drawn = drawing.svg(figure, "spreads")
     return outline.Figure(

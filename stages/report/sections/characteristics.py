@@ -7,7 +7,17 @@ from inertial.sensors import SINGULAR
 from inertial.text import numbers
 from inertial.text.messages import _, listed
 from inertial.text.units import DEGREES_PER_HOUR, DEGREES_PER_SECOND, METRES, PPM, Unit
-from stages.report.outline import Column, Part, Row, Section, Sentences, Table, head, table_row
+from stages.report.outline import (
+    Column,
+    Part,
+    Row,
+    Section,
+    Sentences,
+    Table,
+    head,
+    table_row,
+    value_and_sigma,
+)
 from stages.report.tables import Record, Tables
 
 NAMES = {
@@ -69,17 +79,17 @@ def _bandwidths(rows: Sequence[Record]) -> Iterator[Part]:
     """One table of both sensors, and why there is no bandwidth of some axes."""
     known = [row for row in rows if row["lower"] is not None or row["value"] is not None]
     if known:
+        estimated = any(row["value"] is not None for row in known)
         yield Table(
             _("Bandwidth (−3 dB) of each axis."),
             (
                 Column(_("Axis"), "name"),
-                Column(_("value"), "number"),
-                Column("± σ", "sigma"),
+                *(value_and_sigma() if estimated else ()),
                 Column(_("at least, 95 %"), "number"),
                 Column(_("unit"), "unit"),
                 Column(_("turns"), "number"),
             ),
-            list(_bandwidth_rows(known)),
+            list(_bandwidth_rows(known, estimated=estimated)),
             note=_(
                 "As of a first-order low pass; one of second order with the damping 1/√2 delays "
                 "all ramps alike, which ramps do not tell from dead time. Without an encoder a "
@@ -101,21 +111,20 @@ def _bandwidths(rows: Sequence[Record]) -> Iterator[Part]:
         yield Sentences(tuple(missing))
 
 
-def _bandwidth_rows(rows: Sequence[Record]) -> Iterator[Row]:
+def _bandwidth_rows(rows: Sequence[Record], *, estimated: bool) -> Iterator[Row]:
     for by, name in BY.items():
         for sensor in ("accel", "gyro"):
             own = [r for r in rows if (r["by"], r["sensor"]) == (by, sensor)]
             if own:
                 yield head(f"{SINGULAR[sensor]}: {name}")
             for row in own:
-                value, sigma = "", ""
+                value: tuple[str, ...] = ("", "") if estimated else ()
                 if row["value"] is not None:
-                    value, sigma = numbers.with_own_sigma(row["value"], row["sigma"])
+                    value = numbers.with_own_sigma(row["value"], row["sigma"])
                 mount = f" ({row['mount']})" if row["mount"] else ""
                 yield table_row(
                     row["axis"] + mount,
-                    value,
-                    sigma,
+                    *value,
                     numbers.significant(row["lower"], 2) if row["lower"] else "",
                     "Hz",
                     numbers.whole(row["turns"]) if row["turns"] else "",

@@ -13,7 +13,7 @@ from inertial.sensors import PLURAL
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, p_is, shortened, whole
-from inertial.text.typography import capital
+from inertial.text.typography import capital, columns_of
 from inertial.text.units import DEGREE, DEGREES_PER_HOUR, ICE_POINT, MICRO_G, Unit
 from stages.report import drawing
 from stages.report.drawing import Array
@@ -32,7 +32,8 @@ from stages.report.sections.effect_tables import SMOOTH, TESTS, channel, place
 from stages.report.tables import Record, Tables, arrays, gains, once
 
 UNIT = {"gyro": DEGREES_PER_HOUR, "accel": MICRO_G}
-MOST_NAMES = 24  # manoeuvres whose names have room below each other
+MOST_NAMES = 24  # manoeuvres whose names have room beside each other
+LETTER = 0.046  # inches that each letter of an upright name takes
 PIECES = 5  # of a rest, so that what changes within it is seen
 APART = 0.04  # of a manoeuvre, between its axes
 MOST_STRUCTURES = 3
@@ -165,7 +166,9 @@ def draw_by_manoeuvre(
     `beside`: the width of the second; `band`: how many σ of noise are shaded.
     """
     named = len(shown) <= MOST_NAMES
-    margins = drawing.Margins(top=0.2, bottom=0.75 if named else 0.4, left=0.5, across=0.5)
+    letters = max((columns_of(_name(residual)) for residual in shown), default=0)
+    bottom = 0.2 + LETTER * letters if named else 0.4
+    margins = drawing.Margins(top=0.2, bottom=bottom, left=0.5, across=0.5)
     drawn, panels = drawing.side_by_side([2.6, beside] if beside else [1.0], 1.35, margins)
     _manoeuvres(panels[0], sensor, shown, named, band)
     return drawn, panels
@@ -202,10 +205,13 @@ def _manoeuvres(
     drawing.ticks(panel, 5)
     panel.set_xlim(-0.6, len(shown) - 0.4)
     if named:
-        names = [shortened(residual.manoeuvre, 12) for residual in shown]
-        panel.set_xticks(range(len(shown)), names, rotation=90)
+        panel.set_xticks(range(len(shown)), list(map(_name, shown)), rotation=90)
     else:
         panel.set_xlabel(_("Manoeuvre, in the order of the plan"))
+
+
+def _name(residual: Residual) -> str:
+    return shortened(residual.manoeuvre, 12)
 
 
 def _axes(panel: Axes, changes: dict[str, Record]) -> None:

@@ -180,7 +180,7 @@ def _angle(panel: Axes, name: str, rows: Sequence[Record]) -> None:
     drawing.around(panel, time, 0 * sigma, sigma, drawing.QUIET, 0.25)
     drawing.around(panel, time, off, swing, COLOUR, 0.3)
     panel.plot(time, off, color=COLOUR, linewidth=0.7)
-    panel.set_title(numbers.shortened(name, 30), pad=3)
+    panel.set_title(f"{numbers.shortened(name, 26)}, {SECONDS_OF_ARC.name}", pad=3)
     drawing.ticks(panel, 4)
 
 
