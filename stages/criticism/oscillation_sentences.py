@@ -90,11 +90,11 @@ COUPLED = _(" Through the cross-axis terms it also appears in the other gyros: {
 COUPLED_HIDDEN = _("{axis}, {expected} °/s expected, less than its noise shows")
 COUPLED_READ = _("{axis}, {expected} °/s expected, {read} °/s measured{more}")
 COUPLED_MORE = _(
-    " ({excess} °/s apart with its phase, {tipping} °/s expected by the case's tipping in the "
-    "table's rate)"
+    " (with its phase they differ by {excess} °/s; {tipping} °/s is expected as the case tilts in "
+    "the table's rate)"
 )
 COUPLED_MORE_EACH = _(
-    " (each {excess} °/s apart with its phase, {tipping} °/s expected by the case's tipping in "
+    " (with its phase each differs by {excess} °/s; {tipping} °/s is expected as the case tilts in "
     "the table's rate)"
 )
 

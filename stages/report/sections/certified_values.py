@@ -148,8 +148,9 @@ def further_terms(
     return Table(
         _(
             "Further terms of the measurement model, estimated together with the parameters above. "
-            "Use all of them together, but take off no reading what the table, the site or the "
-            "mounting causes, nor a law whose physical cause is not known: its finding says so."
+            "Use all of them together, but do not subtract from readings the terms that the table, "
+            "the site or the mounting causes, or a law of unknown cause; the finding says which "
+            "these are."
         ),
         (
             Column(_("symbol"), "symbol"),

@@ -78,10 +78,10 @@ SECTION = outline.Section(
         "Points are the data with their 1-σ interval, lines the sum of the fitted terms; from left "
         "to right quantisation falls with slope −1, white noise (random walk of angle or velocity) "
         "with −½, bias instability is flat, a random walk of the bias rises with +½, a ramp with "
-        "+1. Every σ of this report rests on white noise as each manoeuvre has it, on "
-        "quantisation, bias instability and random walk where they are certain (p < 0.1 %), and on "
-        "the rounding of counts that are coarse beside it; of the data sheet, dashed, the bias "
-        "instability is used as far as the rests leave it open, and nothing else."
+        "+1. Every σ of this report contains the white noise of each manoeuvre, quantisation, bias "
+        "instability and random walk where they are significant (p < 0.1 %), and the rounding of "
+        "counts that are coarse beside them. Of the data sheet, dashed, only the bias instability "
+        "is used, where the rests do not determine it."
     ),
     (
         "allan",

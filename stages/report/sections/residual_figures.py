@@ -367,13 +367,13 @@ SECTION = Section(
         "included."
     ),
     _(
-        "Effects of the table, the site or the mounting that are in the result are predicted, too, "
-        "though no compensated reading is rid of them. Left, fifths of each static position and "
-        "whole steady rotations, with ±3 σ of white noise; right, the residuals of blocks and of "
-        "seconds of rotation over their σ, of which noise alone leaves 0.3 % beyond 3; the "
-        "outermost bins hold what is further out. Tilts of the positions are estimated with the "
-        "result, and so is their azimuth where the table's heading is not known: that fits one "
-        "direction of the gyros' residuals at rest away."
+        "Effects of the table, the site or the mounting that are in the result are predicted, too; "
+        "compensated readings still contain them. Left, fifths of each static position and whole "
+        "steady rotations, with ±3 σ of white noise; right, the residuals of blocks and of seconds "
+        "of rotation over their σ, of which noise alone leaves 0.3 % beyond 3; the outermost bins "
+        "hold what is further out. Tilts of the positions are estimated with the result, and so is "
+        "their azimuth where the table's heading is not known; in that case one direction of the "
+        "gyros' residuals at rest is zero by the fit."
     ),
     ("residuals", "manoeuvres", "result"),
     parts,
@@ -456,7 +456,8 @@ def _table(tables: Tables) -> Table:
         _(
             "Root mean square of the residuals over σ, and how many are beyond 3 σ. σ is that of "
             "white noise alone: the errors of the table, of positions and of rates, by which tests "
-            "and the σ of the result are larger, are not in it, so that more than 1 is no finding."
+            "and the σ of the result are larger, are not in it, so that a ratio above 1 alone is "
+            "not a finding."
         ),
         (
             Column(_("Sensor")),
