@@ -26,8 +26,8 @@
 #   make test                     the tests; the same as CI with `make style`
 #   make test-slow                those that draw many campaigns, repeat others with other numbers, or run
 #                                 a whole campaign each; an hour and a half on two cores
-#   make bench                    errors, time and memory compared with other programs, in one run;
-#                                 also with ONLY="cost noise"
+#   make bench                    errors, time and memory compared with other programs, in one run, in
+#                                 docs/benchmarks.md; also with ONLY="cost noise"
 #   make style                    linters, types, and which package may import which
 #   make challenge                hides effects in many campaigns and reports what is detected, in
 #                                 docs/challenge.md; four hours on two cores, can be resumed; with
