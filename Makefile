@@ -2,9 +2,9 @@
 #
 #   make report                   the demo, recorded by the simulated laboratory
 #   make report CAMPAIGN=<name>   the campaign in data/raw/<name>/
-#   make crate                    a campaign with all that made it as one file, a Run-RO-Crate,
+#   make crate                    a campaign with all that made it as one file, a Workflow Run RO-Crate,
 #                                 reports/<campaign>.crate.zip; also with CAMPAIGN=<name>
-#   make check                    faults of the recording within a minute, before the set-up is
+#   make check                    faults of the recording in a minute or two, before the set-up is
 #                                 dismantled; also with CAMPAIGN=<name>
 #   make draft LOG="<logs>"       a first campaign file from the logs alone, data/raw/<name>/; also with
 #                                 NAME=<name>, and RATE=<Hz> where no log has a clock whose unit is sure

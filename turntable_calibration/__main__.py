@@ -113,7 +113,7 @@ def _goals(campaign: str) -> list[str]:
 @click.argument("campaign", type=Campaign())
 @click.pass_obj
 def crate(of: tuple[Path, int], campaign: str) -> int:
-    """Pack a campaign with all that made it as a Run-RO-Crate."""
+    """Pack a campaign with all that made it as a Workflow Run RO-Crate."""
     folder, cores = of
     if status := snakemake(folder, cores, _goals(campaign)):
         return status

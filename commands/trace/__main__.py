@@ -1,6 +1,6 @@
 """From which lines of the logs was a number of the report computed?
 
-    python -m commands.trace --campaign demo --id gyroscope/joint/bias_x
+    python -m commands.trace --campaign demo --id diagnosis/gyroscope/bias_x
 
 It ends with 0 where every link of the chain is intact, and with 1 where one is broken or where
 there is no such number.
@@ -25,7 +25,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print the steps from a number to its lines; the exit code."""
     parser = argparse.ArgumentParser(prog="trace", description="where a number comes from")
     parser.add_argument("--campaign", required=True, help="name of the campaign")
-    parser.add_argument("--id", required=True, help="such as gyroscope/joint/bias_x")
+    parser.add_argument("--id", required=True, help="such as diagnosis/gyroscope/bias_x")
     parser.add_argument("--data", type=Path, default=Path("data"), help="holds raw/ and derived/")
     parser.add_argument("--config", type=Path, default=ROOT / "config.yaml", help="the settings")
     options = parser.parse_args(arguments)

@@ -10,7 +10,7 @@ from inertial.text.numbers import counted, plus_minus, shortened, significant
 from inertial.text.parameters import PARTS
 from stages.report.tables import Record
 
-SENSOR_OF_STAGE = {"accelerometer": _("Accelerometer"), "gyroscope": _("Gyroscope")}
+SENSOR_OF_STAGE = {"accelerometer": _("Accelerometer"), "gyroscope": _("Gyro")}
 KINDS = {
     "bias": _("bias"),
     "scale": _("scale"),

@@ -34,7 +34,7 @@ def _power(axes: Axes, outcomes: Sequence[Outcome], statistics: Sequence[dict[st
         own = [[row for row in rows if row["ratio"] == ratio] for ratio in ratios]
         limit = [np.mean([row["limit"] for row in some]) for some in own]
         power = [np.mean([row["power"] / row["trials"] for row in some]) for some in own]
-        axes.plot(ratios, limit, color=colour, label=f"limit, {degrees} degrees of freedom")
+        axes.plot(ratios, limit, color=colour, label=f"limit, degrees of freedom: {degrees}")
         axes.plot(ratios, power, "o", color=colour, mfc="none")
         for ratio in RATIOS:
             some = [
@@ -45,7 +45,7 @@ def _power(axes: Axes, outcomes: Sequence[Outcome], statistics: Sequence[dict[st
                 share = float(np.mean([bool(one["named"]) for one in some]))
                 error = np.sqrt(max(share * (1 - share), 0.25 / len(some)) / len(some))
                 axes.errorbar(ratio + 0.12, share, error, fmt="s", ms=4, lw=0.8, color=colour)
-    axes.set(xlabel="SNR", ylabel="share of campaigns in which a cause is named", ylim=(0.3, 1.03))
+    axes.set(xlabel="SNR", ylabel="share of campaigns in which a cause is named", ylim=(0.0, 1.03))
     axes.set_title("Power: ○ statistics, ■ campaigns, – limit", fontsize=9)
     axes.legend(fontsize=7, loc="lower right")
     axes.grid(alpha=0.3)

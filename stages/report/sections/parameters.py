@@ -395,6 +395,6 @@ def _undetermined(estimate: Estimate) -> Iterator[Row]:
         yield table_row(
             estimate.name,
             ", ".join(each[:MAX_SYMBOLS]) + rest,
-            shortened(reason or _("no reason is stated"), 600),
+            shortened(capital(reason or _("no reason is stated")), 600),
             tone="fair",
         )

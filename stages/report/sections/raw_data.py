@@ -212,7 +212,7 @@ def parts(tables: Tables) -> Iterator[Part]:
 SECTION = Section(
     "raw-data",
     _("Raw data"),
-    _("Gyroscope and accelerometer of every log, as recorded."),
+    _("Gyros and accelerometers of every log, as recorded."),
     _(
         "Each band runs from the smallest to the largest sample of a short stretch, so no spike is "
         "lost; logs at rest are drawn relative to the median. Behind the "
@@ -262,7 +262,7 @@ def _masked_in_words(log: Log) -> str:
 
 
 def _draw(log: Log, key: str, points: int, *, small: bool) -> str:
-    """Gyroscope on the left, accelerometer on the right, one panel per axis."""
+    """Gyros on the left, accelerometers on the right, one panel per axis."""
     with drawing.style():
         lines, height = (1, 0.75) if small else (3, 0.62)
         figure, axes = drawing.panels(lines, 2, height, drawing.Margins())
