@@ -74,7 +74,9 @@ class Done:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write the crate; the exit code."""
-    parser = argparse.ArgumentParser(prog="crate", description="a campaign as a Workflow Run RO-Crate")
+    parser = argparse.ArgumentParser(
+        prog="crate", description="a campaign as a Workflow Run RO-Crate"
+    )
     parser.add_argument("--campaign", required=True, help="name of the campaign")
     parser.add_argument("--data", type=Path, default=Path("data"), help="holds raw/ and derived/")
     options = parser.parse_args(arguments)

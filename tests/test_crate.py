@@ -1,4 +1,4 @@
-"""The Workflow Run RO-Crate of a campaign: what the profiles of Workflow Run RO-Crate 0.5 demand (MUST).
+"""The Workflow Run RO-Crate of a campaign: what its profiles, version 0.5, demand (MUST).
 
 roc-validator 0.13 fetches contexts from the network; what it found is held here.
 """
