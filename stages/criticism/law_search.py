@@ -95,13 +95,15 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
     columns = columns_with(campaign, sensor, others, named)
     prior = {e.name: _prior(e, campaign, len(selection.searched)) for e in named}
 
-    def weighed(beside: Sequence[Effect]) -> tuple[float, Searched, Sequence[Effect]]:
+    def weighed(beside: Sequence[Effect]) -> Weighed:
         jumped = any(effect.name == f"{sensor}_bias_jump" for effect in beside)
         found = searched(columns, columns.given(beside), 1 if jumped else 2)
-        return _catalogue(columns, beside, prior) + found.odds.total, found, beside
+        law, gain = refined(campaign, found.most_probable, [*others, *beside])
+        return Weighed(_catalogue(columns, beside, prior) + found.odds.total, gain, found, law)
 
     # One after the other, for each has equations of some thousand columns.
-    score, found, beside = max(map(weighed, _subsets(named)), key=lambda one: one[0])
+    best = max(map(weighed, _subsets(named)), key=lambda one: one.score + one.gain)
+    score, found = best.score, best.found
     alone = _catalogue(columns, named, prior)
     walk = max(_walk_beside(columns, []), alone + _walk_beside(columns, named))
     # Where the effects are all there is, odds of 1/level occur in that share of campaigns at most.
@@ -111,11 +113,8 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
     if p_value > level:
         return None
     group = law_class(found.equations, found.odds)
-    first = group.members[0]
-    shape = found.shapes[first][int(found.odds.candidates.value[found.odds.best[first]])]
-    law = _shaped(LAWS[found.laws[first].name], shape)
     return FoundLaw(
-        refined(campaign, law, [*others, *beside]),
+        best.law,
         tuple(found.laws[i].name for i in group.members),
         group.weights,
         group.captured,
@@ -215,6 +214,28 @@ class Searched:
     paths: Array
     odds: LawOdds
 
+    @property
+    def most_probable(self) -> Law:
+        """The most probable law in its best shape of the grid."""
+        first = int(np.argmax(self.odds.of_each))
+        shape = self.shapes[first][int(self.odds.candidates.value[self.odds.best[first]])]
+        return _shaped(LAWS[self.laws[first].name], shape)
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """A law beside some of the named effects.
+
+    `score`: the log evidence of these and of any law in the shapes of its grid; `law`: the most
+    probable, in the best shape, of which the evidence is larger by `gain`: without that an effect
+    beside it might only make up for the steps of the grid.
+    """
+
+    score: float
+    gain: float
+    found: Searched
+    law: Law
+
 
 def searched(columns: Columns, equations: Equations, fewest: int) -> Searched:
     """The odds of all laws in these equations.
@@ -286,8 +307,11 @@ def _walk_beside(columns: Columns, named: Sequence[Effect]) -> float:
 # ---- The shape of a law between the values of its grid.
 
 
-def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> Law:
-    """The law with each value of its shape moved within a step of its grid while that is better."""
+def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> tuple[Law, float]:
+    """The law with each value of its shape moved within a step of its grid while that is better.
+
+    And by how much its log evidence grows.
+    """
     part, axes = campaign.stretches(law.sensor), [AXES.index(axis) for axis in law.axes]
     grid = (
         [(float(time),) for time in laws.steps(campaign.motion, laws.STEPS)]
@@ -295,7 +319,8 @@ def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> Law:
         else laws.grid(law.family, law.state, campaign.motion)
     )
     if not law.shape or law.family == "polynomial" or len(grid) < 2:
-        return law
+        return law, 0.0
+    gain = 0.0
     values = np.array(grid)[:, 0]
     scale = 1.0
     for _round in range(ROUNDS):
@@ -306,9 +331,10 @@ def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> Law:
                 _shaped(law, (*law.shape[:k], law.shape[k] + share * step, *law.shape[k + 1 :]))
                 for share in FINER
             ]
-            law = _best(campaign, tried, beside, part, axes)
+            law, more = _best(campaign, tried, beside, part, axes)
+            gain += more
         scale /= 4
-    return law
+    return law, gain
 
 
 def _best(
@@ -317,8 +343,8 @@ def _best(
     beside: Sequence[Effect],
     part: slice,
     axes: Sequence[int],
-) -> Law:
-    """The one that explains most."""
+) -> tuple[Law, float]:
+    """The one that explains most, and by how much its log evidence exceeds the unmoved one's."""
     motion, found, first = campaign.motion, [], sum(len(e.parameters) for e in beside)
     columns: list[list[int]] = [[] for _ in tried]
     for axis in axes:
@@ -336,4 +362,5 @@ def _best(
     best = int(np.argmax(odds))
     # A power of the grid, such as 3, is simpler than one between.
     simple = tried[best].family.endswith("power") and odds[best] < odds[UNMOVED] + MAX_LOG_ODDS
-    return tried[UNMOVED if simple else best]
+    best = UNMOVED if simple else best
+    return tried[best], float(odds[best] - odds[UNMOVED])
