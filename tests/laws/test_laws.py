@@ -82,12 +82,14 @@ def test_a_sine_of_the_angle_of_no_whole_order():
 
 
 @pytest.mark.slow
-def test_a_power_of_the_rate():
-    told = {"at_10_deg_s_deg_h": [0, 1, 0], "power": 1.5}
+@pytest.mark.parametrize(("size", "power"), [(1.0, 1.5), (-2.9, 1.33)])
+def test_a_power_of_the_rate(size, power):
+    """Of one between the steps of the grid no effect of the catalogue is named beside it."""
+    told = {"at_10_deg_s_deg_h": [0, size, 0], "power": power}
     cause, sizes = named_in_memory(hiding("rates", "gyro_rate_power", **told))
     assert (cause["cause"], cause["verdict"]) == ("gyro_y_power_of_rate", "law")
-    assert sizes.loc["shape_1", "value"] == pytest.approx(1.5, abs=0.1)
-    assert sizes.loc["k_y", "value"] / DEGREE_PER_HOUR == pytest.approx(1.0, abs=0.1)
+    assert sizes.loc["shape_1", "value"] == pytest.approx(power, abs=0.1)
+    assert sizes.loc["k_y", "value"] / DEGREE_PER_HOUR == pytest.approx(size, abs=0.1)
 
 
 @pytest.mark.slow
