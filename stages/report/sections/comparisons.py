@@ -99,15 +99,14 @@ COMPARISONS = outline.Section(
         "parameter by two ways that should agree. Then published values against the final result."
     ),
     _(
-        "First what differs by more than chance; then, in steps of ten, what is compared most "
-        "sharply, by the σ of the difference over that of the result; within, the largest "
-        "difference in units of its σ. p is the probability of a difference this large if the two "
-        "are equal; among many comparisons some are large by chance, which the verdict takes into "
-        "account. Two methods that use the same data are correlated: the variance of their "
-        "difference is the difference of their variances, where the joint estimate is the better "
-        "one throughout, and else their sum. Static against rotation is judged by the σ of noise, "
-        "table and site alone. The σ of the methods in “Parameters” also contain the scatter "
-        "between manoeuvres and are therefore larger."
+        "First come differences beyond chance, then the most exact comparisons, then the largest "
+        "differences in units of their σ. p is the probability of a difference this large if the "
+        "two are equal; among many comparisons some are large by chance, which the verdict takes "
+        "into account. Two methods that use the same data are correlated: the variance of their "
+        "difference is the difference of their variances if one is the joint fit and has the "
+        "smaller σ throughout, else their sum. Static against rotation is judged by the σ of "
+        "noise, table and site alone; the σ in “Parameters” also contain the scatter between "
+        "manoeuvres and are larger."
     ),
     ("differences", "published_differences", *RESULT_TABLES),
     comparison_parts,
