@@ -99,10 +99,11 @@ def find_law(selection: Selection, sensor: str, level: float) -> FoundLaw | None
         jumped = any(effect.name == f"{sensor}_bias_jump" for effect in beside)
         found = searched(columns, columns.given(beside), 1 if jumped else 2)
         law, gain = refined(campaign, found.most_probable, [*others, *beside])
-        return Weighed(_catalogue(columns, beside, prior) + found.odds.total, gain, found, law)
+        score = _catalogue(columns, beside, prior) + found.odds.total + gain
+        return Weighed(score, found, law)
 
     # One after the other, for each has equations of some thousand columns.
-    best = max(map(weighed, _subsets(named)), key=lambda one: one.score + one.gain)
+    best = max(map(weighed, _subsets(named)), key=lambda one: one.score)
     score, found = best.score, best.found
     alone = _catalogue(columns, named, prior)
     walk = max(_walk_beside(columns, []), alone + _walk_beside(columns, named))
@@ -226,13 +227,11 @@ class Searched:
 class Weighed:
     """A law beside some of the named effects.
 
-    `score`: the log evidence of these and of any law in the shapes of its grid; `law`: the most
-    probable, in the best shape, of which the evidence is larger by `gain`: without that an effect
-    beside it might only make up for the steps of the grid.
+    `score`: the log evidence of these and of any law; `law`: the most probable. By the shapes of a
+    grid alone effects of the catalogue that make up for its steps would be likelier.
     """
 
     score: float
-    gain: float
     found: Searched
     law: Law
 
@@ -310,7 +309,7 @@ def _walk_beside(columns: Columns, named: Sequence[Effect]) -> float:
 def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> tuple[Law, float]:
     """The law with each value of its shape moved within a step of its grid while that is better.
 
-    And by how much its log evidence grows.
+    And by how much its log evidence grows, less that of so many trials.
     """
     part, axes = campaign.stretches(law.sensor), [AXES.index(axis) for axis in law.axes]
     grid = (
@@ -334,7 +333,8 @@ def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> tuple[Law
             law, more = _best(campaign, tried, beside, part, axes)
             gain += more
         scale /= 4
-    return law, gain
+    trials = len(law.shape) * float(np.log(ROUNDS * len(FINER)))
+    return law, max(gain - trials, 0.0)
 
 
 def _best(

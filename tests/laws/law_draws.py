@@ -16,7 +16,7 @@ from inertial.effects.law import Law
 from inertial.physics.effect import Effect
 from inertial.tables.code import code_of, hash_of
 
-SEED = 13_009  # of all draws; none of it was looked at while the search was written
+SEED = 301_126  # of all draws; none of it was looked at while the search was written
 RATIOS = (12.0, 20.0, 30.0)  # signal-to-noise ratio beside the best effect of the catalogue
 DRAWN_BY = ("bayes", "draws", "families", "reference")
 BESIDE = ("studies", "comparison", "compensation")

@@ -25,6 +25,7 @@ def write(outcomes: Sequence[Outcome], page: Path = PAGE) -> str:
     figures = {
         "laws": len(laws),
         "wanted": WANTED,
+        "code": outcomes[0]["code"] if outcomes else "",
         "errors": len(outcomes) - len(laws),
         "bars": list(_bars(laws)),
         "families": list(_families(laws)),

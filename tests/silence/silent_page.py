@@ -34,6 +34,7 @@ def write(outcomes: Sequence[Outcome], draws: int, page: Path = PAGE) -> str:
     figures = {
         "campaigns": len(outcomes),
         "wanted": WANTED,
+        "code": outcomes[0]["code"] if outcomes else "",
         "falsely": len(false),
         "bound": f"{100 * upper(len(false), len(outcomes)):.1f}",
         "laws": len(laws),
