@@ -18,7 +18,8 @@ from inertial.text.units import ARC_SECOND
 MIN_PAIRS = 3  # one alone may be a shift of the IMU in its fixture
 MIN_SHARE = 2 / 3  # of the pairs, which turn gravity
 MIN_RATIO = 5.0  # of what changes across gravity, over what changes along it in any pair
-MAX_CHANCE = 1e-5  # of noise that is the same along gravity and across it
+MIN_SIGMAS = 3.0  # of what changes across gravity, over that by the scatter of the rests
+MAX_CHANCE = 1e-5  # of noise as large across gravity as along it, or as the rests scatter there
 MAX_OF_ROUND = 0.01  # by which a whole number of rounds between two rests may be off
 MIN_VERTICAL = 0.9  # share of the vertical in an axis that points up
 
@@ -44,8 +45,9 @@ class PositionNotKept(PlanDetector):
         if len(pairs) < MIN_PAIRS or len(vertical) < 3:
             return
         along, across = np.array([_change(recorded, *pair) for pair in pairs]).T
-        turned = across > MIN_RATIO * np.abs(along).max()
-        noise = 2 * float(np.sum(along**2))
+        sigma = np.array([_noise_across(recorded, *pair) for pair in pairs])
+        turned = across > np.maximum(MIN_RATIO * np.abs(along).max(), MIN_SIGMAS * sigma)
+        noise = max(2 * float(np.sum(along**2)), float(np.sum(sigma**2)))
         ratio = float(np.sum(across**2)) / noise if noise > 0 else 0.0
         chance = float(fdtrc(2 * len(pairs), len(pairs), ratio))
         if turned.mean() >= MIN_SHARE and chance < MAX_CHANCE:
@@ -95,6 +97,22 @@ def _change(recorded: Recorded, i: int, after: int) -> Array:
     change, up = recorded.force[after] - recorded.force[i], recorded.up[i]
     along = float(change @ up)
     return np.array([along, np.linalg.norm(change - along * up)])
+
+
+def _noise_across(recorded: Recorded, i: int, after: int) -> float:
+    """Sigma of the change across gravity by what the rests of the position scatter, m/s².
+
+    A table that shakes sideways does so more across gravity than along it; 0 where not known.
+    """
+    rests = recorded.static_means
+    position = np.array(recorded.position)[rests.manoeuvre]
+    density = rests.scatter[position == recorded.position[i]] ** 2
+    density = density[np.isfinite(density).all(axis=1)]
+    if not len(density):
+        return 0.0
+    across = np.median(density, axis=0) @ (1 - recorded.up[i] ** 2)
+    own = ~rests.after_turn & np.isin(rests.manoeuvre, (i, after))
+    return float(np.sqrt(across * np.sum(1 / rests.seconds[own])))
 
 
 # ---- An IMU that creeps in its fixture while positions are held.

@@ -57,6 +57,7 @@ MIN_MOTION_RATIO = 3.0  # times the scatter of the quiet stretches
 MAX_SPIKE_READINGS = 3  # readings of a spike
 MIN_SLOPE_SCATTER = 3.0  # scatters between the medians before and after
 OFF_SHARE, OFF_OF_WHITE = 0.95, 1.98  # quantile of the distance from the median of nine, in sigma
+NEAR_OFF = 0.675  # sigma: a seventh more than the median of that distance
 MIN_COLOUR = 1.3  # ratio of scatters; what is less may be the steps of coarse counts
 MIN_BEND_SCATTER = 3.0  # scatters by which twice the median between them is off their sum
 MAX_MISSING_INTERVALS = 8  # intervals that are missing: what lies beyond is no neighbour
@@ -235,6 +236,7 @@ MAX_OTHER_SPIKES = 4  # of them may be spikes as well
 FIFTH_LARGEST_SIGMA = 1.37  # sigma: the fifth largest of 24 Gaussian readings
 # Of that scatter, which comes from few readings, so that noise alone seldom raises it
 SIDE_SCATTER_SHARE = 0.75
+NEAR_READINGS = 64  # on each side, whose usual distance counts where the noise changes in a turn
 MIN_LEAP = 0.75  # of a spike, by which readings leap to it and back; half where a ramp turns back
 MIN_NEIGHBOUR_SHARE = 0.1  # of the largest within nine readings: what is less is not judged
 CAMPAIGN_READINGS = 1.2e6  # of a campaign like S0's, among which the largest is sought
@@ -254,9 +256,9 @@ class Spikes(Detector):
 
     Looked at is what is left of the readings without their running median over 9: nothing of a
     ramp, a step or a steady turn. It is measured by the scatter of the 1024 readings around, or of
-    the 24 on either side where that is larger, and at least by a count: so an oscillation or
-    coarse counts are no spikes. Nor is the top of a change of position, to which nothing leaps. A
-    knock shakes several channels at once, and rings: it is none either. Where the IMU is moved by
+    the 64 or the 24 on either side where that is larger, and at least by a count: so an oscillation
+    or coarse counts are no spikes. Nor is the top of a change of position, to which nothing leaps.
+    A knock shakes several channels at once, and rings: it is none either. Where the IMU is moved by
     hand, or rings, a spike must be a gross one of one reading; in a log of which a tenth is so,
     everywhere. The first and the last reading are not judged, nor those beside readings that are
     masked.
@@ -375,9 +377,13 @@ def _spikes(channel: Channel, handled: Booleans) -> Iterator[tuple[int, int, flo
     far = np.flatnonzero((off > MIN_SPIKE_SCATTER * channel.scatter) & ~channel.alone)
     if not len(far):
         return
-    scatter = np.maximum(
-        channel.scatter[far],
-        SIDE_SCATTER_SHARE * _beside(off, far, MAX_OTHER_SPIKES) / FIFTH_LARGEST_SIGMA,
+    around = np.clip(far[:, None] + np.arange(-NEAR_READINGS, NEAR_READINGS + 1), 0, len(off) - 1)
+    scatter = np.maximum.reduce(
+        [
+            channel.scatter[far],
+            SIDE_SCATTER_SHARE * _beside(off, far, MAX_OTHER_SPIKES) / FIFTH_LARGEST_SIGMA,
+            np.median(off[around], axis=1) / NEAR_OFF,
+        ]
     )
     moved = np.maximum(
         MIN_GROSS_SCATTER * scatter, MIN_CHANGE_RATIO * _beside(channel.change, far, 0)

@@ -203,7 +203,8 @@ class StaticMeans:
     """The n rests of the manoeuvres of a plan, one after the other, those of turns too.
 
     manoeuvre: (n,), place in the plan; after_turn: (n,), whether it is that after a turn; force:
-    (n, 3), m/s², mean; time, seconds: (n,), s, its middle and duration.
+    (n, 3), m/s², mean; time, seconds: (n,), s, its middle and duration; scatter: (n, 3), m/s²·√s,
+    of its blocks, by their duration; NaN where they are few.
     """
 
     manoeuvre: Integers
@@ -211,6 +212,7 @@ class StaticMeans:
     force: Array
     time: Array
     seconds: Array
+    scatter: Array
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ from inertial.signal.plan_detector import (
     Swapped,
     Undone,
 )
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.tables import ACCEL, GYRO, STATIC_PHASES
 from stages.segment.located import Located
 from stages.segment.matching import Part, motion
@@ -36,6 +37,7 @@ from stages.segment.steps import BY_GRAVITY
 UNKNOWN = np.full(3, np.nan)
 MAX_OF_ROUND = 0.01  # by which a whole number of rounds may be off
 QUARTERS = 4  # of the steady part of a turn
+MIN_BLOCKS = 5  # of a rest, of which the scatter is known
 Place = tuple[int, int, float, float]  # records [first, after), from and to, s
 NOWHERE: Place = (-1, -1, np.nan, np.nan)
 
@@ -244,24 +246,30 @@ def _static_means(plan: Sequence[Manoeuvre], blocks: pd.DataFrame) -> StaticMean
     own = blocks[blocks["phase"].isin(STATIC_PHASES) & blocks["manoeuvre"].isin(places)]
     known = np.isfinite(own[[*ACCEL, "time"]].to_numpy(np.float64)).all(axis=1)
     own = own[known & (own["seconds"].to_numpy(np.float64) > 0)]
-    rests = [
-        (
-            places[str(name)],
-            str(phase) == "rest-after",
-            np.average(rest[list(ACCEL)], axis=0, weights=rest["seconds"]),
-            float(np.average(rest["time"], weights=rest["seconds"])),
-            float(rest["seconds"].sum()),
+    rests = []
+    for (name, phase), rest in own.groupby(["manoeuvre", "phase"], sort=False):
+        seconds = rest["seconds"].to_numpy(np.float64)
+        force = rest[list(ACCEL)].to_numpy(np.float64)
+        off = np.abs(force - np.median(force, axis=0)) * np.sqrt(seconds)[:, None]
+        rests.append(
+            (
+                places[str(name)],
+                str(phase) == "rest-after",
+                np.average(force, axis=0, weights=seconds),
+                float(np.average(rest["time"], weights=seconds)),
+                float(seconds.sum()),
+                MAD_TO_SIGMA * np.median(off, axis=0) if len(rest) >= MIN_BLOCKS else UNKNOWN,
+            )
         )
-        for (name, phase), rest in own.groupby(["manoeuvre", "phase"], sort=False)
-    ]
     rests.sort(key=lambda rest: (rest[0], rest[1]))
-    number, after, force, time, seconds = zip(*rests, strict=True) if rests else ((),) * 5
+    number, after, force, time, seconds, scatter = zip(*rests, strict=True) if rests else ((),) * 6
     return StaticMeans(
         np.array(number, np.int64),
         np.array(after, bool),
         np.array(force, np.float64).reshape(-1, 3),
         np.array(time, np.float64),
         np.array(seconds, np.float64),
+        np.array(scatter, np.float64).reshape(-1, 3),
     )
 
 

@@ -70,3 +70,11 @@ def test_rests_of_one_position_that_were_set_anew_are_no_random_walk() -> None:
     assert found["count"] == 6 and found["size"] / ARC_SECOND == pytest.approx(42, rel=0.3)
     kept_so = chain.in_memory(recording, "segment", chain.BESIDE)["segment/findings"]
     assert "position_not_kept" not in set(kept_so["cause"])
+
+
+def test_a_table_that_shakes_sideways_keeps_its_positions() -> None:
+    """Means of 3.5 s differ across gravity by its shaking, and hardly along gravity."""
+    document = PLANS["stops"](seed=2_026_113_007_000_026)  # where it was named
+    document["noise"]["table_sway_m_s_sqrt_h"] = [0.0184, 0.0205]
+    results = chain.in_memory_of(document, "segment", chain.BESIDE)
+    assert "position_not_kept" not in set(results["segment/findings"]["cause"])

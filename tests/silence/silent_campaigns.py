@@ -60,7 +60,7 @@ def outcome(number: int) -> dict[str, Any]:
     told = {"number": number, "code": code(), "plan": plan, "sort": sort}
     recording = laboratory.perform(laboratory.specify(document))
     results = chain.in_memory(recording, "diagnosis", chain.BESIDE)
-    members = results["diagnosis/members"].groupby("id")["member"].agg(set)
+    members = results["diagnosis/members"].groupby("cause")["member"].agg(set)
     false = [
         cause
         for cause in results["diagnosis/causes"].itertuples()
