@@ -61,6 +61,32 @@ def test_of_short_rests_no_level_is_its_own_by_chance():
     assert np.mean(common) == pytest.approx(TRUE, rel=0.012)  # a mean of roots is 2.5 % too low
 
 
+@pytest.mark.parametrize(("degrees", "apart"), [(10, 0.3), (60, 0.1)])
+def test_levels_that_scatter_are_nearer_to_the_truth_than_their_own_and_the_common_one(
+    degrees, apart
+):
+    """Log-normal levels, as on a table that shakes sideways, in many attitudes."""
+    rng, count = np.random.default_rng(6), 100
+    errors: dict[str, list[np.ndarray]] = {"effective": [], "measured": [], "common": []}
+    pulls = []
+    for _ in range(20):
+        true = TRUE * np.exp(rng.normal(0, apart, count))
+        white = true * np.sqrt(rng.chisquare(degrees, count) / degrees)
+        measured = pd.DataFrame({"manoeuvre": range(count), "phase": "rest", "channel": "gyro_x"})
+        measured = measured.assign(white_noise=white, sigma=white / np.sqrt(2 * degrees))
+        levels = effective_levels(measured.assign(per_sample=white))
+        common, own = levels["white_noise"].iloc[0], levels.iloc[1:]
+        assert (own["source"] != "common").all()
+        for name, values in (("effective", own["white_noise"]), ("measured", white)):
+            errors[name].append(np.log(np.asarray(values, float) / true))
+        errors["common"].append(np.log(common / true))
+        pulls.append(errors["effective"][-1] * np.sqrt(2 * own["degrees"].to_numpy(float)))
+    rms = {name: float(np.sqrt(np.mean(np.square(one)))) for name, one in errors.items()}
+    best = 1 / np.sqrt(1 / apart**2 + 2 * degrees)  # of a Gaussian and its prior
+    assert rms["effective"] < 1.1 * best < min(rms["measured"], rms["common"])
+    assert np.sqrt(np.mean(np.square(pulls))) == pytest.approx(1.0, abs=0.15)
+
+
 def test_a_manoeuvre_without_a_level_of_a_channel_that_stands_still_has_the_largest_of_it():
     nothing = pd.DataFrame(
         columns=["manoeuvre", "phase", "channel", "white_noise", "sigma", "per_sample"]

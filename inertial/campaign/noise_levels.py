@@ -2,7 +2,9 @@
 
 A level is known to some per cent only, and a sensor alone has the same in every manoeuvre. So the
 level that is common to the campaign is taken, but for a manoeuvre and phase whose own level differs
-from it by more than chance: there the table, or the air, adds to the noise.
+from it by more than chance: there the table, or the air, adds to the noise. Where the others
+together scatter by more than chance, as on a table that shakes sideways, whose horizontal axes are
+louder, each is between its own and the common one.
 
 Where counts are coarse beside the noise, and do not carry over what they leave, the mean of a
 manoeuvre is off by their rounding however long it is; a level beside its own holds that.
@@ -39,7 +41,7 @@ MAX_P_VALUE = 1e-3  # of a drift that enters: of 12 that are absent, one in a ca
 LEVEL_COLUMNS = [column.name for column in tables.LEVELS.columns]
 MAX_STATED_RATIO = 1.5  # of a bias instability to the data sheet's, from which it is unexpected
 MIN_NOISE_RECORDING_S = 1800.0  # s, of a rest that is recorded for its noise
-OWN, COMMON = "own", "common"
+OWN, BETWEEN, COMMON = "own", "between", "common"
 STATED, RESIDUALS = "stated", "residuals"  # of means without time
 
 
@@ -104,6 +106,7 @@ def effective_levels(
             elsewhere | {"channel": channel} | common | dict((drifts or {}).get(channel, {}))
         )
         differ = _differ(white, level, weight / 2)
+        spread = _spread(white[alike], weight[alike] / 2)
         for row, precision, differs in zip(own, weight, differ, strict=True):
             rows.append(
                 {key: row[key] for key in ("manoeuvre", "phase", "channel", "per_sample")}
@@ -115,6 +118,8 @@ def effective_levels(
                     {"white_noise": row["white_noise"], "sigma": row["sigma"], "source": OWN}
                     | {"degrees": float(precision) / 2}
                     if differs
+                    else _between(row["white_noise"], float(precision) / 2, level, spread)
+                    if spread
                     else {}
                 )
             )
@@ -138,6 +143,35 @@ def _differ(white: Array, level: float, degrees: Array) -> Booleans:
     """
     above = chi2_sf(degrees * (white / level) ** 2, degrees)
     return np.asarray(2 * np.minimum(above, 1 - above) * len(white) < LEVEL_P_VALUE)
+
+
+def _spread(white: Array, degrees: Array) -> float:
+    """The variance of the logarithm of the variances of levels, (n,), beyond chance; 0: none.
+
+    Bartlett's test of equal variances (1937), then the moments of DerSimonian and Laird (1986): the
+    logarithm of a variance of ν degrees of freedom is known to √(2/ν).
+    """
+    more, total = len(white) - 1, float(degrees.sum())
+    if not more:
+        return 0.0
+    variance = np.log(white**2)
+    pooled = float(np.log(np.average(white**2, weights=degrees)))
+    unequal = float(degrees @ (pooled - variance))
+    unequal /= 1 + (float(np.sum(1 / degrees)) - 1 / total) / (3 * more)
+    if chi2_sf(unequal, more) >= LEVEL_P_VALUE:
+        return 0.0
+    weight = degrees / 2
+    off = variance - np.average(variance, weights=weight)
+    beyond = float(weight @ off**2) - more
+    return max(beyond / float(weight.sum() - weight @ weight / weight.sum()), 0.0)
+
+
+def _between(white: float, degrees: float, common: float, spread: float) -> Row:
+    """The level of a manoeuvre by its own and by the common one, about which others scatter."""
+    share = spread / (spread + 2 / degrees)
+    level, known = common * (white / common) ** share, degrees + 2 / spread
+    sigma = level / np.sqrt(2 * known)
+    return {"white_noise": level, "sigma": sigma, "source": BETWEEN, "degrees": known}
 
 
 def only_noise(manoeuvres: pd.DataFrame, terms: pd.DataFrame) -> bool:

@@ -85,7 +85,7 @@ NOISE_TERMS = table(
 )
 LEVELS = table(
     "levels",
-    8,
+    9,
     optional_text("manoeuvre", "as in noise; none: all that have no row"),
     optional_text("phase", "rest or steady; none as manoeuvre"),
     text("channel", "one of the six channels"),
@@ -93,8 +93,9 @@ LEVELS = table(
     number("sigma", "rad/√s, m/s/√s", "standard deviation of white_noise"),
     text(
         "source",
-        "common: of the campaign; own: it differs by over 3 sigma; of means without time, of"
-        " which a sample counts as 1 s: stated; residuals: next to 0, for a scatter shows it",
+        "common: of the campaign; own: it differs by over 3 sigma; between: where levels scatter by"
+        " more than chance; of means without time, of which a sample counts as 1 s: stated;"
+        " residuals: next to 0, for a scatter shows it",
     ),
     number("degrees", "1", "degrees of freedom of white_noise"),
     optional_number(
