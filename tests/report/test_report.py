@@ -211,8 +211,8 @@ def test_the_result_that_counts_stands_first_and_once() -> None:
     assert first == ["diagnosis/accelerometer/bias_x", "diagnosis/gyroscope/bias_x"]
     # 1.30e-6 rad/s and five sigma of 2.1e-8 (the extended fit moved it by four) are 0.2898 °/h
     assert number(page.rows["diagnosis/gyroscope/bias_x"][1]) == pytest.approx(0.2898, abs=1e-4)
-    assert page.text.count("Result: Gyroscope, mean over the models that") == 1
-    assert page.text.index("Result: Gyroscope") < page.text.index("By method")
+    assert page.text.count("Result: Gyro, mean over the models that") == 1
+    assert page.text.index("Result: Gyro") < page.text.index("By method")
 
 
 def spoilt() -> dict[str, Any]:
@@ -235,13 +235,13 @@ def test_a_result_that_is_withheld_is_said_to_be_and_why_once() -> None:
     assert "Gyros: the result is withheld" in page.text
     assert "values above are evidence" not in page.text
     assert "Withheld: the sensor is not usable, as page one says." in page.text
-    assert "the result that counts is withheld: Gyroscope." in page.text
+    assert "the result that counts is withheld: Gyro." in page.text
     captions = [part.caption for part in parameters_of(made) if isinstance(part, Table)]
     assert [text for text in captions if "value and sigma of each" in text] == [
         "Accelerometer, joint fit of all manoeuvres: value and sigma of each parameter."
     ]
     assert any(
-        text.startswith("Gyroscope: the same parameters by") for text in captions
+        text.startswith("Gyro: the same parameters by") for text in captions
     )  # as evidence
 
 
@@ -419,7 +419,7 @@ def test_parameters_without_shares_are_said() -> None:
     made = synthetic.brief()
     made["uncertainty_budget"] = made["uncertainty_budget"].iloc[:0]
     shown = synthetic.section_on(made, uncertainty_budget.SECTION)
-    for sensor in ("Accelerometer", "Gyroscope"):
+    for sensor in ("Accelerometer", "Gyro"):
         assert f"{sensor}, not split: all parameters; its σ differs" in shown
     made["result"]["method"] = "mixture"
     shown = synthetic.section_on(made, uncertainty_budget.SECTION)
@@ -681,7 +681,7 @@ def test_one_sensor_without_time_stamps_or_turns() -> None:
     tables["campaign"]["serial"] = "unknown"
     documents = synthetic.report_on(tables)
     values = synthetic.section_on(tables, certificate.SECTION)
-    gyros = re.findall(r'data-label="Gyroscope value">([^<]*)</td>', values)
+    gyros = re.findall(r'data-label="Gyro value">([^<]*)</td>', values)
     assert gyros == ["—"] * 12
     assert "without time stamps" in documents["html"]
     assert "not recorded" in documents["html"]

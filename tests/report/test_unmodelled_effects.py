@@ -64,7 +64,7 @@ def test_what_is_identified_says_how_sure_it_is_and_what_it_gains() -> None:
 def test_what_changes_most_is_stated_in_the_units_of_the_laboratory() -> None:
     html = demo()["criticism/gyro_g_sensitivity"]
     # 1.3e-6 rad/s are 0.2681 °/h; four sigma of 2.1e-8 rad/s more are 0.2855 °/h
-    said = "Of all parameters, bias x of the gyroscope changes most: from 0.2681 ± 0.0043 to 0.2855"
+    said = "Of all parameters, bias x of the gyro changes most: from 0.2681 ± 0.0043 to 0.2855"
     assert said in html
     assert "σ of the joint fit" not in html
 
