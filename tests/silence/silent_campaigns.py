@@ -19,7 +19,7 @@ from inertial.estimation.triad import linear_names
 from inertial.tables.code import code_of, hash_of
 
 DRAWN_BY = ("hidden/hidden_elsewhere", "hidden/hidden_plans", "silence/silent_campaigns")
-SEED = 2_026_113_014  # of all draws; none was looked at while the pipeline was written
+SEED = 2_026_113_021  # of all draws; none was looked at while the pipeline was written
 LAW, UNEXPLAINED = "law", "unknown_structure"
 UNBIASED = (  # with these noises the sigmas should hold; an oscillation may move parameters
     "plain",
