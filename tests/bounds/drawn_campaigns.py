@@ -26,6 +26,9 @@ CLOCKS = pd.DataFrame(
     {
         "log": ["session.asc"],
         "clock": ["GPS"],
+        "epoch_gps": [0.0],
+        "from_s": [0.0],
+        "to_s": [None],
         "interval": [1 / RATE],
         "integration_step": [1 / RATE],
     }
