@@ -59,6 +59,8 @@ def measured() -> list[Table]:
     table.remarks += [
         f"All {len(pooled)} intervals together contain the truth in {100 * pooled.mean():.2f} %.",
         "A dash: the plan does not determine it, and no value is given.",
+        "Plan e are tumbles: the estimate lets their rests share tilts, which the bound"
+        " leaves out.",
         "b bias, s scale factor, N cross terms; a accelerometers, g gyros. An rms of 450 errors"
         " scatters by 3 %.",
     ]
