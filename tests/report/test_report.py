@@ -240,9 +240,7 @@ def test_a_result_that_is_withheld_is_said_to_be_and_why_once() -> None:
     assert [text for text in captions if "value and sigma of each" in text] == [
         "Accelerometer, joint fit of all manoeuvres: value and sigma of each parameter."
     ]
-    assert any(
-        text.startswith("Gyro: the same parameters by") for text in captions
-    )  # as evidence
+    assert any(text.startswith("Gyro: the same parameters by") for text in captions)  # as evidence
 
 
 @pytest.mark.slow
