@@ -25,6 +25,11 @@ BESIDE = ("studies", "comparison")  # stages on which no later one rests, for `w
 SETTINGS: dict[str, dict[str, Any]] = YAML(typ="safe").load(ROOT / "config.yaml")
 
 
+def up_to(last: str) -> tuple[str, ...]:
+    """The stages until one, with it."""
+    return tuple(ORDER[: ORDER.index(last) + 1])
+
+
 def stage_of(name: str) -> Stage:
     """A stage by its name."""
     stage: Stage = import_module(f"stages.{name}.stage").STAGE

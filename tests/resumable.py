@@ -4,13 +4,15 @@ import json
 import os
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import chain
+
+from inertial.tables.code import code_of, hash_of
 
 Outcome = dict[str, Any]
 
@@ -22,6 +24,13 @@ def with_all_stages() -> None:
     """Load all stages before the processes part, so that all run the same code."""
     for stage in chain.ORDER:
         import_module(f"stages.{stage}.stage")
+
+
+def code_of_outcomes(stages: Iterable[str], drawn_by: Iterable[Path]) -> str:
+    """A hash of all that an outcome rests on: stages, laboratory, settings, and what draws it."""
+    files = {file for stage in stages for file in code_of(stage)} | {*drawn_by}
+    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
+    return hash_of(sorted(files))[:16]
 
 
 def outcomes_of(file: Path, code: str) -> list[Outcome]:

@@ -9,8 +9,7 @@ import chain
 from campaigns import diagnosed
 from diagnosis_draws import Drawn, drawn
 from judge import at_reference, judge, parameters_of
-
-from inertial.tables.code import code_of, hash_of
+from resumable import code_of_outcomes
 
 HERE = Path(__file__).parent
 DRAWN_BY = ("campaigns", "cases", "judge", "diagnosis_draws", "diagnosis_faults")
@@ -23,16 +22,10 @@ Outcome = dict[str, Any]
 @cache
 def code() -> str:
     """A hash of all that an outcome rests on."""
-    stages = [
-        name
-        for name in chain.ORDER[: chain.ORDER.index("diagnosis") + 1]
-        if name not in chain.BESIDE
-    ]
-    files = {file for stage in stages for file in code_of(stage)}
-    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {HERE / f"{name}.py" for name in DRAWN_BY}
-    files |= {HERE.parent / "hidden" / f"hidden_{name}.py" for name in HIDDEN_BY}
-    return hash_of(sorted(files))[:16]
+    stages = [name for name in chain.up_to("diagnosis") if name not in chain.BESIDE]
+    own = [HERE / f"{name}.py" for name in DRAWN_BY]
+    own += [HERE.parent / f"hidden/hidden_{name}.py" for name in HIDDEN_BY]
+    return code_of_outcomes(stages, own)
 
 
 def outcome(name: str) -> Outcome:

@@ -12,6 +12,7 @@ import numpy as np
 from hidden_courses import courses, scanned
 from hidden_plans import PLANS
 from hidden_ways import WAYS, Array
+from resumable import code_of_outcomes
 from textbook_power import power_limit
 
 import laboratory
@@ -23,7 +24,6 @@ from inertial.model_selection.evidence import Evidence, SearchedEffect
 from inertial.model_selection.naming import law_of
 from inertial.model_selection.null_simulation import Chance, power
 from inertial.physics.effect import Effect
-from inertial.tables.code import code_of, hash_of
 from stages.criticism.effect_selection import evidence_of
 from stages.criticism.stage import BLOCKS_SHARE
 
@@ -153,12 +153,9 @@ class Reference:
 
 @cache
 def code() -> str:
-    """A hash of all that an outcome rests on: the stages, the laboratory, and what is drawn."""
-    stages = chain.ORDER[: chain.ORDER.index("extension") + 1]
-    files = {file for stage in stages for file in code_of(stage)}
-    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {chain.ROOT / "tests/hidden" / f"hidden_{name}.py" for name in DRAWN_BY}
-    return hash_of(sorted(files))[:16]
+    """A hash of all that an outcome rests on."""
+    own = [chain.ROOT / f"tests/hidden/hidden_{name}.py" for name in DRAWN_BY]
+    return code_of_outcomes(chain.up_to("extension"), own)
 
 
 @cache

@@ -9,12 +9,12 @@ from hidden_plans import sensors
 from law_bayes import chosen
 from law_families import FAMILIES, Family, Random, plan_document
 from law_reference import captured, clean, course, equations_of, remaining
+from resumable import code_of_outcomes
 
 from inertial.campaign.equations import Campaign
 from inertial.effects import CATALOGUE, LAWS
 from inertial.effects.law import Law
 from inertial.physics.effect import Effect
-from inertial.tables.code import code_of, hash_of
 
 SEED = 301_126  # of all draws; none of it was looked at while the search was written
 RATIOS = (12.0, 20.0, 30.0)  # signal-to-noise ratio beside the best effect of the catalogue
@@ -28,11 +28,8 @@ SINGLE = 0.75  # share of the draws in one axis alone
 @cache
 def code() -> str:
     """A hash of all that an outcome rests on."""
-    stages = chain.ORDER[: chain.ORDER.index("extension") + 1]
-    files = {file for stage in stages for file in code_of(stage)}
-    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {chain.ROOT / f"tests/laws/law_{name}.py" for name in DRAWN_BY}
-    return hash_of(sorted(files))[:16]
+    own = [chain.ROOT / f"tests/laws/law_{name}.py" for name in DRAWN_BY]
+    return code_of_outcomes(chain.up_to("extension"), own)
 
 
 def direction(random: Random) -> np.ndarray:

@@ -12,11 +12,11 @@ import chain
 import numpy as np
 from hidden_elsewhere import HARD
 from hidden_plans import PLANS, sensors
+from resumable import code_of_outcomes
 from scipy.stats import chi2
 
 import laboratory
 from inertial.estimation.triad import linear_names
-from inertial.tables.code import code_of, hash_of
 
 DRAWN_BY = ("hidden/hidden_elsewhere", "hidden/hidden_plans", "silence/silent_campaigns")
 SEED = 2_026_113_021  # of all draws; none was looked at while the pipeline was written
@@ -31,12 +31,9 @@ EXACT_ANGLE = 0.01  # arcsec, stated of turns that are exact
 
 @cache
 def code() -> str:
-    """A hash of all that an outcome rests on: the stages, the laboratory, and what is drawn."""
-    stages = chain.ORDER[: chain.ORDER.index("diagnosis") + 1]
-    files = {file for stage in stages for file in code_of(stage)}
-    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {chain.ROOT / f"tests/{name}.py" for name in DRAWN_BY}
-    return hash_of(sorted(files))[:16]
+    """A hash of all that an outcome rests on."""
+    own = [chain.ROOT / f"tests/{name}.py" for name in DRAWN_BY]
+    return code_of_outcomes(chain.up_to("diagnosis"), own)
 
 
 def document_of(number: int) -> tuple[str, str, tuple[str, ...], dict[str, Any]]:

@@ -9,13 +9,13 @@ from typing import Any
 import chain
 import numpy as np
 import pandas as pd
+from resumable import code_of_outcomes
 from temperature_bars import Outcome
 from temperature_draws import Drawn, drawn, planned
 from temperature_ideal import ideal
 
 import laboratory
 from inertial.estimation.triad import linear_names
-from inertial.tables.code import code_of, hash_of
 
 HERE = Path(__file__).parent
 NAMES = [(sensor, name) for sensor in ("accel", "gyro") for name in linear_names()]
@@ -27,12 +27,9 @@ AWAY = 0.15  # of the distance between two nodes, at least so far from both: bet
 @cache
 def code() -> str:
     """A hash of all that an outcome rests on."""
-    every = chain.ORDER[: chain.ORDER.index("diagnosis") + 1]
-    stages = [name for name in every if name not in chain.BESIDE]
-    files = {file for stage in stages for file in code_of(stage)}
-    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {HERE / f"temperature_{name}.py" for name in ("draws", "bound", "ideal", "outcomes")}
-    return hash_of(sorted(files))[:16]
+    stages = [name for name in chain.up_to("diagnosis") if name not in chain.BESIDE]
+    own = [HERE / f"temperature_{name}.py" for name in ("draws", "bound", "ideal", "outcomes")]
+    return code_of_outcomes(stages, own)
 
 
 def outcome(name: str) -> Outcome:

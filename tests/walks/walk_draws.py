@@ -16,6 +16,7 @@ import numpy as np
 from hidden_courses import RATE, Course, _start, known_course, told
 from hidden_plans import PLANS, SPANS
 from hidden_ways import WAYS
+from resumable import code_of_outcomes
 from scipy.special import logsumexp
 
 import laboratory
@@ -28,7 +29,6 @@ from inertial.estimation import gyroscopes
 from inertial.estimation.effect_information import EffectInformation
 from inertial.estimation.gyroscope_observations import StaticRate
 from inertial.estimation.random_walk import NO_DRIFT
-from inertial.tables.code import code_of, hash_of
 from laboratory import Recording
 from stages.criticism.bias_drift import HalfWave, drift_name
 from stages.criticism.laws import with_laws
@@ -55,12 +55,12 @@ IN_BLOCKS = [effect for effect in CATALOGUE.values() if effect.sought_in == "blo
 @cache
 def code() -> str:
     """A hash of all that an outcome rests on."""
-    stages = (*chain.ORDER[: chain.ORDER.index("gyroscope") + 1], "criticism")
-    files = {file for stage in stages for file in code_of(stage)}
-    files |= {*(chain.ROOT / "laboratory").rglob("*.py"), chain.ROOT / "config.yaml"}
-    files |= {chain.ROOT / f"tests/walks/walk_{name}.py" for name in ("draws", "guess")}
-    files |= {chain.ROOT / "tests/chain.py"}
-    return hash_of(sorted([*files, *(chain.ROOT / "tests/hidden").glob("hidden_*.py")]))[:16]
+    own = [
+        chain.ROOT / f"tests/{name}.py"
+        for name in ("walks/walk_draws", "walks/walk_guess", "chain")
+    ]
+    own += (chain.ROOT / "tests/hidden").glob("hidden_*.py")
+    return code_of_outcomes([*chain.up_to("gyroscope"), "criticism"], own)
 
 
 # ---- The laboratory on the blocks of a plan.
