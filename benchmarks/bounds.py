@@ -1,4 +1,4 @@
-"""The joint estimate against the Cramér–Rao bound: plans a to e of the design study.
+"""The joint fit against the Cramér–Rao bound: plans a to e of the design study.
 
 150 campaigns of block statistics for each plan and noise, and three from bytes, through the whole
 chain: rms error over the bound, and how often 95 % intervals contain the truth. The bound is
@@ -32,7 +32,7 @@ COLUMNS = [f"{kind}_{sensor}" for sensor in SENSORS.values() for kind in KINDS.v
 def measured() -> list[Table]:
     """One table: a row for each plan and noise."""
     table = Table(
-        f"Rms error of the joint estimate over the Cramér–Rao bound, {DRAWS} campaigns each",
+        f"Rms error of the joint fit over the Cramér–Rao bound, {DRAWS} campaigns each",
         ("plan, noise", *COLUMNS, "all", "within\n1.96 σ", "from\nbytes"),
     )
     every: list[Array] = []

@@ -34,8 +34,8 @@ class Runs:
     """Results of the methods, campaign by campaign."""
 
     off: dict[tuple[str, str], list[Array]] = field(default_factory=dict)  # method, sensor
-    standardised: list[Array] = field(default_factory=list)  # of the joint estimate, in its sigmas
-    covariances: dict[str, list[Array]] = field(default_factory=dict)  # of the joint estimate
+    standardised: list[Array] = field(default_factory=list)  # of the joint fit, in its sigmas
+    covariances: dict[str, list[Array]] = field(default_factory=dict)  # of the joint fit
     solving: list[Seconds] = field(default_factory=list)
     alone: list[Seconds] = field(default_factory=list)  # without the averaging curves
     whole: list[Seconds] = field(default_factory=list)
@@ -97,7 +97,7 @@ def _errors(runs: Runs) -> Table:
         f"A mean of {len(SEEDS)} scatters by about 15 %; the expected values do not."
         " Bound: Cramér–Rao, of every sample, from the design alone. S0's formulas: six"
         " positions, and turns of a known angle.",
-        "The sigmas hold: the errors of the joint estimate in units of its own sigmas have the rms"
+        "The sigmas hold: the errors of the joint fit in units of its own sigmas have the rms"
         f" {np.sqrt(np.mean(standardised**2)):.2f}, expected 1; the largest of"
         f" {len(standardised)} is {np.abs(standardised).max():.1f}.",
         EXPLAINED,

@@ -31,7 +31,7 @@ class Solved:
     says: list[str]
 
     def covariance(self, stage: str) -> Array:
-        """The covariance of the joint estimate of a sensor, (12, 12)."""
+        """The covariance of the joint fit of a sensor, (12, 12)."""
         table = self.results[f"{stage}/covariance"]
         ids = [f"{stage}/joint/{name}" for name in NAMES]
         square = table.pivot(index="first", columns="second", values="covariance")

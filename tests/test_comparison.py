@@ -290,7 +290,7 @@ def test_a_poor_campaign_has_few_differences_and_no_failure(clean):
     ("sigmas", "variances"), [((2.0, 3.0), (4 - 1, 9 - 4)), ((0.5, 3.0), (0.25 + 1, 9 + 4))]
 )
 def test_a_method_that_allows_for_less_is_not_weighed_as_if_it_were_the_best(sigmas, variances):
-    """Hausman's variance needs the joint estimate, 1 and 2, to be the better one throughout."""
+    """Hausman's variance needs the joint fit, 1 and 2, to be the better one throughout."""
     rows = [
         {"method": method, "parameter": f"bias_{axis}", "mount": "", "unit": "m/s²"}
         | {"id": f"{method}/{axis}", "value": 0.0, "sigma": sigma}

@@ -222,7 +222,7 @@ def test_what_the_result_has_wrong_is_left_over(coupled):
 
 @pytest.mark.slow
 def test_static_positions_are_predicted_about_the_azimuth_of_the_result(coupled):
-    """That of the joint estimate, which lacks the g-sensitivity, is off by tens of degrees."""
+    """That of the joint fit, which lacks the g-sensitivity, is off by tens of degrees."""
     table = coupled["compensation/residuals"]
     still = table[table["phase"].isin(["rest", "rest-before", "rest-after"])]
     for channel in GYRO:

@@ -21,7 +21,7 @@ ARC_HOUR = np.radians(1 / 3600)  # rad/s in °/h
 
 
 def matrix_of(results: chain.Results, stage: str, column: str) -> tuple[np.ndarray, np.ndarray]:
-    """M − I and the bias of the joint estimate, or their sigmas."""
+    """M − I and the bias of the joint fit, or their sigmas."""
     values = results.parameters(stage)[column].reindex(linear_names()).to_numpy(float)
     return values[:9].reshape(3, 3), values[9:]
 

@@ -197,7 +197,7 @@ class Estimates:
         )
 
     def add_averaging(self, seconds: float, estimate: Estimate) -> None:
-        """The joint estimate from the first seconds of each static position."""
+        """The joint fit from the first seconds of each static position."""
         values = triad.errors_of(estimate.values[:12])
         self.rows["averaging"] += [
             self._key(JOINT, name)

@@ -239,7 +239,7 @@ def stated_noise(figures: Mapping[str, Mapping[str, float | None]]) -> NoiseLeve
 
 
 def sigmas(data: CampaignData) -> Array:
-    """Sigmas of the 24 parameters by the joint estimate, accelerometers first; inf: none, (24,)."""
+    """Sigmas of the 24 parameters by the joint fit, accelerometers first; inf: none, (24,)."""
     drift = data.noise.drift("accel")
     fitted = accelerometers.weighted(*_forces(data), effect_sigma=LEVER_ARM, measured=drift)
     inputs = data.gyro_inputs

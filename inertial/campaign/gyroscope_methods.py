@@ -1,4 +1,4 @@
-"""The gyros by the formulas of the sources, for comparison with the joint estimate.
+"""The gyros by the formulas of the sources, for comparison with the joint fit.
 
 `static`: S0 (3-13), (3-14), rests with the axis up and down. `turns`: S0 (3-9), (3-10), turns of a
 known angle. `turn_and_stop` and `stops`: S3 (13) to (15), M from turns both ways, the bias by turns
@@ -41,7 +41,7 @@ NOT_RECORDED = _("the {axis} gyro is not recorded in these manoeuvres, or masked
 def add_formulas(
     estimates: Estimates, data: CampaignData, joint: ScatterFit, wanted: float
 ) -> None:
-    """The rows of every formula that the plan allows, with the scatter of the joint estimate.
+    """The rows of every formula that the plan allows, with the scatter of the joint fit.
 
     `wanted`: rad/s, required sigma of a bias, from which the length of the rests follows.
     """

@@ -36,7 +36,7 @@ class GyroInputs:
     recorded: list[Rotation]
     turns: list[RateSegment]  # from rest to rest, with their angle known
     steady_rates: list[SteadyRate]  # at a known rate
-    # As the joint estimate takes them: windows of the encoder where that gives parts of turns.
+    # As the joint fit takes them: windows of the encoder where that gives parts of turns.
     segments: list[RateSegment]
     set_rates: list[SteadyRate]
     earth: Earth

@@ -45,7 +45,7 @@ class IncompleteTurn(PlanDetector):
         return Description(
             f"{recorded.name[i]}: {recorded.said[i]}",
             if_taken(recorded, i),
-            _("It is left out of the joint estimate and of the angle method. Record it again."),
+            _("It is left out of the joint fit and of the angle method. Record it again."),
         )
 
 
@@ -363,7 +363,7 @@ class TurnTooFar(PlanDetector):
                 f"{recorded.name[same[0]]}: {recorded.said[same[0]]}",
                 if_taken(recorded, same[0]),
                 _(
-                    "It is left out of the joint estimate and of the angle method. {cure}",
+                    "It is left out of the joint fit and of the angle method. {cure}",
                     cure=_cure(recorded, same),
                 ),
             )
@@ -386,7 +386,7 @@ class TurnTooFar(PlanDetector):
             ),
             if_taken(recorded, same[0]),
             _(
-                "They are left out of the joint estimate and of the angle method. {cure}",
+                "They are left out of the joint fit and of the angle method. {cure}",
                 cure=_cure(recorded, same),
             ),
         )

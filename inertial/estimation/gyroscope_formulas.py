@@ -234,14 +234,14 @@ def both_ways(
 
         s = (α̃ − b t − ω_e sinφ t) / α − 1,   for each direction by itself
 
-    with the bias b of the joint estimate. An asymmetry of the scale factor, and any error that
+    with the bias b of the joint fit. An asymmetry of the scale factor, and any error that
     occurs during rotation only, makes the two differ.
 
     The difference is c (b_turns − b) with c = t/α forward less t/α backward, where b_turns is the
     bias by the two turns alone: an error of b enters the two scale factors with opposite sign. The
     joint bias b is from data that contain these turns, so the two are correlated: its estimate is
     efficient, and so it gives b_turns the weight σ_b²/σ_turns². Without `scatter`, the scatter
-    between manoeuvres in the joint estimate (rad/s), this leaves σ² = c² (σ_turns² − σ_b²), after
+    between manoeuvres in the joint fit (rad/s), this leaves σ² = c² (σ_turns² − σ_b²), after
     Hausman (1978). The scatter is not counted as noise of the turns: it represents unmodelled
     effects, which are what is tested here.
     """

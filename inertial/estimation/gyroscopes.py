@@ -94,7 +94,7 @@ def fit(
     noise_degrees: float = np.inf,
     measured: MeasuredDrift = NO_DRIFT,
 ) -> ScatterFit:
-    """The joint estimate with the scatter and random walk of largest restricted likelihood."""
+    """The joint fit with the scatter and random walk of largest restricted likelihood."""
     others = (segments, steadies, earth, position_sigma)
     estimate = joint(statics, *others, measured=measured)
     equations = linearised(linearisation_at(estimate, earth), *others, None, measured)

@@ -153,7 +153,7 @@ class Rivals:
 
 
 def _values(present: EffectInformation, columns: Sequence[int], given: Sequence[int]) -> Array:
-    """The joint estimate of some columns and those given, 0 where not observable, (w,)."""
+    """The joint fit of some columns and those given, 0 where not observable, (w,)."""
     values, _ = present.estimate(list(dict.fromkeys([*columns, *given])))
     return np.nan_to_num(values[: len(columns)])
 

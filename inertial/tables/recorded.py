@@ -204,7 +204,7 @@ PERFORMED = table(
     ),
     truth(
         "bridged",
-        "not complete, but what is missing lies in the steady part, so the joint estimate can"
+        "not complete, but what is missing lies in the steady part, so the joint fit can"
         " bridge it; in a ramp, or by hand, only a few masked samples",
     ),
     optional_number("angle", "rad", "angle that was recorded, about `about`", BODY),

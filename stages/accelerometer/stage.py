@@ -192,7 +192,7 @@ def _finding(off: OffPosition, sigma: Array, mount: str) -> Finding:
         ),
         consequence=(
             _(
-                "With its attitude estimated, {affected}. The joint estimate models it as "
+                "With its attitude estimated, {affected}. The joint fit models it as "
                 "scatter between positions.",
                 affected="; ".join(affected),
             )
@@ -219,7 +219,7 @@ def _change(name: str, by: float) -> str:
 STAGE = Stage(accelerometer, DECLARED, gathers=MOUNTS)
 
 
-# ---- The accelerometers by the sources' own formulas, beside the joint estimate.
+# ---- The accelerometers by the sources' own formulas, beside the joint fit.
 #
 # `six_position`: S0 (3-6), all rests alike. `up_and_down`: S1, two positions with tilt, where the
 # plan has no more. `pooled_positions`: S3, stops at one attitude pooled. All have the sigmas that

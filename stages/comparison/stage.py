@@ -25,7 +25,7 @@ from stages.comparison.declared import DECLARED
 
 # ---- What should agree: the methods of a stage, and the gyros in rate segments and at rest.
 
-# ---- What the methods of a stage found: the joint estimate against the formulas of the sources.
+# ---- What the methods of a stage found: the joint fit against the formulas of the sources.
 
 METHOD_AGAINST_METHOD = "method_against_method"
 MIN_SIGMA_DIFFERENCE = 0.01  # relative difference of two sigmas below which two methods are one
@@ -77,11 +77,11 @@ class Results:
 
 
 def method_against_method(results: Results, method: str) -> Iterator[Difference]:
-    """Every parameter that both `method` and the joint estimate have determined.
+    """Every parameter that both `method` and the joint fit have determined.
 
     The two use the same data, so their errors are correlated. Of all unbiased estimates the joint
     one has the smallest variance; then the variance of the difference is the difference of the
-    variances, σ² = σ₁² − σ₂² (Hausman 1978). Where the joint estimate has the larger variance of
+    variances, σ² = σ₁² − σ₂² (Hausman 1978). Where the joint fit has the larger variance of
     any parameter, it allows for more than the method does, such as a drift between the positions:
     then how they are correlated is not known, and the variances are added.
     """
@@ -104,11 +104,11 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
             first_value=other["value"],
             second_value=joint["value"],
             sigma=None if alike else sigma,
-            between=(WORDS[method], _("the joint estimate")),
+            between=(WORDS[method], _("the joint fit")),
             place=method,
             remark=(
                 _(
-                    "{words} and the joint estimate are not independent: they use the same data "
+                    "{words} and the joint fit are not independent: they use the same data "
                     "with the same sigma",
                     words=WORDS[method],
                 )
@@ -119,7 +119,7 @@ def method_against_method(results: Results, method: str) -> Iterator[Difference]
 
 
 def _smaller_somewhere(results: Results, method: str) -> bool:
-    """Whether a method has a clearly smaller sigma of any parameter than the joint estimate."""
+    """Whether a method has a clearly smaller sigma of any parameter than the joint fit."""
     pairs = (
         (results.determined(method, name), results.determined("joint", name))
         for name in results.names(method)
@@ -188,7 +188,7 @@ def static_against_turns(data: CampaignData, gyro: Results) -> Iterator[Differen
     """Bias and scale factor of each axis from its rests up and down, and from its turns.
 
     Both sigmas are of noise and of what is known of table and site. The scatter between
-    manoeuvres that the joint estimate may allow for is left out: it represents unmodelled
+    manoeuvres that the joint fit may allow for is left out: it represents unmodelled
     effects, which are compared here.
     """
     for i, axis in enumerate(AXES):

@@ -212,7 +212,7 @@ def _frame(
 
 # ---- The tilts of static positions by the final result
 #
-# Those of the joint estimate have taken up a part of the effects that it lacks.
+# Those of the joint fit have taken up a part of the effects that it lacks.
 
 
 def with_tilts(
@@ -263,7 +263,7 @@ def _leans(position: StaticPosition) -> Array:
 
 # ---- The azimuths of static positions by the final result, where the heading is not known
 #
-# The joint estimate has azimuths of its own, but without the effects of the result: a g-sensitivity
+# The joint fit has azimuths of its own, but without the effects of the result: a g-sensitivity
 # that it lacks turns them, by degrees for a good gyro. Here the horizontal component of the earth's
 # rate is fitted to what the result leaves of the readings at rest; its size is that of the site
 # where they determine the azimuth, see `inertial/estimation/horizontal_earth_rate.py`.

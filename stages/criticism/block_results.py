@@ -54,7 +54,7 @@ UNEXPLAINED = _(
     "effect of the catalogue explains it."
 )
 WITHOUT = _(" Without {manoeuvre} they are not.")
-SCATTER = _("The joint estimate allows for it as a scatter between manoeuvres.")
+SCATTER = _("The joint fit allows for it as a scatter between manoeuvres.")
 MAX_LISTED = 2  # manoeuvres at which a jump may be
 LATER = _("{first}, or later up to {last}")
 INSPECT = _("Look at the residuals of each manoeuvre, and how the positions were set.")

@@ -86,8 +86,7 @@ CONSEQUENCE = _(
     "hold in other motions."
 )
 CONSEQUENCE_WITHOUT_LAW = _(
-    "The joint estimate allows for a random walk, or a scatter of the manoeuvres, "
-    "where there is one."
+    "The joint fit allows for a random walk, or a scatter of the manoeuvres, where there is one."
 )
 
 PER_LOG = {

@@ -1,6 +1,6 @@
 """Findings about readings that depend on temperature, where only means at temperatures exist.
 
-Without time there is no noise, and the joint estimate determines nothing; so readings are compared
+Without time there is no noise, and the joint fit determines nothing; so readings are compared
 with the temperature itself. A finding for each sensor and manoeuvre: readings along a polynomial up
 to the third degree follow a law, and the effects that may be it are named; what no such law
 describes is structure, and a knee is sought.

@@ -39,7 +39,7 @@ def gyroscope(
     averaging_steps: int,
     wanted_bias: float,
 ) -> Tables:
-    """Parameters of the joint estimate and of the sources' formulas, with covariance.
+    """Parameters of the joint fit and of the sources' formulas, with covariance.
 
     Each mount has parameters of its own, for its mounting rotation is one of them.
     """

@@ -415,7 +415,7 @@ def _from_rest_to_rest(turned: _Turned, tolerance: float) -> Performed:
     sentence = _("{of} recorded{remark}: {why}", of=of, remark=turned.remark, why=why)
     sentence += _lacking_in_words(lacking, m)
     if bridged:
-        sentence += _(" The rate before and after gives them, so the joint estimate uses the turn.")
+        sentence += _(" The rate before and after gives them, so the joint fit uses the turn.")
     return Performed(
         m.name,
         sentence,

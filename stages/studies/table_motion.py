@@ -164,7 +164,7 @@ def motion_of(
     Parameters
     ----------
     steady : s, time of the first and of the last sample of the steady part
-    scatter : rad/s, between manoeuvres, that the joint estimate allows for
+    scatter : rad/s, between manoeuvres, that the joint fit allows for
     harmonics : of the encoder's error, sine and cosine, rad, by order
     """
     m, step = rotation.plan, data.clocks[rotation.plan.log].step

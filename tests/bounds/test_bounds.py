@@ -1,4 +1,4 @@
-"""The joint estimate reaches the bound of Cramér and Rao in every plan, and its sigmas tell it.
+"""The joint fit reaches the bound of Cramér and Rao in every plan, and its sigmas tell it.
 
 Block statistics of the plans a to e of the design study with the noise of two instruments. A few of
 each here; `make bench ONLY=bounds` draws 150 of each, and three from bytes.

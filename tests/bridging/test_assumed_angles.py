@@ -42,7 +42,7 @@ def test_an_assumed_angle_is_wrong_by_far_more_than_its_sigma(gapped):
     assert degrees(assumed.values[0] - bias) * 3600 == pytest.approx(-20.6, abs=0.5)  # °/h
     assert abs(assumed.values[1] - scale) > 150 * assumed.sigma[1]
 
-    # The joint estimate, with nothing but this turn about z.
+    # The joint fit, with nothing but this turn about z.
     def together(turn: RateSegment):
         fit = joint(inputs.static_rates, [turn], [], inputs.earth, inputs.position_sigma)
         return fit.values[Z_SCALE] - 1 - scale, fit.sigma[Z_SCALE]

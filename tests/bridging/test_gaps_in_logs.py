@@ -18,7 +18,7 @@ def test_the_gap_of_the_demo_is_bridged_and_said(gapped):
     assert done["missing_s"] == pytest.approx(11.97)
     assert degrees(done["missing_angle"]) == pytest.approx(-119.74, abs=0.02)
     assert "11.97 s are missing while it turns" in done["sentence"]
-    assert "the joint estimate uses the turn" in done["sentence"]
+    assert "the joint fit uses the turn" in done["sentence"]
     fitted = gapped["gyroscope/fit_manoeuvres"].query("method == 'joint'")
     assert fitted["used"].all() and "z-backward" in set(fitted["manoeuvre"])
     # S0's own formulas need the whole turn, and have it not.

@@ -1,4 +1,4 @@
-"""The gyros: S0's turn formulas as printed, and what the joint estimate may and may not know."""
+"""The gyros: S0's turn formulas as printed, and what the joint fit may and may not know."""
 
 from dataclasses import replace
 

@@ -89,7 +89,7 @@ def of_no_name(*firing: str) -> dict[str, Any]:
         | {
             "id": "criticism/gyro_bias_jump",
             "cause": "gyro_bias_jump",
-            "consequence": "The joint estimate holds it as a random walk.",
+            "consequence": "The joint fit holds it as a random walk.",
             "action": "Look at the residuals against time.",
             "sentence": "The data are consistent with gyro bias jump, and no more is said.",
             "members": ["gyro_bias_jump"],
@@ -125,7 +125,7 @@ def unexplained() -> dict[str, Any]:
             "cause": "unexplained",
             "sensor": "accel",
             "p_value": 1e-30,
-            "consequence": "The joint estimate holds it as a scatter between manoeuvres.",
+            "consequence": "The joint fit holds it as a scatter between manoeuvres.",
             "action": "Look at the residuals of each manoeuvre.",
             "sentence": "The residuals of the accelerometers are 3.1 times what noise would leave.",
         }
