@@ -35,6 +35,8 @@ from inertial.campaign.where_causes_act import (
     same_sensor,
     where_unresolved,
 )
+from inertial.effects import LAWS
+from inertial.effects.law import ALL
 from inertial.sensors import SENSORS
 
 # ---- Which findings.
@@ -267,7 +269,7 @@ def _explains(cause: Hypothesis, other: Hypothesis) -> bool:
     """The same of what is no event by itself."""
     if other.stage == POSITIONS:
         return _explains_position(cause, other)
-    if other.cause == "bias_jump" and _without_law(cause):
+    if other.cause == "bias_jump" and (_without_law(cause) or _is_drift_of(cause, other)):
         return cause.sensor == other.sensor
     # Each log lacks a mean of its own: no biases changed, so none of the other sensor may have.
     if cause.cause == "bias_removed" and other.cause in (*PER_RUN, JUMP_NOT_TESTABLE):
@@ -394,6 +396,14 @@ def _without_law(cause: Hypothesis) -> bool:
     return _uncertain(cause) or (cause.stage == MODEL and cause.cause.endswith("_random_walk"))
 
 
+def _is_drift_of(law: Hypothesis, other: Hypothesis) -> bool:
+    """Whether it is a law by which the bias of an axis goes with time, or with the temperature."""
+    if law.verdict != LAW:
+        return False
+    known = LAWS[law.cause]
+    return known.is_drift and (known.axis == ALL or known.axis == other.axis)
+
+
 def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
     """Residuals without a certain name, in the same sensor.
 
@@ -403,6 +413,9 @@ def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
     if _without_law(cause):
         return cause.sensor == other.sensor and _generality(cause) < _generality(other)
     if cause.stage in (MODEL, POSITIONS):
+        return False
+    # What a jump leaves in its manoeuvre alone is that jump, with what the model makes of it.
+    if cause.cause == "bias_jump" and cause.manoeuvres == other.manoeuvres:
         return False
     if other.cause == "gyro_random_walk" and _is_short_tilt(cause):
         return False

@@ -121,6 +121,7 @@ def _noise_across(recorded: Recorded, i: int, after: int) -> float:
 MIN_CHANGES = 6  # from rest to rest of one position: three equations each
 MAX_CHANCE_OF_CREEP = 1e-6  # of white noise, that looks like a creep
 MAX_CHANCE_OF_DRIFT = 1e-3  # of biases that wander, with which positions differ at random
+MAX_CHANCE_WITHOUT_ONE = 1e-3  # of white noise, that looks like it where a position is left out
 MIN_SHARE_OF_CREEP = 0.7  # of what a drift of the biases leaves: else there is something else
 SETTLING = (np.inf, 1.0, 0.5, 0.25)  # time constants that are tried, of the whole time
 MIN_ANGLE = 10 * ARC_SECOND  # over the campaign: less is what positions are set to
@@ -146,13 +147,12 @@ class FixtureCreep(PlanDetector):
         several = np.bincount(held, minlength=1)[held] > 1
         if np.count_nonzero(several) - len(np.unique(held[several])) < MIN_CHANGES:
             return
-        force, time, seconds = (own[several] for own in (rests.force, rests.time, rests.seconds))
-        _names, held = np.unique(held[several], return_inverse=True)
-        creep = _likeliest(force, time, seconds, held)
+        read = [own[several] for own in (rests.force, rests.time, rests.seconds, held)]
+        creep = _likeliest(*read)
         angle = float(np.linalg.norm(creep.turned))
         clear = creep.chance < MAX_CHANCE_OF_CREEP and creep.chance_of_drift < MAX_CHANCE_OF_DRIFT
-        if clear and angle > MIN_ANGLE:
-            yield Deviation(None, "", angle, count=int(held[-1]) + 1, facts=creep)
+        if clear and angle > MIN_ANGLE and not _of_one_position(*read):
+            yield Deviation(None, "", angle, count=len(np.unique(read[-1])), facts=creep)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         assert deviation.size is not None
@@ -212,8 +212,9 @@ def _likeliest(force: Array, time: Array, seconds: Array, held: Integers) -> _Cr
     Parameters
     ----------
     force, time, seconds : (n, 3), m/s², and (n,), s, of the rests, and how long they are
-    held : (n,), in which position each is, from 0
+    held : (n,), in which position each is
     """
+    _names, held = np.unique(held, return_inverse=True)
     since = (time - time.min()) / np.ptp(time)
     tried = []
     for constant in SETTLING:
@@ -221,6 +222,16 @@ def _likeliest(force: Array, time: Array, seconds: Array, held: Integers) -> _Cr
         tried.append(_creep(force, since, course / course.max(), seconds, held))
     found = min(tried, key=lambda one: one.chance)
     return replace(found, chance=len(tried) * found.chance)
+
+
+def _of_one_position(force: Array, time: Array, seconds: Array, held: Integers) -> bool:
+    """Whether one position alone looks like a creep, as by a bias that jumps there; see above."""
+    for position in np.unique(held):
+        others = held != position
+        left = _likeliest(force[others], time[others], seconds[others], held[others])
+        if left.chance > MAX_CHANCE_WITHOUT_ONE:
+            return True
+    return False
 
 
 def _creep(force: Array, since: Array, course: Array, seconds: Array, held: Integers) -> _Creep:

@@ -26,6 +26,7 @@ from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
 SIZES = {"gyro": ("rad/s", DEGREE_PER_HOUR), "accel": ("m/s²", 1e-5 * STANDARD_GRAVITY)}
 WIDE = 1e3  # of the usual size, which of a shape that is far from 1 says nothing
+TELEGRAPH = "telegraph"  # family of two levels
 ALL = "all"  # axes, each with a size of its own
 DRIFTING = ("time", "run_time", "temperature", "temperature_rate")  # states, however it moves
 

@@ -14,7 +14,7 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.equations import Campaign
 from inertial.effects import LAWS
-from inertial.effects.law import ALL, Law, law_name
+from inertial.effects.law import ALL, TELEGRAPH, Law, law_name
 from inertial.model_selection import walk_odds
 from inertial.model_selection.evidence import SearchedEffect, searched_effect
 from inertial.model_selection.law_evidence import (
@@ -35,7 +35,8 @@ from stages.criticism.residual_structure import MIN_INFORMATION, Functions
 from stages.criticism.rivals import MAX_LOG_ODDS
 from stages.criticism.selection import Selection, walk_name
 
-TELEGRAPH = ("telegraph", "time")
+OF_LEVELS = (TELEGRAPH, "time")
+MIN_OF_PATH = 0.98  # of what the most probable path explains, with fewer changes
 FINER = (-0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75)  # of the step of a grid
 UNMOVED = FINER.index(0.0)
 ROUNDS = 3
@@ -147,7 +148,7 @@ def columns_with(
     for i, axis in enumerate(AXES):
         values: list[Array] = []
         for law in laws.LAWS:
-            if law == TELEGRAPH or not laws.known(law[1], motion, i):
+            if law == OF_LEVELS or not laws.known(law[1], motion, i):
                 continue
             shapes[law] = laws.grid(*law, motion)
             if not shapes[law]:
@@ -256,7 +257,7 @@ def searched(columns: Columns, equations: Equations, fewest: int) -> Searched:
             added[row, [steps[i] for i in path]] = (-1.0) ** np.arange(len(path))
         own, every = [size + first + number], range(size + first, size + first + len(AXES))
         for name, places in ((axis, own), (ALL, every)):
-            made.append(searched_effect(law_name(sensor, name, *TELEGRAPH), places))
+            made.append(searched_effect(law_name(sensor, name, *OF_LEVELS), places))
             shapes.append([tuple(float(columns.times[i]) for i in path)])
             ways.append(log_paths(count, len(path)))
     across = added @ equations.information
@@ -269,9 +270,13 @@ def searched(columns: Columns, equations: Equations, fewest: int) -> Searched:
 
 
 def _path(equations: Equations, steps: Sequence[int], fewest: int) -> tuple[int, ...]:
-    """The most probable path of a telegraph."""
+    """The most probable path of a telegraph, or one of fewer changes that explains nearly as much.
+
+    Where a level is large, further changes make up for times that are off by a part of the grid.
+    """
     found = best_paths(equations, steps, fewest)
-    return max(found, key=lambda path: found[path] / 2 - log_paths(len(steps), len(path)))
+    best = max(found, key=lambda path: found[path] / 2 - log_paths(len(steps), len(path)))
+    return min((path for path in found if found[path] >= MIN_OF_PATH * found[best]), key=len)
 
 
 # ---- The rivals.
@@ -314,7 +319,7 @@ def refined(campaign: Campaign, law: Law, beside: Sequence[Effect]) -> tuple[Law
     part, axes = campaign.stretches(law.sensor), [AXES.index(axis) for axis in law.axes]
     grid = (
         [(float(time),) for time in laws.steps(campaign.motion, laws.STEPS)]
-        if law.family == TELEGRAPH[0]
+        if law.family == TELEGRAPH
         else laws.grid(law.family, law.state, campaign.motion)
     )
     if not law.shape or law.family == "polynomial" or len(grid) < 2:

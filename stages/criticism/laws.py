@@ -8,7 +8,7 @@ import numpy as np
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import Campaign
 from inertial.effects import TEMPERATURE_MODELS
-from inertial.effects.law import ALL, Law
+from inertial.effects.law import ALL, TELEGRAPH, Law
 from inertial.model_selection.cause import LAW, ONE_OF_CLASS, UNKNOWN_STRUCTURE, Cause
 from inertial.physics.effect import Effect
 from inertial.physics.laws import UNITS
@@ -105,6 +105,7 @@ def _named(selection: Selection, found: FoundLaw, known: dict[str, Cause]) -> Se
 # ---- Sentences about laws that no effect of the catalogue has.
 
 LAW_IN_WORDS = _("{subject}: {form}, {numbers}; no effect of the catalogue does this.")
+THERE_AND_BACK = _("{subject}: {form}, {numbers}; the bias jumps and goes back.")
 FURTHER_JUMP = _("{subject}: {form}, {numbers}; it is a further jump, at a time of its own.")
 LAW_OR_WALK = _(
     "{subject}: {form}, {numbers}; no effect of the catalogue does this. It may also be {walk}: "
@@ -129,7 +130,7 @@ FORMS = {
     "harmonic": _("a sine of {state} with a period of {period}"),
     "exponential": _("an exponential of {state}, by e in {first} {unit}"),
     "ramp": _("a ramp from {times} s on"),
-    "telegraph": _("two levels, changed at {times} s"),
+    TELEGRAPH: _("two levels, changed at {times} s"),
     "jump": _("another level from {first_time} s on"),
     "pulse": _("another level from {first_time} s to {last_time} s"),
     "hysteresis": _("hysteresis of {state}, {first} {unit} wide to either side"),
@@ -151,8 +152,8 @@ def law_sentence(cause: Cause, law: Law, parameters: Sequence[Estimated]) -> str
     }
     if cause.verdict == ONE_OF_CLASS:
         return LAW_OR_WALK.format(walk=in_words(cause.members[-1]), **values)
-    jump = law.family == "telegraph" and len(law.shape) == 1
-    return (FURTHER_JUMP if jump else LAW_IN_WORDS).format_map(values)
+    changes = len(law.shape) if law.family == TELEGRAPH else 0
+    return {1: FURTHER_JUMP, 2: THERE_AND_BACK}.get(changes, LAW_IN_WORDS).format_map(values)
 
 
 def law_action(law: Law, mount: str) -> str:
@@ -172,7 +173,7 @@ def form_of(law: Law) -> str:
     period = 2 * np.pi / first if law.family == "harmonic" else 0.0
     of_time = f"{significant(HOUR * period, 3)} s"
     times = [f"{HOUR * time:.0f}" for time in law.shape]
-    if law.family == "telegraph" and len(times) <= 2:
+    if law.family == TELEGRAPH and len(times) <= 2:
         form = FORMS["pulse" if len(times) == 2 else "jump"]
         return form.format(first_time=times[0], last_time=times[-1])
     of_drifts = law.family == "product" and law.is_drift

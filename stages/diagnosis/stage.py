@@ -11,6 +11,7 @@ from inertial.campaign.noise_levels import only_noise
 from inertial.campaign.records import Row, known_of, performed_of, rows_of
 from inertial.tables import AXES
 from inertial.tables.stage import Stage, Tables
+from stages.diagnosis import jump_in_one_manoeuvre
 from stages.diagnosis.causes import Cause, Evidence
 from stages.diagnosis.conformity import conformity_rows
 from stages.diagnosis.declared import DECLARED
@@ -59,7 +60,7 @@ def diagnosis(
         frozenset(curves),
         gravity,
     )
-    causes = evidence.causes(explained)
+    causes = [jump_in_one_manoeuvre.named(cause) for cause in evidence.causes(explained)]
     recorded = _recorded(channel_statistics)
     results.sort(key=lambda result: result.sensor not in recorded)
     verdicts = [

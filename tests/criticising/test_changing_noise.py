@@ -151,3 +151,24 @@ def test_a_drift_or_a_jump_of_the_bias_is_no_noise(course):
     quiet = random.standard_normal((500, 6, 3)) / np.sqrt(5)
     sigmas = np.array([position(each + drift[course]).over()[1] for each in quiet])
     assert np.mean(sigmas == 30**-0.5) > 0.8
+
+
+@pytest.mark.parametrize("returns", [0, 5])
+def test_a_large_jump_does_not_hide_as_noise_of_a_piece(returns):
+    """Pieces of 30 s were taken for 4 to 6 times louder, and a pulse of 20 sigma was in nothing."""
+    random = np.random.default_rng(5)
+    block, first = np.arange(24)[None, :, None], random.integers(2, 17, 200)[:, None, None]
+    there = (block >= first) & ((block < first + returns) | (returns == 0))
+    jump = 20 / np.sqrt(5) * there * np.array([0, 1, 0])  # of one axis
+    quiet = random.standard_normal((200, 24, 3)) / np.sqrt(5)
+    sigmas = np.array([[p.over()[1] for p in position(each).pieces(30)] for each in quiet + jump])
+    assert np.mean(sigmas == 30**-0.5) > 0.9
+
+
+def test_a_part_of_a_rest_that_is_louder_is_heard_in_its_piece():
+    random = np.random.default_rng(6)
+    loud = random.standard_normal((500, 24, 3)) / np.sqrt(5)
+    loud[:, 6:12] *= 5.0
+    sigmas = np.array([[p.over()[1] for p in position(each).pieces(30)] for each in loud])
+    expected = np.array([1, 5, 1, 1]) / np.sqrt(30)
+    assert np.median(sigmas, axis=0) == pytest.approx(np.tile(expected, (3, 1)).T, rel=0.3)

@@ -6,6 +6,7 @@ from typing import Any
 import chain
 import numpy as np
 import pytest
+from hidden import hidden_plans
 
 from inertial.text.units import ARC_SECOND
 
@@ -42,6 +43,14 @@ def creeps(effects: dict[str, Any]) -> list[dict[str, Any]]:
     results = chain.in_memory_of(held_positions(effects), "segment", chain.BESIDE)
     findings = results["segment/findings"]
     return findings[findings["cause"] == "fixture_creep"].to_dict("records")
+
+
+def test_a_bias_that_jumps_in_one_rest_is_no_creep() -> None:
+    """That position alone looked like one, by 92 arcsec, and no sensor was usable."""
+    rest = {"log": "x-down.asc", "line": 18074, "samples": 5841, "channel": "accel_z"}
+    document = hidden_plans.stops(effects={}, faults=[{"step": rest | {"size_m_s2": 0.002}}])
+    found = chain.in_memory_of(document, "segment", chain.BESIDE)["segment/findings"]
+    assert found["cause"].tolist() == ["bias_jump"]
 
 
 @pytest.mark.slow
