@@ -35,8 +35,6 @@ from inertial.campaign.where_causes_act import (
     same_sensor,
     where_unresolved,
 )
-from inertial.effects import LAWS
-from inertial.effects.law import ALL
 from inertial.sensors import SENSORS
 
 # ---- Which findings.
@@ -269,8 +267,10 @@ def _explains(cause: Hypothesis, other: Hypothesis) -> bool:
     """The same of what is no event by itself."""
     if other.stage == POSITIONS:
         return _explains_position(cause, other)
-    if other.cause == "bias_jump" and (_without_law(cause) or _is_drift_of(cause, other)):
+    if other.cause == "bias_jump" and _without_law(cause):
         return cause.sensor == other.sensor
+    if other.cause == "bias_jump" and cause.verdict == LAW:  # beside which no structure is left
+        return same_axis(cause, other)
     # Each log lacks a mean of its own: no biases changed, so none of the other sensor may have.
     if cause.cause == "bias_removed" and other.cause in (*PER_RUN, JUMP_NOT_TESTABLE):
         return same_sensor(cause, other) == (other.cause in PER_RUN)
@@ -394,14 +394,6 @@ def _uncertain(finding: Hypothesis) -> bool:
 def _without_law(cause: Hypothesis) -> bool:
     """Whether it is a change of a bias of which no law is known, or a random walk."""
     return _uncertain(cause) or (cause.stage == MODEL and cause.cause.endswith("_random_walk"))
-
-
-def _is_drift_of(law: Hypothesis, other: Hypothesis) -> bool:
-    """Whether it is a law by which the bias of an axis goes with time, or with the temperature."""
-    if law.verdict != LAW:
-        return False
-    known = LAWS[law.cause]
-    return known.is_drift and (known.axis == ALL or known.axis == other.axis)
 
 
 def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:

@@ -147,12 +147,13 @@ class FixtureCreep(PlanDetector):
         several = np.bincount(held, minlength=1)[held] > 1
         if np.count_nonzero(several) - len(np.unique(held[several])) < MIN_CHANGES:
             return
-        read = [own[several] for own in (rests.force, rests.time, rests.seconds, held)]
-        creep = _likeliest(*read)
+        force, time, seconds = (own[several] for own in (rests.force, rests.time, rests.seconds))
+        held = held[several]
+        creep = _likeliest(force, time, seconds, held)
         angle = float(np.linalg.norm(creep.turned))
         clear = creep.chance < MAX_CHANCE_OF_CREEP and creep.chance_of_drift < MAX_CHANCE_OF_DRIFT
-        if clear and angle > MIN_ANGLE and not _of_one_position(*read):
-            yield Deviation(None, "", angle, count=len(np.unique(read[-1])), facts=creep)
+        if clear and angle > MIN_ANGLE and not _of_one_position(force, time, seconds, held):
+            yield Deviation(None, "", angle, count=len(np.unique(held)), facts=creep)
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         assert deviation.size is not None

@@ -66,6 +66,11 @@ class Law(Effect):
         return AXES if self.axis == ALL else (self.axis,)
 
     @property
+    def one_axis(self) -> str | None:
+        """The axis, where it is one alone."""
+        return None if self.axis == ALL else self.axis
+
+    @property
     def is_drift(self) -> bool:
         """Whether the bias has it whatever the IMU does: a law of time or of the temperature."""
         return all(state in DRIFTING for state in self.state.split("*"))

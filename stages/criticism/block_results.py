@@ -8,6 +8,7 @@ from inertial.campaign.effect_evidence import Moved, most_moved
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import AT_GAPS, KNOWN, LAWS, TEMPERATURE_MODELS
+from inertial.effects.law import Law
 from inertial.effects.restarts import Restarts
 from inertial.estimation.effect_information import whitening
 from inertial.model_selection.cause import (
@@ -216,6 +217,7 @@ class BlockResults:
             cause.effect,
             self.mount,
             sensor=sensor,
+            axis=effect.one_axis if isinstance(effect, Law) else None,
             count=len(effect.times) if isinstance(effect, Restarts) else 1,
             size=size[0],
             unit=size[1],

@@ -24,6 +24,7 @@ from inertial.campaign.hypotheses import (
     Hypothesis,
 )
 from inertial.campaign.records import Performed, Row
+from inertial.effects import LAWS
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, listed, plural
@@ -223,7 +224,7 @@ class Cause:
         else:
             names = names if self.verdict == ONE_OF_CLASS else []
             words = _(" or ").join(names or [in_words(self.main.cause)])
-        axis = self.main.axis
+        axis = None if self.main.cause in LAWS else self.main.axis  # whose names hold it
         place = self.manoeuvre
         words += _(" of the {axis} axis", axis=axis) if axis and self._one_axis() else ""
         return words + (_(" ({place})", place=place) if place else "")

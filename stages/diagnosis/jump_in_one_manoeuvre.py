@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from inertial.campaign.hypotheses import FOUND, LAW, MODEL, UNKNOWN_STRUCTURE, Hypothesis
 from inertial.campaign.records import Row
 from inertial.effects import LAWS
-from inertial.effects.law import ALL, TELEGRAPH
+from inertial.effects.law import TELEGRAPH
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _
 from stages.diagnosis.causes import LEFT_OUT, MODELLED, Cause
@@ -64,10 +64,8 @@ class JumpInOneManoeuvre(Cause):
 
     @property
     def _axis(self) -> str | None:
-        axes = {one.axis for one in _shown(self)}
-        if self.main.verdict == LAW:
-            axes.add(LAWS[self.main.cause].axis)
-        return next(iter(axes - {ALL})) if len(axes - {ALL}) == 1 else None
+        axes = {one.axis for one in (self.main, *_shown(self))} - {None}
+        return next(iter(axes)) if len(axes) == 1 else None
 
     def row(self, sizes: Mapping[str, Size], sentences: Mapping[str, str]) -> Row:
         row, shown = super().row(sizes, sentences), _shown(self)
