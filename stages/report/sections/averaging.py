@@ -12,7 +12,7 @@ from inertial.sensors import unit_of
 from inertial.tables import AXES
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant, whole
-from inertial.text.parameters import PARTS, SENSOR_OF, STAGES
+from inertial.text.parameters import PARTS, SENSOR_OF, STAGES, sign_of
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import drawing, outline
 from stages.report.results import Estimate, by_kind, kind_of
@@ -96,7 +96,7 @@ def _figure(
         panel.plot(seconds, away, color=_colour(name), marker="o", markersize=1.8)
         panel.set_xscale("log")
         drawing.plain_numbers(panel.xaxis)
-        panel.set_title(f"{plain(name)}, {units[name].name}", pad=3)
+        panel.set_title(f"{sign_of(name)}, {units[name].name}", pad=3)
         drawing.ticks(panel, 4)
 
     title = _estimate(group).name
@@ -209,7 +209,7 @@ def _epochs(group: Group, key: str, curves: Mapping[str, Sequence[Record]]) -> o
         if height > 0:
             panel.set_ylim(-height, height)
         panel.set_xlim(0, float(seconds[-1]))
-        panel.set_title(f"{plain(name)}, {unit.name}", pad=3)
+        panel.set_title(f"{sign_of(name)}, {unit.name}", pad=3)
         drawing.ticks(panel, 4)
 
     shown = list(curves)[:MOST_EPOCH_PANELS]

@@ -8,12 +8,13 @@ from inertial.campaign.records import grouped
 from inertial.sensors import PLURAL
 from inertial.text.messages import _
 from inertial.text.numbers import counted, fixed, significant
+from inertial.text.parameters import sign_of
 from inertial.text.typography import capital
 from inertial.text.units import ICE_POINT, quantity
 from stages.report import drawing, outline
 from stages.report.results import symbol
 from stages.report.tables import Record, Tables, arrays
-from stages.report.words import plain, with_mount
+from stages.report.words import with_mount
 
 SAME = 0.99  # share of its span that the two ends of a curve without a turn differ by
 
@@ -57,7 +58,7 @@ def _figure(title: str, key: str, curves: Curves) -> outline.Figure:
         panel.plot(at, value, color=colour)
         if rows[0]["knot"] is not None:
             panel.axvline(rows[0]["knot"] - ICE_POINT, color=drawing.INK, dashes=(3, 2), lw=0.6)
-        panel.set_title(f"{plain(name)}, {unit.name}", pad=3)
+        panel.set_title(f"{sign_of(name)}, {unit.name}", pad=3)
         drawing.ticks(panel, 4)
 
     shown = list(curves)[:MOST_PANELS]
