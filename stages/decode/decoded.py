@@ -78,6 +78,9 @@ def refuse_grown(path: Path, size: int) -> None:
 
 # ---- A decoded piece of a log, and the clock of a log by its first pieces.
 
+MAX_OFF_SHARE = 0.5  # of the median step, from which a step is a gap, or the clock jumps
+USUAL_PERCENT = (1, 99)  # of the steps, which give their spread
+MAX_OFF_SPREAD = 5.0  # of this, by which a step may be off the median
 LOOK_AHEAD = 1000  # samples, where there are as many, of which the interval is the median
 
 
@@ -106,15 +109,19 @@ def first_of(times: Iterable[Integers | Array]) -> NDArray[Any]:
 def intervals_of(times: NDArray[Any]) -> tuple[float | None, float | None]:
     """The interval from sample to sample by the first times of a log.
 
-    That is the median, and the mean of those steps that are no gaps: stamps of a
-    millisecond make the median jump, not the mean.
+    That is the median, and the mean of those steps that are no gaps or jumps of the clock: stamps
+    of a millisecond make the median jump, and jitter makes it wrong, not the mean, in which the
+    jitter of all stamps but the first and the last cancels.
     """
     steps = np.diff(times)
     forward = steps[steps > 0]
     if not len(forward):
         return None, None
     median = float(np.median(forward))
-    return median, float(np.mean(forward[forward < 1.5 * median]))
+    off = np.abs(steps - median)
+    usual = off < MAX_OFF_SHARE * median
+    spread = float(np.ptp(np.percentile(steps[usual], USUAL_PERCENT)))
+    return median, float(np.mean(steps[usual & (off <= MAX_OFF_SPREAD * spread)]))
 
 
 def on_axis(sensor: str, axis: str, values: Array) -> tuple[str, Array]:

@@ -44,12 +44,12 @@ class ReceiverLog:
         }
         stamps = (reading.records.stamp for reading in _messages(path))
         first = first_of(stamps)
-        median, _mean = intervals_of(first)
+        median, mean = intervals_of(first)
         # ns since the start of GPS time
         self.first = int(first[0]) if len(first) else None
         self.interval = None if median is None else median / NANOSECONDS  # s
         # Increments become rates with this interval, so it turns them back into increments.
-        self.step = self.interval
+        self.step = None if mean is None else mean / NANOSECONDS
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece, with time since `origin`, ns of GPS time."""
@@ -69,10 +69,10 @@ class ReceiverLog:
             yield Decoded(samples, reading.refused, reading.account, types_in_messages)
 
     def _rates(self, counts: NDArray[np.int32]) -> dict[str, Array]:
-        if self.interval is None:
+        if self.step is None:
             return {}
         fields = [(sensor, axis) for sensor in ("accel", "gyro") for axis in self._axes[sensor]]
-        size = {sensor: count / self.interval for sensor, count in self._counts.items()}
+        size = {sensor: count / self.step for sensor, count in self._counts.items()}
         return dict(
             on_axis(sensor, axis, counts[:, i].astype(np.float64) * size[sensor])
             for i, (sensor, axis) in enumerate(fields)
