@@ -27,7 +27,9 @@ from inertial.text.units import STANDARD_GRAVITY
 MIN_ROUGH_SIGMA = 8.0  # sigma of noise, by which a second difference is none
 MIN_CHANNELS = 4  # that are shaken at once; a table that turns up moves one axis
 MIN_RECORDS = 6  # a spoilt record has second differences in three, three of them in five
-MAX_SECONDS = 2.0  # s; what lasts longer is a motion or an oscillation
+MAX_SECONDS = 2.0  # s; what lasts longer is a motion or an oscillation, unless it dies away
+MAX_RINGING_SECONDS = 8.0
+MAX_LEFT_OF_RINGING = 0.5  # in the second half of what lasts so long, of the first
 MAX_BREAK = 8  # records within it in which fewer channels are shaken
 MIN_SHAKEN_SHARE = 0.5  # of its records
 SIDE_RECORDS = 32  # before and after, which are quiet
@@ -37,6 +39,8 @@ MAX_LEFT_SHARE = 0.3
 # Of the way there and back, that may remain of the angle of a gyro: a hand that turns leaves it
 MAX_NET_SHARE = 0.5
 TAIL_SHARE = 0.5  # of its length, in which what rings below the noise of a record dies away
+LEFT_ROUGH = 0.2  # sigma of noise, below which a mean does not show what rings on
+MAX_RINGING = 2.0  # lengths of a burst, for which it is taken to ring on
 MIN_LEAP = 3 * STANDARD_GRAVITY  # m/s², of |f| by a blow of a record or two
 MIN_LEAP_OF_CHANNEL = STANDARD_GRAVITY  # m/s², in more than one channel
 MAX_LEAP_RECORDS = 3
@@ -79,17 +83,25 @@ class Impact(Detector):
             places, values = piece.channel(i)
             if len(places) > 2:
                 rough[places[1:-1], i] = np.abs(np.diff(values, 2)) / (np.sqrt(6) * noise[i])
-        shaken = np.count_nonzero(np.nan_to_num(rough) > MIN_ROUGH_SIGMA, axis=1) >= MIN_CHANNELS
+        above = np.nan_to_num(rough) > MIN_ROUGH_SIGMA
+        shaken, at_all = np.count_nonzero(above, axis=1) >= MIN_CHANNELS, above.any(axis=1)
         for start, end in joined(np.flatnonzero(shaken), MAX_BREAK):
-            if _short_and_dense(shaken, start, end, log.interval) and _quiet(rough, start, end):
-                blow = _blow(piece.values, start, end, noise)
-                if blow is None:
+            # Where a sensor rings on that is shaken more, the burst lasts as long as that does.
+            rest = np.flatnonzero(at_all[start:])
+            longest = start + next((after for _first, after in joined(rest, MAX_BREAK)), 0)
+            for own, after in ((shaken, end), (at_all, longest)):
+                left = _left(rough[start:after])
+                if own is at_all and left > MAX_LEFT_OF_RINGING:
                     continue
-                peak, channels = blow
-                start, end = max(start - 1, 0), min(end + _tail(start, end), len(piece))
-                yield piece.event(
-                    start, end, peak, facts=Blow((end - start) * log.interval, channels)
-                )
+                if not _short_and_dense(own, start, after, left, log.interval):
+                    continue
+                if not _quiet(rough, start, after):
+                    continue
+                blow = _blow(piece.values, start, after, noise)
+                if blow is not None:
+                    tail = max(_tail(start, after), _ringing(after - start, left))
+                    yield _event(piece, log, start, after + tail, *blow)
+                    break
 
         yield from _single(piece, log)
 
@@ -140,10 +152,16 @@ def _single(piece: Piece, log: Log) -> Iterator[Event]:
             yield piece.event(first, after, size, facts=Blow((after - first) * log.interval, 3))
 
 
-def _short_and_dense(shaken: Booleans, start: int, end: int, interval: float) -> bool:
+def _event(piece: Piece, log: Log, start: int, end: int, peak: float, channels: int) -> Event:
+    start, end = max(start - 1, 0), min(end, len(piece))
+    return piece.event(start, end, peak, facts=Blow((end - start) * log.interval, channels))
+
+
+def _short_and_dense(shaken: Booleans, start: int, end: int, left: float, interval: float) -> bool:
     number = end - start
+    longest = (MAX_RINGING_SECONDS if left < MAX_LEFT_OF_RINGING else MAX_SECONDS) / interval
     dense = np.count_nonzero(shaken[start:end]) > MIN_SHAKEN_SHARE * number
-    return bool(MIN_RECORDS <= number <= MAX_SECONDS / interval and dense)
+    return bool(MIN_RECORDS <= number <= longest and dense)
 
 
 def _sides(values: Array, start: int, end: int) -> tuple[Array, Array]:
@@ -156,6 +174,27 @@ def _sides(values: Array, start: int, end: int) -> tuple[Array, Array]:
 
 def _tail(start: int, end: int) -> int:
     return max(round(TAIL_SHARE * (end - start)), 2)
+
+
+def _left(rough: Array) -> float:
+    """How rough these records, (n, 6), are in their second half, of the first; 1: no less."""
+    if not (half := len(rough) // 2):
+        return 1.0
+    first, second = (
+        float(np.median(np.nan_to_num(part).max(axis=1))) for part in (rough[:half], rough[half:])
+    )
+    return second / first if 0 < second < first else 1.0
+
+
+def _ringing(records: int, left: float) -> int:
+    """For how many records what shook so many rings on below the noise of a record.
+
+    It dies away exponentially, as from their first half to their second, of which that is `left`.
+    """
+    if left == 1:
+        return 0
+    on = records / 2 / -np.log(left) * np.log(MIN_ROUGH_SIGMA / LEFT_ROUGH)
+    return round(float(min(on, MAX_RINGING * records)))
 
 
 def _quiet(rough: Array, start: int, end: int) -> bool:

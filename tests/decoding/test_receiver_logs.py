@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from decoded_logs import DEGREE, S0_FIRST, S0_SECOND, SPAN_CPT, at, channels, decoded, one, signed
 
+from stages.decode.decoded import intervals_of
+
 
 def test_the_printed_lines_in_metres_degrees_and_seconds(tmp_path):  # T2
     # at 100 Hz, as they were recorded; the printed pair itself has a gap of 11.98 s between
@@ -117,3 +119,22 @@ def test_an_imu_on_a_real_table_feels_gravity_and_the_rate_that_was_set(recordin
             assert rate == pytest.approx(-10 if sign == "+" else 10, abs=0.02)
     assert {clock["recorded_on"][0] for clock in tables["clocks"].values()} == {"2025-10-11"}
     assert min(clock["from_s"][0] for clock in tables["clocks"].values()) == 0.0
+
+
+@pytest.mark.parametrize("jitter", [0.0, 20e3, 350e3])  # ns
+def test_the_mean_interval_holds_no_jitter_gap_or_step_of_the_clock(jitter):
+    """The median of 3000 steps was off by up to 1e-4 of an interval with jitter of 20 µs."""
+    random = np.random.default_rng(7)
+    stamps = 10_000_000 * np.arange(3000) + random.normal(0, jitter, 3000)
+    stamps[1500:] += 4e6 if not jitter else 0.0  # a step of the clock, by which none other is off
+    stamps = np.delete(stamps, [5, 100, 101, 700])
+    _median, mean = intervals_of(np.rint(stamps).astype(np.int64))
+    assert mean == pytest.approx(1e7, abs=3 * np.sqrt(2) * jitter / 3000 + 1e-3)
+
+
+def test_the_mean_interval_is_that_of_rounded_stamps():
+    """At 128 Hz in milliseconds four of five steps are 8 ms, and the others 7."""
+    stamps = np.rint(np.arange(3000) * 7.8125).astype(np.int64) * 1_000_000
+    median, mean = intervals_of(stamps)
+    assert median == 8e6
+    assert mean == pytest.approx(7.8125e6, rel=1e-4)

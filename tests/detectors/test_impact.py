@@ -40,6 +40,20 @@ def test_a_blow_is_found(times, still):
     assert event.channel is None
 
 
+@pytest.mark.parametrize("still", [True, False], ids=["rest", "turn"])
+@pytest.mark.parametrize("frequency", [10.0, 23.0])
+def test_a_blow_that_rings_for_seconds_in_the_accelerometers_alone_is_one(still, frequency):
+    """It was none, and lines of the spectrum; and what rang on behind it was steps of the angle."""
+    values = rest(6000) if still else turn()
+    share = np.array([0.9, -0.6, 1.0, 0.02, -0.03, 0.02])
+    values[2000:3500] += counted(4000 * NOISE * share * ringing(1500, frequency, 0.45))
+    (event,) = found(values)
+    assert abs(event.first - 2000) <= 6
+    left = 4000 * np.exp(-INTERVAL * (event.after - 2000) / 0.45)
+    assert left < 2  # noise of a reading
+    assert event.after < 2000 + 12 / INTERVAL
+
+
 def test_spoilt_records_steps_and_oscillations_are_none():
     values = rest(6000)
     values[1000:1003] += counted(1000 * NOISE)  # three records, all channels
