@@ -1,5 +1,6 @@
 """Short disturbances: a blow against the case or the table, and glitches of one phase."""
 
+from bisect import bisect_right
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -28,7 +29,7 @@ MIN_ROUGH_SIGMA = 8.0  # sigma of noise, by which a second difference is none
 MIN_CHANNELS = 4  # that are shaken at once; a table that turns up moves one axis
 MIN_RECORDS = 6  # a spoilt record has second differences in three, three of them in five
 MAX_SECONDS = 2.0  # s; what lasts longer is a motion or an oscillation, unless it dies away
-MAX_RINGING_SECONDS = 8.0
+MAX_RINGING_SECONDS = 8.0  # s, of what dies away
 MAX_LEFT_OF_RINGING = 0.5  # in the second half of what lasts so long, of the first
 MAX_BREAK = 8  # records within it in which fewer channels are shaken
 MIN_SHAKEN_SHARE = 0.5  # of its records
@@ -85,10 +86,11 @@ class Impact(Detector):
                 rough[places[1:-1], i] = np.abs(np.diff(values, 2)) / (np.sqrt(6) * noise[i])
         above = np.nan_to_num(rough) > MIN_ROUGH_SIGMA
         shaken, at_all = np.count_nonzero(above, axis=1) >= MIN_CHANNELS, above.any(axis=1)
+        runs = list(joined(np.flatnonzero(at_all), MAX_BREAK))
+        firsts = [first for first, _after in runs]
         for start, end in joined(np.flatnonzero(shaken), MAX_BREAK):
             # Where a sensor rings on that is shaken more, the burst lasts as long as that does.
-            rest = np.flatnonzero(at_all[start:])
-            longest = start + next((after for _first, after in joined(rest, MAX_BREAK)), 0)
+            _first, longest = runs[bisect_right(firsts, start) - 1]
             for own, after in ((shaken, end), (at_all, longest)):
                 left = _left(rough[start:after])
                 if own is at_all and left > MAX_LEFT_OF_RINGING:

@@ -138,3 +138,17 @@ def test_the_mean_interval_is_that_of_rounded_stamps():
     median, mean = intervals_of(stamps)
     assert median == 8e6
     assert mean == pytest.approx(7.8125e6, rel=1e-4)
+
+
+def test_increments_become_rates_by_the_mean_interval(tmp_path):
+    jitter = np.random.default_rng(8).normal(0, 1e-4, 400)  # s
+    readings, path = [], tmp_path / "rest.asc"
+    for off in (jitter, np.zeros(400)):
+        stamps = 42699.0 + 0.01 * np.arange(400) + off
+        counts = "64000,-10,20,300,-400,500"
+        path.write_bytes(b"".join(at(2283, stamp, counts) for stamp in stamps))
+        tables = one(path, SPAN_CPT)
+        assert tables["clocks"]["integration_step"] == [pytest.approx(0.01, abs=1e-6)]
+        readings.append(channels(tables["samples"], 0))
+    assert abs(np.median(np.diff(jitter))) > 3e-6  # s, by which the median interval is off
+    np.testing.assert_allclose(readings[0], readings[1], rtol=1e-4)
