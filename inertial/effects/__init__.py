@@ -19,6 +19,7 @@ from inertial.effects.accel_scale_ramp import AccelScaleRamp
 from inertial.effects.accel_scale_temperature import AccelScaleTemperature
 from inertial.effects.accel_vibration_rectification import AccelVibrationRectification
 from inertial.effects.accel_warm_up import AccelWarmUp
+from inertial.effects.bias_of_position import BiasOfPosition
 from inertial.effects.clock_scale import ClockScale
 from inertial.effects.earth_rate_omitted import EarthRateOmitted
 from inertial.effects.gravity_error import GravityError
@@ -99,6 +100,7 @@ CATALOGUE: dict[str, Effect] = {
         GyroScaleTemperature(),
         GyroBiasJump(),
         GyroScaleJump(),
+        BiasOfPosition("gyro"),
         GyroRandomWalk(),
         GyroFlicker(),
         *(GyroDeadBand(axis) for axis in "xyz"),
@@ -121,6 +123,7 @@ CATALOGUE: dict[str, Effect] = {
         AccelScaleTemperature(),
         AccelBiasJump(),
         AccelScaleJump(),
+        BiasOfPosition("accel"),
         AccelVibrationRectification(),
         AccelHysteresis(),
         AccelSaturation(),

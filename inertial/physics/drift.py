@@ -342,16 +342,16 @@ class Jump(SettingIn, Drift):
     times = JUMP_TIMES
 
     def blind(self, motion: Motion) -> str:
-        return super().blind(motion) or (SHORT_RUNS if _of_short_runs(motion) else "")
+        return super().blind(motion) or (SHORT_RUNS if of_short_runs(motion) else "")
 
     def grid(self, motion: Motion) -> Array:
-        return np.zeros(0) if _of_short_runs(motion) else super().grid(motion)
+        return np.zeros(0) if of_short_runs(motion) else super().grid(motion)
 
     def course(self, motion: Motion) -> Array:
         return self.since(motion)
 
 
-def _of_short_runs(motion: Motion) -> bool:
+def of_short_runs(motion: Motion) -> bool:
     """Whether logs without a common clock hold hardly more than a manoeuvre each."""
     runs, visits = (len(np.unique(each)) for each in (motion.run, motion.visit))
     return bool(without_clock(motion)) and visits <= MIN_VISITS * runs

@@ -328,14 +328,16 @@ class Evidence:
         freed = next(filter(None, (manoeuvres.get(main.id) for manoeuvres in apart)), None)
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
         done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
-        if cure == MODELLED:
-            done = _mean_of(main, own) or done
+        mean = _mean_of(main, own) if cure == MODELLED else ""
+        done = mean or done
         if main.id in self.walks or _rounds(main):
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):
             done = HARMLESS
-        elif cure != LEFT_OUT and (
-            freed := freed or (main.manoeuvre if has_own_error(main) else None)
+        elif (
+            not mean
+            and cure != LEFT_OUT
+            and (freed := freed or (main.manoeuvre if has_own_error(main) else None))
         ):
             done = OWN_ERROR.format(manoeuvre=freed)
         elif cure == NONE and modelled:

@@ -8,12 +8,14 @@ manoeuvre's own error as well: with an unknown of its own it moves nothing, what
 manoeuvre that alone carries a structure without a name, and moves the joint one by it, is left out.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import exp
 
 from inertial.campaign.hypotheses import SLIP
 from inertial.campaign.records import Row
+from inertial.effects import KNOWN
+from inertial.physics.drift import SettingIn
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, listed
@@ -23,9 +25,17 @@ from inertial.text.parameters import JOINT, WITHOUT_ONE
 UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
-OF_ONE_MANOEUVRE = ("table_position_error", "table_axis_error", "turn_angle_error")
-# A slip turns the axes of all that follows; of turns there and back play takes all but the first.
-OF_OTHERS_TOO = (SLIP, "table_backlash")
+OF_ONE_MANOEUVRE = (
+    "table_position_error",
+    "table_axis_error",
+    "turn_angle_error",
+    "gyro_bias_of_position",
+    "accel_bias_of_position",
+)
+# What sets in at the first or the last manoeuvre is that manoeuvre's error, for all others; but a
+# slip turns the axes of all that follows.
+SETTING_IN = frozenset(name for name, effect in KNOWN.items() if isinstance(effect, SettingIn))
+LIKE_ONE_MANOEUVRE = SETTING_IN - {SLIP}
 TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
 MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
@@ -94,6 +104,11 @@ ALIKE = _(
 FREED = _(
     "The result of the {sensors} includes {effects}: that is the own error of "
     "{manoeuvres}, which no other manoeuvre shows, and no finding remains unexplained."
+)
+OF_CLASS = _(
+    "The result of the {sensors} is the mean over what may be there, by how probable each is: "
+    "{effects}, and the others of its class, of which one is the own error of a single manoeuvre, "
+    "so that whatever it is is among them; and no finding remains unexplained."
 )
 ONE_LEFT_OUT = _(
     "The result of the {sensors} is the joint one without {manoeuvre}: that alone carries a "
@@ -173,9 +188,7 @@ def decided(
             return without
         reason = DOUBTFUL if alarms else NO_EFFECT
         return Decision(JOINT, reason.format(sensors=sensors, causes=causes))
-    carried = _carriers(effects_of(best)).keys()
-    rivals = [one for one in candidates if carried and _carriers(effects_of(one)).keys() == carried]
-    best = likeliest(one for one in rivals if _freed(effects_of(one))) or best
+    likely, best = best, _own_error_instead(best, candidates, effects_of)
     own = effects_of(best)
     names = _listed([row["effect"] for row in own])
     others = _other_members(own, effects)
@@ -185,11 +198,17 @@ def decided(
         saturated = frozenset(row["finding"] for row in own if best["saturated"])
         return Decision(JOINT, kept + others, saturated=saturated)
     if freed := _freed(own):
+        if _reaches_others(effects_of(likely)):
+            effect = _listed([row["effect"] for row in effects_of(likely)])
+            others = _other_members(effects_of(likely), effects)
+            return Decision(
+                likely["method"], OF_CLASS.format(sensors=sensors, effects=effect) + others
+            )
         manoeuvres = ", ".join(dict.fromkeys(freed.values()))
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
         alike = [
             one["method"]
-            for one in rivals
+            for one in candidates
             if _carriers(effects_of(one)) == freed and not _reaches_others(effects_of(one))
         ]
         return Decision(best["method"], reason + others, freed, frozenset(alike))
@@ -214,6 +233,22 @@ def decided(
     return Decision(
         best["method"], reason + others, widened=widened, joint_share=share, alone=alone
     )
+
+
+def _own_error_instead(
+    best: Row, candidates: Sequence[Row], effects_of: Callable[[Row], list[Row]]
+) -> Row:
+    """The likeliest candidate by which the same findings are own errors of single manoeuvres.
+
+    The best itself where there is none, or where other manoeuvres may bear it out.
+    """
+    own = effects_of(best)
+    little = (best["snr_squared"] or 0.0) < MIN_SNR_SQUARED and not _joint_share(best)
+    if not little and not any(row["carried_by"] for row in own):
+        return best
+    findings = {row["finding"] for row in own}
+    errors = (one for one in candidates if _freed(effects_of(one)).keys() == findings)
+    return likeliest(errors) or best
 
 
 def _without_one(candidates: Sequence[Row], alarms: Sequence[Row]) -> Decision | None:
@@ -302,7 +337,8 @@ def _freed(effects: Sequence[Row]) -> Mapping[str, str]:
 
 def _reaches_others(effects: Sequence[Row]) -> bool:
     """Whether any changes what others say as well, though one manoeuvre alone shows it."""
-    return any(row["effect"] in OF_OTHERS_TOO for row in effects)
+    names = (row["effect"] for row in effects)
+    return not all(_of_one_manoeuvre(name) or name in LIKE_ONE_MANOEUVRE for name in names)
 
 
 def _of_one_manoeuvre(effect: str) -> bool:

@@ -316,13 +316,15 @@ def _with_slip(result: SensorResult, every: Sequence[SensorResult]) -> SensorRes
 def competing(candidates: Sequence[Row], decision: Decision) -> dict[str, float]:
     """The probabilities of the members of a class that say something else, by method.
 
-    Of the joint result nothing does. Beside effects it has the share of the decision.
+    Of the joint result nothing does. Those that say the same as the one that counts are one with
+    it. Beside effects the joint result has the share of the decision.
     """
     if decision.method in (JOINT, WITHOUT_ONE):
         return {}
-    others = [row for row in candidates if row["method"] not in decision.alike]
-    share = decision.joint_share
-    odds = {row["method"]: row["probability"] * (1 - share) for row in others}
+    share, odds = decision.joint_share, dict[str, float]()
+    for row in candidates:
+        method = decision.method if row["method"] in decision.alike else row["method"]
+        odds[method] = odds.get(method, 0.0) + row["probability"] * (1 - share)
     if share:
         odds[JOINT] = odds[JOINT] + share
     return {method: probability for method, probability in odds.items() if probability > 0}

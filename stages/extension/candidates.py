@@ -10,6 +10,8 @@ from inertial.text.parameters import EXTENDED, JOINT
 from stages.extension.cross_validation import CrossValidation, Trainings, carrier
 from stages.extension.named_effects import Combination
 
+OF_POSITION = "position"  # what is scanned of an effect that is in one position alone
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -77,10 +79,17 @@ def normalised(candidates: Sequence[Candidate]) -> list[Candidate]:
 
 
 def carriers_of(trainings: Trainings, sensor: str, candidate: Candidate) -> dict[str, str | None]:
-    """The manoeuvre that alone carries each effect, by the name of the effect; None: none does."""
+    """The manoeuvre that alone carries each effect, by the name of the effect; None: none does.
+
+    What is of one position is carried by it, whatever manoeuvres it has: all of them are in one
+    attitude, whose error they share, so that they hardly predict one another.
+    """
     columns = candidate.columns
+    places = trainings.models.extended.positions
     return {
-        effect.name: carrier(
+        effect.name: places[int(effect.at)]
+        if effect.at is not None and effect.scan is not None and effect.scan.name == OF_POSITION
+        else carrier(
             trainings, sensor, columns, [name for name in columns if name in effect.columns]
         )
         for effect in candidate.effects

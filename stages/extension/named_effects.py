@@ -127,6 +127,7 @@ def _class_of(named: Effect, finding: str, rows: Sequence[Row]) -> NamedClass:
 # The members of a class do the same to the data, but not to the 24 parameters. With several classes
 # one is varied at a time, the others at their likeliest, so that the number of fits stays small.
 
+MIN_SHARE = 0.01  # of the probability of an effect of one position: less likely ones are left out
 MAX_OTHERS = 7  # combinations besides that of the likeliest members
 
 
@@ -218,25 +219,40 @@ def _compared(campaign: Campaign, own: NamedClass, others: Sequence[Effect]) -> 
     if not np.isfinite(log_odds).any():  # no reading depends on any of them
         log_odds = np.zeros(len(odds))
     weights = np.exp(log_odds - logsumexp(log_odds))
-    return replace(
-        own,
-        members=tuple(
-            Member(
-                family[int(np.argmax(each))] if scanned else member.effect,
-                float(weight) if unknown else member.probability,
-            )
-            for member, family, each, scanned, weight in zip(
-                own.members, families, odds, open_scan, weights, strict=True
-            )
-        ),
-    )
+    members: list[Member] = []
+    for member, family, each, scanned, weight in zip(
+        own.members, families, odds, open_scan, weights, strict=True
+    ):
+        probability = float(weight) if unknown else member.probability
+        members += (
+            _at_each(family, each, probability)
+            if scanned
+            else [member._replace(probability=probability)]
+        )
+    return replace(own, members=tuple(members))
+
+
+def _at_each(
+    family: Sequence[Effect], odds: Sequence[float], probability: float | None
+) -> list[Member]:
+    """The member with the best value of its scan; of one position, with each that is likely."""
+    best = family[int(np.argmax(odds))]
+    several = best.scan is not None and not best.scan.between and np.isfinite(odds).any()
+    if probability is None or not several:
+        return [Member(best, probability)]
+    shares = np.exp(np.array(odds) - logsumexp(odds))
+    pairs = sorted(zip(shares, family, strict=True), key=lambda pair: -pair[0])
+    likely = [(share, effect) for share, effect in pairs if share > MIN_SHARE]
+    whole = sum(share for share, _effect in likely)
+    return [Member(effect, float(probability * share / whole)) for share, effect in likely]
 
 
 def _family(campaign: Campaign, effect: Effect) -> list[Effect]:
     """The effect, once for every value of what is scanned."""
-    if effect.sought_in != "blocks":
+    if effect.sought_in != "blocks" or effect.scan is None:
         return [effect]
-    return [effect, *campaign.candidates([effect])[effect.name]] if effect.scan else [effect]
+    every = campaign.candidates([effect])[effect.name]
+    return [*every] if every and effect.at is None else [effect, *every]
 
 
 def _odds(

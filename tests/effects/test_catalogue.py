@@ -10,6 +10,7 @@ from inertial.effects import CATALOGUE
 from inertial.physics.effect import Effect
 from inertial.physics.forward import predict, sensed, signatures, truth_of
 from inertial.physics.motion import Motion
+from inertial.sensors import SENSORS
 from inertial.tables import CHANNELS
 from tests.expressions import value_of
 
@@ -41,7 +42,11 @@ def test_it_introduces_itself(name):
     effect = CATALOGUE[name]
     of_axis = (f"_{effect.parameters[0].name[-1]}",) if name.startswith("gyro_dead_band") else ("",)
     module = type(effect).__module__.rpartition(".")[2]
-    assert name in {module + axis for axis in of_axis} and effect.name == name
+    of_sensor = module if name.endswith(f"_{module}") else ""  # one module for both sensors
+    assert name in {module + axis for axis in of_axis} or name in {
+        f"{sensor}_{of_sensor}" for sensor in SENSORS
+    }
+    assert effect.name == name
     assert effect.cause and effect.source and type(effect).__doc__
     assert all(p.unit and p.meaning and p.typical > 0 for p in effect.parameters)
     assert set(effect.sizes) == SENSOR_GRADES or set(effect.sizes) in OTHER_SIZES
@@ -100,6 +105,7 @@ def test_what_is_scanned_has_candidates_of_its_own(motion):
         "table_ripple", "table_position_error", "table_axis_error",
         "turn_angle_error", "mounting_shift", "mounting_slip", "table_tilt_jump",
         "table_zero_shift", "table_zero_shift_outer",
+        "gyro_bias_of_position", "accel_bias_of_position",
     }  # fmt: skip
     for effect in CATALOGUE.values():
         candidates = effect.candidates(motion)
