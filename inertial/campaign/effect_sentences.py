@@ -77,11 +77,14 @@ def effect_sentence(
 def _numbers(parameters: Sequence[Estimated]) -> str:
     """The sizes that are clear, or all, and the times: without one a size says nothing.
 
-    An effect is tested with all its parameters at once, so it may be significant where none is.
+    An effect is tested with all its parameters at once, so it may be significant where none is. Of
+    one that shows by a combination of parameters alone, those that are determined say nothing.
     """
     known = [p for p in parameters if p.value is not None and p.sigma]
     sizes, times = [p for p in known if p.unit != "s"], [p for p in known if p.unit == "s"]
     clear = [p for p in sizes if abs(p.value or 0.0) > MIN_SIGMAS * (p.sigma or 0.0)]
+    if not clear and len(known) < len(parameters):
+        sizes = []
     numbers = "; ".join(map(_number, (clear or sizes) + times)) or NO_NUMBER
     together = not clear and len(sizes) > 1
     return NONE_ALONE.format(numbers=numbers) if together else numbers

@@ -30,7 +30,10 @@ class BiasOfPosition(Effect):
     hold a manoeuvre or two, biases of each run stand for it, as for a `Jump`.
     """
 
-    cause = _("something disturbs the sensor in one position: a contact, a cable, a field, its log")
+    cause = _(
+        "something disturbs the sensor there and nowhere else: a contact, a cable that pulls, a "
+        "field, or axes that are exchanged in its log"
+    )
     source = "IEEE Std 1293-2018, tumble test: residuals of single positions"
     stays = _("it is there in one position of the campaign alone")
     of_stillness = True  # by hand a single position is what it was held as

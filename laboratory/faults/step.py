@@ -17,7 +17,8 @@ from laboratory.records import Records
 class Step(Fault):
     """From `line` on one channel reads `size` more, m/s² or rad/s.
 
-    The rounding error of a count is carried to the next sample.
+    The rounding error of a count is carried to the next sample. Half a count is rounded either way
+    by chance: by one rule it would be at regular intervals, and those a tone that no IMU has.
     """
 
     name: ClassVar[str] = "step"
@@ -35,7 +36,10 @@ class Step(Fault):
 
     def change(self, records: Records) -> Records:
         rows = self.lines.rows(len(records))
+        unit = records.units[self.channel]
+        chance = np.random.default_rng([self.channel, int(rows[0])])
         running = self.size * np.arange(1.0, len(rows) + 1)
+        running += unit * chance.uniform(-0.5, 0.5, len(rows))
         counts = records.counts.copy()
-        counts[rows, self.channel] += count(running, records.units[self.channel])
+        counts[rows, self.channel] += count(running, unit)
         return replace(records, counts=counts).marked(self.name, rows)

@@ -328,8 +328,7 @@ class Evidence:
         freed = next(filter(None, (manoeuvres.get(main.id) for manoeuvres in apart)), None)
         modelled = frozenset(r.sensor for r in own if main.stage == MODEL and r.models(main.causes))
         done = main.repair["sentence"] if cure == REPAIRED and main.repair else DONE[cure]
-        mean = _mean_of(main, own) if cure == MODELLED else ""
-        done = mean or done
+        done = (mean := _mean_of(main, own) if cure == MODELLED else "") or done
         if main.id in self.walks or _rounds(main):
             done = IN_COVARIANCE
         elif cure == NONE and (moves is not None and moves < MAX_HARMLESS_MOVE):

@@ -106,9 +106,8 @@ FREED = _(
     "{manoeuvres}, which no other manoeuvre shows, and no finding remains unexplained."
 )
 OF_CLASS = _(
-    "The result of the {sensors} is the mean over what may be there, by how probable each is: "
-    "{effects}, and the others of its class, of which one is the own error of a single manoeuvre, "
-    "so that whatever it is is among them; and no finding remains unexplained."
+    "The result of the {sensors} is the mean over {effects}, by their probability: the data show "
+    "that it is one of these, and not which. No finding remains unexplained."
 )
 ONE_LEFT_OUT = _(
     "The result of the {sensors} is the joint one without {manoeuvre}: that alone carries a "
@@ -199,11 +198,9 @@ def decided(
         return Decision(JOINT, kept + others, saturated=saturated)
     if freed := _freed(own):
         if _reaches_others(effects_of(likely)):
-            effect = _listed([row["effect"] for row in effects_of(likely)])
-            others = _other_members(effects_of(likely), effects)
-            return Decision(
-                likely["method"], OF_CLASS.format(sensors=sensors, effects=effect) + others
-            )
+            members = [row["effect"] for row in effects if row["finding"] in freed]
+            reason = OF_CLASS.format(sensors=sensors, effects=_listed(members, "or"))
+            return Decision(likely["method"], reason)
         manoeuvres = ", ".join(dict.fromkeys(freed.values()))
         reason = FREED.format(sensors=sensors, effects=names, manoeuvres=manoeuvres)
         alike = [

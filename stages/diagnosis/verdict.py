@@ -9,7 +9,7 @@ from inertial.campaign.hypotheses import MODEL, TABLE_MOVING
 from inertial.effects import KNOWN
 from inertial.text.messages import _, plural
 from inertial.text.numbers import fixed, significant
-from inertial.text.parameters import CROSS, FREE, SCALE, sign_of
+from inertial.text.parameters import CROSS, FREE, MIXTURE, SCALE, sign_of
 from inertial.text.units import ARC_SECOND, ICE_POINT, STANDARD_GRAVITY, quantity
 from stages.diagnosis.causes import (
     CURVE,
@@ -40,6 +40,7 @@ LIMITS = {
     LEFT_OUT: _("left out: its manoeuvres were not used"),
 }
 FURTHER_TERM = _("corrected by a further term: use it")  # of an effect that readings contain
+OF_SEVERAL = _("in the model, by the mean over what it may be")  # not all of it in readings
 IF_SET_RIGHT = _("{sensors}: {causes}. Set right; the result is valid on condition: {conditions}.")
 IF_ASSUMED = _("{sensors}: {causes}. The result is valid on condition: {conditions}.")
 # What is known to no better is said of a usable result.
@@ -186,8 +187,11 @@ def _limit(cause: Cause, result: SensorResult | None = None) -> str:
         limit = LIMITS[cause.cure]
         if cause.cure != MODELLED or result is None or not result.models(cause.main.causes):
             return limit
-        if any(KNOWN[name].terms for name in cause.main.causes & KNOWN.keys()):
+        terms = [bool(KNOWN[name].terms) for name in cause.main.causes & KNOWN.keys()]
+        if any(terms):
             limit = FURTHER_TERM
+            if not all(terms) and result.chosen.method == MIXTURE:
+                limit = OF_SEVERAL
         if result.decision.joint_share:
             return _("{limit}; the sigmas include the result without it", limit=limit)
         return limit
