@@ -531,7 +531,7 @@ def test_two_logs_with_stamps_of_their_own_are_joined(simple, gyro_hz, late_s, t
     told_time = [float(lines[line - 1].split(b",")[0]) for line in samples["line"]]
     apart_by = np.array(told_time) - float(lines[1].split(b",")[0]) - samples["time"]
     assert np.ptp(apart_by) < 0.011  # the line of the accelerometers nearest to the sample
-    rate = 1 / results["decode/clocks"]["integration_step"]
+    rate = 1 / results["decode/clocks"]["interval"]
     np.testing.assert_allclose(rate, min(gyro_hz, 100), rtol=1e-5)
 
 

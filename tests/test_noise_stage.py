@@ -66,7 +66,7 @@ def of_stretches(values: np.ndarray, **changes: Any) -> dict[str, Any]:
     samples |= dict(zip(tables.CHANNELS, values.T, strict=True))
     segments = {"manoeuvre": [f"m{i}" for i in range(len(starts))], "phase": "rest", "log": "a"}
     segments |= {"from_record": starts, "to_record": np.minimum(starts + STRETCH, count)}
-    clock = {"log": "a", "interval": 1 / RATE, "integration_step": 1 / RATE, "clock": "GPS"}
+    clock = {"log": "a", "interval": 1 / RATE, "clock": "GPS"}
     clock |= {"epoch_gps": None, "began": None, "from_s": None, "to_s": None}
     clock |= {"begin": 0.0, "end": count / RATE}
     return {

@@ -220,7 +220,7 @@ def test_softdream_is_read_to_the_end(recorded):
     )
     clocks = results["decode/clocks"].set_index("log")
     assert clocks.loc["up.txt", "interval"] == pytest.approx(0.012)  # stamps of a millisecond
-    assert clocks.loc["up.txt", "integration_step"] == pytest.approx(11.888 / 1000)
+    assert clocks.loc["up.txt", "interval"] == pytest.approx(11.888 / 1000)
     # No turn about y: its scale factor is not determined, and said so.
     gyro = results.parameters("gyroscope")
     assert np.isnan(gyro.loc["scale_y", "value"])

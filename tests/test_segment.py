@@ -520,7 +520,7 @@ def test_the_windows_of_a_log_may_overlap():
     columns = {"record": np.arange(n), "time": 0.01 * np.arange(n), "mean_of": np.ones(n)}
     made = [windows.Window("log", *span, []) for span in ((0, n), (200, 400), (300, 500))]
     masks = Masks(tables.MASKS.empty())
-    bins = windows.Bins(made, {"log": Clock(0.01, 0.01)}, masks)
+    bins = windows.Bins(made, {"log": Clock(0.01)}, masks)
     for part in np.array_split(np.arange(n), 3):
         bins.add(
             Batch("log", {name: column[part] for name, column in (columns | readings).items()})

@@ -114,6 +114,8 @@ IN_PROPORTION = frozenset(
         "accel_scale_ramp",
         "accel_scale_jump",
         "accel_scale_temperature",
+        "gyro_bias_of_position",  # of a log that is one position
+        "accel_bias_of_position",
         "table_speed_error",
         "table_tilt",
         "table_tilt_ramp",

@@ -215,7 +215,7 @@ def nothing_recorded(noise: NoiseLevels, known: Mapping[str, Known]) -> Campaign
         pd.DataFrame(),
         noise,
         known,
-        clocks={LOG: Clock(1 / RATE, 1 / RATE)},
+        clocks={LOG: Clock(1 / RATE)},
         shared_clock=True,
         solution=Solution(IDEAL, IDEAL, site, {}),
     )

@@ -114,7 +114,7 @@ def given_by(
             name: (size["accel"], size["gyro"]) for name, size in sizes.items() if len(size) == 2
         },
         position_sigma=quantities["position"].scatter,
-        **_in_common([clock.duration for clock in clocks_of(clocks).values() if clock.duration]),
+        **_in_common([clock.interval for clock in clocks_of(clocks).values() if clock.interval]),
     )
 
 
@@ -387,7 +387,6 @@ def logs(
             count=np.array([_count(row, clock[log].step) for row in channels]),
             windows=windows.get(log, Windows.none()),
             records=rows[log]["records"],
-            step=clock[log].duration or np.nan,
             reach=in_all["reach"].to_numpy(np.float64),
             usual_noise=in_all["noise"].to_numpy(np.float64),
             increments=any(row.get("increments") for row in channels),

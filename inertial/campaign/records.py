@@ -245,7 +245,7 @@ MIN_ABSOLUTE = 1e8  # s, since any epoch: no logger runs for three years
 
 @dataclass(frozen=True)
 class Clock:
-    """The clock of a log, s: median interval, and what a sample counts for in a sum over time.
+    """The clock of a log, s: the interval is what a sample counts for in a sum over time.
 
     `averaged`: whether a sample is the mean over its interval, an increment, as receivers log it;
     `begin`, `end`: of the first and last sample, by the clock that all logs share, NaN where they
@@ -253,8 +253,7 @@ class Clock:
     those of sampling; `offset`: of time 0 of the log since that of all logs, s.
     """
 
-    interval: float | None
-    duration: float | None  # None without time
+    interval: float | None  # None without time
     averaged: bool = False
     begin: float = np.nan
     end: float = np.nan
@@ -264,7 +263,7 @@ class Clock:
     @property
     def step(self) -> float:
         """The duration of a sample; 1 where there is no time, so that records stand for seconds."""
-        return self.duration or 1.0
+        return self.interval or 1.0
 
 
 def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
@@ -274,7 +273,6 @@ def clocks_of(table: pd.DataFrame) -> dict[str, Clock]:
     return {
         row["log"]: Clock(
             row["interval"],
-            row["integration_step"],
             row["clock"] == "GPS",
             *(_span(row) if shared else (np.nan, np.nan)),
             (row.get("interval_sigma") or 0.0) / (row["interval"] or 1.0),

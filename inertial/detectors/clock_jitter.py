@@ -21,7 +21,6 @@ MIN_STAMPS = 8  # of them, where a log is shorter
 MIN_STRETCHES = 3  # stretches that must scatter: one alone is a jump or a change of the clock
 # Stretches between those that scatter, in which rounded stamps may happen to fit
 MAX_QUIET_STRETCHES = 10
-MIN_INTERVAL_BIAS = 1e-3  # what the median interval is off the mean: then it spoils scale factors
 MIN_ROUNDING_S = 1e-6  # s: to finer steps than that stamps are printed, not rounded
 
 
@@ -29,8 +28,7 @@ MIN_ROUNDING_S = 1e-6  # s: to finer steps than that stamps are printed, not rou
 class _Facts:
     """The scatter as a share of an interval; unit of rounded stamps and the intervals, s.
 
-    unit is 0 where stamps are not rounded; biased: by how much the median interval is off the
-    mean, 1, where rates are made with it.
+    unit is 0 where stamps are not rounded.
     """
 
     share: float
@@ -38,7 +36,6 @@ class _Facts:
     shorter: float
     longer: float
     mean: float
-    biased: float
 
 
 class ClockJitter(Detector):
@@ -82,13 +79,7 @@ class ClockJitter(Detector):
             rms = float(np.sqrt(np.median(square[first:after][scattered[first:after]])))
             single = step[start : end - 1][apart[start : end - 1] == 1]
             facts, place = _facts(single, rms, log), stamps.place
-            yield piece.event(
-                int(place[start]),
-                int(place[end - 1]) + 1,
-                rms,
-                facts=facts,
-                severity=3 if abs(facts.biased) > MIN_INTERVAL_BIAS else None,
-            )
+            yield piece.event(int(place[start]), int(place[end - 1]) + 1, rms, facts=facts)
 
     def describe(self, event: Event, name: str) -> Description:
         facts = event.facts
@@ -120,20 +111,13 @@ class ClockJitter(Detector):
             percent=_percent(np.sqrt(2) * facts.share),
             rms=rms,
         )
-        action = _(
-            "One interval is taken for the whole log, so no parameter depends on the stamps."
-        )
-        if abs(facts.biased) > MIN_INTERVAL_BIAS:
-            consequence += _(
-                " The median interval, with which increments become rates, is off the mean by "
-                "{significant} ppm, so every rate of this log is off by as much the other way.",
-                significant=significant(facts.biased * 1000000.0, 2),
-            )
-            action = _("Nothing is corrected.")
         return Description(
             sentence,
             consequence,
-            _("{action} Let the logger stamp a sample when it is taken, in µs.", action=action),
+            _(
+                "One interval is taken for the whole log, so no parameter depends on the stamps. "
+                "Let the logger stamp a sample when it is taken, in µs."
+            ),
         )
 
 
@@ -162,15 +146,7 @@ def _facts(single: Array, rms: float, log: Log) -> _Facts:
     usual = np.sort(ticks[np.argsort(often)[-2:]]) * STAMP_DIGIT_S
     near = single[single > 0.5 * log.interval]  # as far below the usual as single ones go above
     mean = float(near.mean()) if len(near) else log.interval
-    increments = log.recorded_on is not None  # of a receiver; columns hold rates
-    return _Facts(
-        rms / mean,
-        unit if rounded else 0.0,
-        float(usual[0]),
-        float(usual[-1]),
-        mean,
-        log.interval / mean - 1 if increments else 0.0,
-    )
+    return _Facts(rms / mean, unit if rounded else 0.0, float(usual[0]), float(usual[-1]), mean)
 
 
 def _percent(share: float) -> str:

@@ -107,7 +107,7 @@ class ClockScale(Detector):
                 facts=_Facts(
                     here=log.interval * (1 + part.mean),
                     usual=log.interval * (1 + reference),
-                    used=log.interval if log.recorded_on is not None else log.step,
+                    used=log.interval,
                     against=against if whole else _("elsewhere in this log"),
                     part=not whole,
                     increments=log.recorded_on is not None,
@@ -334,9 +334,7 @@ def _consequence(event: Event, facts: _Facts) -> str:
         )
     if facts.increments:
         after = abs(event.size) * 1e-6 * (event.to_s - event.from_s) * 1e3
-        rates = _(
-            "Rates are made with {used}, the median interval of the log, and stand", used=used
-        )
+        rates = _("Rates are made with {used}, the interval of the log, and stand", used=used)
         if facts.evidence.stamps is False:
             uneven = _ppm(facts.here / facts.used - 1)
             rates = _(

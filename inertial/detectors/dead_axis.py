@@ -169,7 +169,7 @@ class DeadAxis(Detector):
                     facts=Stillness(
                         float(own.values[own.start[k]]),
                         bool(log.least[i] == log.most[i]),
-                        number * log.step,
+                        number * log.interval,
                         abs(own.values[own.start[k]]) > MIN_FAR * max(-log.least[i], log.most[i]),
                     ),
                 )

@@ -49,7 +49,9 @@ class BiasRemoved(Detector):
     alike = "sensor"
 
     def detect_between_logs(self, logs: Mapping[str, Log]) -> Iterator[Event]:
-        timed = [log for log in logs.values() if np.isfinite(log.step) and len(log.windows.time)]
+        timed = [
+            log for log in logs.values() if np.isfinite(log.interval) and len(log.windows.time)
+        ]
         for sensor, axes in COLUMNS.items():
             own = [log for log in timed if np.isfinite(log.windows.mean[:, axes]).all()]
             if not own:
@@ -107,7 +109,7 @@ def _chance(logs: Sequence[Log], axes: slice, length: int | None) -> float:
     squares: list[Array] = []
     for log in logs:
         mean = log.windows.mean[:length, axes]
-        of_mean = log.windows.variance[:length, axes].mean(axis=0) * log.step / len(mean)
+        of_mean = log.windows.variance[:length, axes].mean(axis=0) * log.interval / len(mean)
         if (of_mean > 0).all():
             squares.append(mean.mean(axis=0) ** 2 / of_mean)
     if not squares:

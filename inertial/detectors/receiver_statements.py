@@ -96,8 +96,8 @@ class WrongImuType(Detector):
         for number in log.imu:
             if number not in IMU_TYPES:
                 continue
-            gyro, force = IMU_TYPES[number].counts(log.step)
-            stated = log.count * log.step
+            gyro, force = IMU_TYPES[number].counts(log.interval)
+            stated = log.count * log.interval
             ratios = np.array([stated[3] / gyro, stated[0] / force])
             off = np.abs(ratios - 1) > MAX_COUNT_DIFFERENCE
             if off.any():

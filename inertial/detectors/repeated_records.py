@@ -410,7 +410,7 @@ class SlowerSensor(Detector):
             yield log.event(
                 records_of_a_reading(share),
                 sensor=None if together else sensors[0],
-                facts=_Slower(tuple(sensors), log.step),
+                facts=_Slower(tuple(sensors), log.interval),
             )
 
     def describe(self, event: Event, name: str) -> Description:

@@ -97,8 +97,8 @@ class Saturation(Detector):
                     p_value=chance.get(limit),
                     facts=Visit(
                         limit,
-                        (end - start) * log.step,
-                        _lost(values, start, end, log.step),
+                        (end - start) * log.interval,
+                        _lost(values, start, end, log.interval),
                         _leapt(values, start, end, log.noise[i]),
                     ),
                 )
@@ -184,8 +184,8 @@ class Saturation(Detector):
 def _unstated(upward: Array, most: float, log: Log, i: int) -> tuple[Integers, float]:
     """The readings at a limit that nothing states, and the chance of them."""
     count = float(log.quantum[i])
-    known = np.isfinite(log.step)
-    side = max(SIDE_READINGS, round(SIDE_S / log.step)) if known else SIDE_READINGS
+    known = np.isfinite(log.interval)
+    side = max(SIDE_READINGS, round(SIDE_S / log.interval)) if known else SIDE_READINGS
     pile, p_value = pile_at_top(upward, most, count, log.noise[i], side=side)
     if log.increments and (not len(pile) or _alternates(upward, most, count)):
         wider, chance = pile_at_top(upward, most, count, log.noise[i], width=2, side=side)

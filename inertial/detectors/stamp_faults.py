@@ -302,7 +302,7 @@ TIME_UNITS = ("s", "ms", "µs", "ns")  # each a thousandth of the one before
 
 def _units_apart(log: Log) -> int:
     """By how many of TIME_UNITS the stamps are smaller than stated, 0 where by none."""
-    longer = log.step / log.given.interval
+    longer = log.interval / log.given.interval
     if not np.isfinite(longer) or longer <= 0:
         return 0
     thousands = round(np.log10(longer) / 3)
@@ -324,7 +324,7 @@ class WrongTimeUnit(Detector):
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
         if thousands := _units_apart(log):
-            facts = (thousands, log.step, log.given.interval, log.given.instrument)
+            facts = (thousands, log.interval, log.given.interval, log.given.instrument)
             yield log.event(1000.0**thousands, facts=facts)
 
     def describe(self, event: Event, name: str) -> Description:
@@ -363,9 +363,9 @@ class RateOff(Detector):
     severity = 1
 
     def detect_in_log(self, log: Log) -> Iterator[Event]:
-        factor = log.given.interval / log.step
+        factor = log.given.interval / log.interval
         if np.isfinite(factor) and abs(factor - 1) > MAX_RATE_ERROR and not _units_apart(log):
-            facts = (1 / log.step, 1 / log.given.interval, log.given.instrument)
+            facts = (1 / log.interval, 1 / log.given.interval, log.given.instrument)
             yield log.event(factor, facts=facts)
 
     def describe(self, event: Event, name: str) -> Description:

@@ -49,7 +49,7 @@ class WrongScaleFactor(Detector):
                 return
             # A count of a receiver is an increment, which its interval has made a rate.
             increments = log.recorded_on is not None
-            count = float(np.nanmedian(log.count[:3])) * log.step if increments else np.nan
+            count = float(np.nanmedian(log.count[:3])) * log.interval if increments else np.nan
             cause = explanation_of(ratio, "accel", log.given, count) or UNKNOWN_CAUSE
             yield log.event(ratio, facts=(force, cause, 0.0))
 

@@ -78,8 +78,8 @@ class Windows:
 class Log:
     """Properties of a log that are known before its records are examined singly.
 
-    interval: s, median sample interval, NaN where there is no time; recorded_on: UTC date, or None.
-    step: s, the mean interval, which a sample counts for in a sum over time.
+    interval: s, what a sample counts for in a sum over time, NaN where there is none;
+    recorded_on: UTC date, or None.
     quantum, noise: (6,), smallest step of a channel's readings, and the scatter of one reading
     about its neighbours, m/s² and rad/s, NaN where not recorded.
     equal: (6,), share of readings that are equal to the one before; held: (2,), share of records in
@@ -90,7 +90,7 @@ class Log:
     limit: (6,), how far the channel reaches, infinite where not stated.
     threshold: (6,), below which the channel reads 0, NaN where it does not.
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
-    records: how many. increments: readings are increments over `step`, and what a count leaves
+    records: how many. increments: readings are increments over `interval`, and what a count leaves
     over goes into the next. imu: the types of IMU in its messages, by NovAtel's list.
     stamp_scatter: s, rms of the stamps about the regular clock that is used instead, NaN where the
     stamps are used; interval_sigma: s, of its interval; shortest_gap: s, that such stamps show.
@@ -110,7 +110,6 @@ class Log:
     count: Array
     windows: Windows
     records: int
-    step: float = np.nan
     reach: Array = field(default_factory=lambda: np.full(6, np.nan))
     usual_noise: Array = field(default_factory=lambda: np.full(6, np.nan))
     increments: bool = False

@@ -70,7 +70,7 @@ ACCOUNTS = table(
 )
 CLOCKS = table(
     "clocks",
-    6,
+    7,
     LOG,
     text("clock", "GPS: shared by the logs; own: each log from its first sample; none"),
     optional_number("epoch_gps", "s", "GPS time at time 0"),
@@ -80,9 +80,8 @@ CLOCKS = table(
     optional_number("to_s", "s", "time of the last sample"),
     integer("records", "number of decoded records"),
     integer("to_record", "number after that of the last decoded record, else 0"),
-    optional_number("interval", "s", "median sample interval"),
     optional_number(
-        "integration_step", "s", "mean sample interval: what a sample counts for in a sum over time"
+        "interval", "s", "sample interval, gaps left out: what a sample counts for in a sum"
     ),
     optional_number(
         "interval_sigma",

@@ -20,7 +20,7 @@ from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
-from stages.decode.decoded import ANGLE_UNITS, Continuous, Decoded, first_of, intervals_of, on_axis
+from stages.decode.decoded import ANGLE_UNITS, Continuous, Decoded, first_of, interval_of, on_axis
 
 # What a degree of a unit is in K, and its zero.
 KELVIN = {"degC": (1.0, ICE_POINT), "K": (1.0, 0.0), "degF": (5 / 9, ICE_POINT - 32 * 5 / 9)}
@@ -110,28 +110,25 @@ class ColumnLog:
         self.clock = "none" if time is None else "own"
         self._ticks = 1.0 if time is None else ticks_per_second(layout)
         self.arrival: ArrivalTimes | None = None
-        self._first, self.interval, self.step = self._beginning()
+        self._first, self.interval = self._beginning()
 
-    def _beginning(self) -> tuple[float, float | None, float | None]:
-        """The time of the first sample in ticks; median and mean sample interval, s."""
+    def _beginning(self) -> tuple[float, float | None]:
+        """The time of the first sample in ticks; the sample interval, s."""
         time = self._layout.get("time")
         if time is None:
-            return 0.0, None, None
+            return 0.0, None
         if time.get("column") is None:  # rows are counted from the first, though it be refused
-            return 0.0, 1 / self._ticks, 1 / self._ticks
+            return 0.0, 1 / self._ticks
         first = first_of(each.ticks[~each.repeated] for each in self._stamps())
         if not len(first):
-            return 0.0, None, None
+            return 0.0, None
         self._refuse_fast(first)
         if "mean_of" not in self._layout:
             self.arrival = arrival_times(first, self._stamps, self._ticks)
         if self.arrival is not None:
-            interval = self.arrival.clock.interval
-            return self.arrival.first, interval, interval
-        median, mean = intervals_of(first)
-        if median is None or mean is None:
-            return first[0].item(), None, None
-        return first[0].item(), median / self._ticks, mean / self._ticks
+            return self.arrival.first, self.arrival.clock.interval
+        interval = interval_of(first)
+        return first[0].item(), None if interval is None else interval / self._ticks
 
     def _refuse_fast(self, first: NDArray[Any]) -> None:
         """Refuse first stamps, (n,), ticks, of more samples a second than any IMU takes."""

@@ -78,10 +78,12 @@ def refuse_grown(path: Path, size: int) -> None:
 
 # ---- A decoded piece of a log, and the clock of a log by its first pieces.
 
-MAX_OFF_SHARE = 0.5  # of the median step, from which a step is a gap, or the clock jumps
-USUAL_PERCENT = (1, 99)  # of the steps, which give their spread
-MAX_OFF_SPREAD = 5.0  # of this, by which a step may be off the median
-LOOK_AHEAD = 1000  # samples, where there are as many, of which the interval is the median
+LOOK_AHEAD = 1000  # samples, where there are as many, by which the interval is known
+MAX_OFF_SHARE = 0.5  # of the interval, by which a step is too short or too long
+USUAL_PERCENT = (1, 99)  # of the other steps, which give their spread
+MIN_GAP_SPREAD = 1.5  # of this, by which a gap is longer than an interval: what is less is jitter
+MAX_OFF_SPREAD = 5.0  # of this, by which jitter is off; with more the clock jumps
+MIN_SHORT, MIN_SHORT_SHARE = 1e-3, 0.2  # of all steps, of those too long: more are scatter
 
 
 @dataclass(frozen=True)
@@ -106,22 +108,36 @@ def first_of(times: Iterable[Integers | Array]) -> NDArray[Any]:
     return np.concatenate(so_far) if so_far else np.array([])
 
 
-def intervals_of(times: NDArray[Any]) -> tuple[float | None, float | None]:
-    """The interval from sample to sample by the first times of a log.
+def interval_of(times: NDArray[Any]) -> float | None:
+    """The interval from sample to sample by the first times of a log, without gaps and jumps.
 
-    That is the median, and the mean of those steps that are no gaps or jumps of the clock: stamps
-    of a millisecond make the median jump, and jitter makes it wrong, not the mean, in which the
-    jitter of all stamps but the first and the last cancels.
+    Single steps do not tell it: stamps of a millisecond make them jump, and jitter makes their
+    median wrong. Nor does the span, which has the jitter of two stamps. So it is the mean over all
+    stamps and those a number of samples later, with gaps of whole samples closed and jumps of the
+    clock taken out. Where steps are too short as often as too long, stamps scatter by so much that
+    no single gap is to see: there pairs that are off the others are left out instead.
     """
     steps = np.diff(times)
-    forward = steps[steps > 0]
-    if not len(forward):
-        return None, None
-    median = float(np.median(forward))
-    off = np.abs(steps - median)
-    usual = off < MAX_OFF_SHARE * median
-    spread = float(np.ptp(np.percentile(steps[usual], USUAL_PERCENT)))
-    return median, float(np.mean(steps[usual & (off <= MAX_OFF_SPREAD * spread)]))
+    if not (steps > 0).any():
+        return None
+    apart = max(min(LOOK_AHEAD, len(times) // 2), 1)
+    over = (times[apart:] - times[:-apart]) / apart
+    about = float(np.median(over))
+    if about <= 0:
+        about = float(np.median(steps[steps > 0]))
+    short, long = steps < about - MAX_OFF_SHARE * about, steps > about + MAX_OFF_SHARE * about
+    many = np.count_nonzero(short) > MIN_SHORT * len(steps)
+    if many and np.count_nonzero(short) > MIN_SHORT_SHARE * np.count_nonzero(long):
+        near = np.abs(over - about)
+        return float(np.mean(over[near <= MAX_OFF_SPREAD * np.median(near)]))
+    usual = steps[~(short | long)]
+    spread = float(np.ptp(np.percentile(usual, USUAL_PERCENT)))
+    mean = float(np.mean(usual[np.abs(usual - np.median(usual)) <= MAX_OFF_SPREAD * spread]))
+    gap = steps - mean > MIN_GAP_SPREAD * spread
+    off = steps - mean * np.where(gap, np.maximum(np.rint(steps / mean), 1), 1)
+    even = np.cumsum(mean + np.where(np.abs(off) <= MAX_OFF_SPREAD * spread, off, 0.0))
+    even = np.append(0.0, even)
+    return float(np.mean(even[apart:] - even[:-apart])) / apart
 
 
 def on_axis(sensor: str, axis: str, values: Array) -> tuple[str, Array]:

@@ -139,7 +139,7 @@ class JoinedLog:
         if left := int(np.count_nonzero(~self._kept)):
             both[slower].account.add(DECODED, "", -left, 0)
             both[slower].account.add(NOT_SELECTED, "", left, 0)
-        self.interval, self.step = self._log.interval, self._log.step
+        self.interval = self._log.interval
         self.arrival = self._log.arrival
         if len(self._kept) and not self._kept.any():
             raise Refusal(

@@ -12,7 +12,7 @@ from inertial.formats.file_type import FileType, file_type_of, refuse_no_log
 from inertial.formats.gps_time import NANOSECONDS, utc
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
-from stages.decode.decoded import Decoded, first_of, intervals_of, on_axis
+from stages.decode.decoded import Decoded, first_of, interval_of, on_axis
 
 if TYPE_CHECKING:
     from inertial.formats.novatel import novatel_reader
@@ -44,12 +44,11 @@ class ReceiverLog:
         }
         stamps = (reading.records.stamp for reading in _messages(path))
         first = first_of(stamps)
-        median, mean = intervals_of(first)
+        interval = interval_of(first)
         # ns since the start of GPS time
         self.first = int(first[0]) if len(first) else None
-        self.interval = None if median is None else median / NANOSECONDS  # s
-        # Increments become rates with this interval, so it turns them back into increments.
-        self.step = None if mean is None else mean / NANOSECONDS
+        # s: increments become rates with it, so it turns them back into increments.
+        self.interval = None if interval is None else interval / NANOSECONDS
 
     def decoded(self, origin: int) -> Iterator[Decoded]:
         """The log, piece by piece, with time since `origin`, ns of GPS time."""
@@ -69,10 +68,10 @@ class ReceiverLog:
             yield Decoded(samples, reading.refused, reading.account, types_in_messages)
 
     def _rates(self, counts: NDArray[np.int32]) -> dict[str, Array]:
-        if self.step is None:
+        if self.interval is None:
             return {}
         fields = [(sensor, axis) for sensor in ("accel", "gyro") for axis in self._axes[sensor]]
-        size = {sensor: count / self.step for sensor, count in self._counts.items()}
+        size = {sensor: count / self.interval for sensor, count in self._counts.items()}
         return dict(
             on_axis(sensor, axis, counts[:, i].astype(np.float64) * size[sensor])
             for i, (sensor, axis) in enumerate(fields)

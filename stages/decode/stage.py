@@ -42,7 +42,7 @@ def decode(logs: Iterable[pa.RecordBatch], raw: list[Path]) -> Pieces:
     Time is GPS time since the first sample of the campaign for the logs of a receiver; for a log of
     columns it is the time since its own first sample, by a regular clock where the stamps are those
     of arrival. Increments become rates with the log's own
-    median sample interval; a log that has too few samples for one has no rates.
+    sample interval; a log that has too few samples for one has no rates.
 
     Accelerometers and gyros with a log each are joined: `joined_log` says how.
 
@@ -111,7 +111,6 @@ def _pieces_of(
         "records": records,
         "to_record": to_record,
         "interval": log.interval,
-        "integration_step": log.step,
         "interval_sigma": log.arrival and log.arrival.clock.interval_sigma,
         "stamp_scatter": log.arrival and log.arrival.clock.scatter,
         "shortest_gap": log.arrival and log.arrival.clock.shortest_gap,

@@ -351,7 +351,7 @@ def epoch_of(clocks: pd.DataFrame) -> float | None:
 
 def sample_rate(clocks: pd.DataFrame) -> float | None:
     """The measured sample rate, Hz: the median of the logs; none where no log has time."""
-    steps = [row["integration_step"] for row in rows_of(clocks)]
+    steps = [row["interval"] for row in rows_of(clocks)]
     steps = [step for step in steps if step and isfinite(step)]
     return 1 / median(steps) if steps else None
 

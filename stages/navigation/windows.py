@@ -64,7 +64,7 @@ def windows(data: CampaignData, segments: pd.DataFrame) -> tuple[list[Window], l
         if row["phase"] not in STATIC_PHASES:
             continue
         m, part = plan[row["manoeuvre"]], Part(row["manoeuvre"], row["phase"])
-        step = data.clocks[row["log"]].duration
+        step = data.clocks[row["log"]].interval
         if step is None:
             refused.append(Part(part.manoeuvre, part.phase, NO_CLOCK))
             continue
@@ -84,7 +84,7 @@ def _turns(data: CampaignData, segments: Sequence[Mapping[str, object]]) -> Iter
     phases = {(row["manoeuvre"], row["phase"]): row for row in segments}
     for m in data.plan:
         before, rest = (phases.get((m.name, phase)) for phase in ("rest-before", "rest-after"))
-        step = data.clocks[m.log].duration
+        step = data.clocks[m.log].interval
         if m.do != "turn" or before is None or rest is None or step is None:
             continue
         if m.angle is None or not data.performed[m.name].complete:

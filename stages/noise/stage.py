@@ -240,7 +240,7 @@ def _read(
     for log, record, values, continues in parts:
         changes = np.minimum(changes, [smallest_step(channel) for channel in values.T])
         levels_seen.append(values[0].copy())  # a view would keep the whole piece
-        step = clock[log].duration
+        step = clock[log].interval
         number += not continues
         for row in quiet:
             if row["log"] != log or step is None:

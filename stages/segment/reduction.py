@@ -86,7 +86,7 @@ class Blocks(SumsOver):
         }
         self._clocks = clocks
         self._seconds = {
-            log: clock.step if log in in_samples else clock.duration or np.nan
+            log: clock.step if log in in_samples else clock.interval or np.nan
             for log, clock in clocks.items()
         }
         hidden = _hidden(parts, masks)
@@ -98,7 +98,7 @@ class Blocks(SumsOver):
             if part.phase == SETTLING:  # what swings on adds up to nothing
                 length = max(1, part.after - part.first)
             # A hand turns about ever other axes; records without a time are means.
-            if part.phase == BETWEEN or clocks[part.log].duration is None:
+            if part.phase == BETWEEN or clocks[part.log].interval is None:
                 length = 1
             unseen = hidden.get(part.manoeuvre, np.array([], np.int64))
             edges.append(_edges(part, length, self._gaps_of(part.log), unseen))
@@ -253,7 +253,7 @@ def _missing(turn: pd.DataFrame, after_gap: pd.Series, clock: Clock) -> Array:
     records that came too early nothing is missing, though time leaps before them.
     """
     missing = np.zeros(len(turn))
-    step = clock.duration
+    step = clock.interval
     if step is None:
         return missing
     pause = np.nan_to_num(turn["first"].to_numpy()[1:] - turn["last"].to_numpy()[:-1] - step)

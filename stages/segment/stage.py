@@ -343,7 +343,7 @@ def _counts(logs: Mapping[str, Log]) -> dict[str, dict[str, float]]:
     """By sensor and log, what a count is by the campaign, m/s and rad, where it is an increment."""
     return {
         sensor: {
-            name: float(np.nanmedian(log.count[channels])) * log.step
+            name: float(np.nanmedian(log.count[channels])) * log.interval
             for name, log in logs.items()
             if log.increments and np.isfinite(log.count[channels]).any()
         }

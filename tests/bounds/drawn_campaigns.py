@@ -30,7 +30,6 @@ CLOCKS = pd.DataFrame(
         "from_s": [0.0],
         "to_s": [None],
         "interval": [1 / RATE],
-        "integration_step": [1 / RATE],
     }
 )
 MISALIGNED, BIAS = 5e-3, (0.01, 1e-5)  # spread of M; of the biases, m/s² and rad/s

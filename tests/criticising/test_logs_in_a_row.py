@@ -12,7 +12,7 @@ def clocks(*spans: tuple[float, float], clock: str = "own") -> pd.DataFrame:
     """The clocks of logs of 100 Hz from the stamps of their first and last samples."""
     rows = [
         {"log": f"{number}.csv", "clock": clock, "epoch_gps": np.nan, "began": first}
-        | {"from_s": 0.0, "to_s": last - first, "interval": 0.01, "integration_step": 0.01}
+        | {"from_s": 0.0, "to_s": last - first, "interval": 0.01}
         for number, (first, last) in enumerate(spans)
     ]
     return pd.DataFrame(rows)

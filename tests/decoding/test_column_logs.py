@@ -79,7 +79,6 @@ def test_without_time_there_is_no_clock(tmp_path):
         "records": 2,
         "to_record": 2,
         "interval": None,
-        "integration_step": None,
         "interval_sigma": None,
         "stamp_scatter": None,
         "shortest_gap": None,

@@ -98,7 +98,6 @@ def log(one: Piece, campaign: Given | None = None, **changes: Any) -> Log:
                 over(np.mean, one.temperature),
             ),
             "records": len(values),
-            "step": interval,
         }
     return Log(**{**facts, **changes})
 

@@ -28,7 +28,7 @@ def six_positions() -> SimpleNamespace:
             for what, vector in vectors.items():
                 own |= {f"{what}_{axis}": part for axis, part in zip("xyz", vector, strict=True)}
             plan.append(own)
-    clock = {"log": "session.csv", "clock": "log", "interval": 0.01, "integration_step": 0.01}
+    clock = {"log": "session.csv", "clock": "log", "interval": 0.01}
     clock |= {"began": 0.0, "from_s": 0.0, "to_s": 480.0, "epoch_gps": None}
     return SimpleNamespace(
         manoeuvres=pd.DataFrame(plan),
