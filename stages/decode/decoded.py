@@ -79,6 +79,7 @@ def refuse_grown(path: Path, size: int) -> None:
 # ---- A decoded piece of a log, and the clock of a log by its first pieces.
 
 LOOK_AHEAD = 1000  # samples, where there are as many, by which the interval is known
+MAX_STILL = 50  # samples that stamps which are rounded stand still for; more repeat one record
 MAX_OFF_SHARE = 0.5  # of the interval, by which a step is too short or too long
 USUAL_PERCENT = (1, 99)  # of the other steps, which give their spread
 MIN_GAP_SPREAD = 1.5  # of this, by which a gap is longer than an interval: what is less is jitter
@@ -117,6 +118,9 @@ def interval_of(times: NDArray[Any]) -> float | None:
     clock taken out. Where steps are too short as often as too long, stamps scatter by so much that
     no single gap is to see: there pairs that are off the others are left out instead.
     """
+    starts = np.flatnonzero(np.append(True, np.diff(times) != 0))
+    lengths = np.diff(np.append(starts, len(times)))
+    times = np.repeat(times[starts], np.where(lengths > MAX_STILL, 1, lengths))
     steps = np.diff(times)
     if not (steps > 0).any():
         return None
