@@ -47,11 +47,12 @@ def _same_cause(cause: Hypothesis, other: Hypothesis) -> bool:
 
 
 # What the recording shows as one thing and the model by several names.
+PERIODIC = ("oscillation", "table_ripple", "table_eccentricity")
 _KIND = {
     name: kind
     for kind, names in {
         "bias jump": ("bias_jump", "gyro_bias_jump", "accel_bias_jump", *MOUNTINGS),
-        "periodic": ("oscillation", "table_ripple", "table_eccentricity"),
+        "periodic": PERIODIC,
         "temperature": (
             "temperature_drift",
             *(f"{s}_{what}" for s in SENSORS for what in ("warm_up", "bias_ramp", "scale_ramp")),
@@ -278,6 +279,8 @@ def _explains(cause: Hypothesis, other: Hypothesis) -> bool:
         return same_sensor(cause, other) == (other.cause in PER_RUN)
     if _uncertain(other):
         return _explains_uncertain(cause, other)
+    if other.cause in PERIODIC and _without_law(cause):  # a spectrum of what is there, as of a step
+        return bool(cause.manoeuvres) and cause.manoeuvres == other.manoeuvres
     if other.named:
         return _explains_named(cause, other)
     return any(

@@ -144,11 +144,13 @@ class OscillationResults:
     def _finding(self, named: NamedOscillation) -> Iterator[TableRow]:
         oscillation, ripple, members = named.oscillation, named.ripple, named.oscillation.effects
         several = len(members) > 1
+        turns = {line.manoeuvre for line in oscillation.lines}
         yield finding_row(
             named.effect,
             self.mount,
             id=named.finding,
             sensor="gyro",
+            manoeuvre=next(iter(turns)) if len(turns) == 1 else None,
             size=_size_of(oscillation, ripple),
             unit="rad" if ripple else "rad/s",
             p_value=oscillation.p_value,

@@ -118,6 +118,8 @@ def interval_of(times: NDArray[Any]) -> float | None:
     clock taken out. Where steps are too short as often as too long, stamps scatter by so much that
     no single gap is to see: there pairs that are off the others are left out instead.
     """
+    if len(times) < 2:
+        return None
     starts = np.flatnonzero(np.append(True, np.diff(times) != 0))
     lengths = np.diff(np.append(starts, len(times)))
     times = np.repeat(times[starts], np.where(lengths > MAX_STILL, 1, lengths))

@@ -48,6 +48,15 @@ def test_a_gap_explains_the_turn_that_it_cuts_and_no_other():
     assert causes(gap, other) == {"gap": set(), "incomplete_turn": set()}
 
 
+@pytest.mark.parametrize(("turns", "explained"), [(("z-back",), True), (("z-back", "z"), False)])
+def test_lines_of_the_turn_that_alone_carries_a_structure_are_its_spectrum(turns, explained):
+    """A step of a gyro within a turn was up to six oscillations beside it."""
+    step = finding("criticism", "unknown_structure", "gyro", verdict="unknown_structure")
+    step = replace(step, manoeuvres=frozenset({"z-back"}))
+    line = replace(effect("oscillation", "gyro"), manoeuvres=frozenset(turns))
+    assert ("oscillation" in causes(step, line)["unknown_structure"]) == explained
+
+
 @pytest.mark.parametrize(("repair", "both"), [("applied", True), ("rival", False)])
 def test_what_another_repair_sets_right_is_a_cause_with_its_condition(repair, both):
     """Exchanged axes and rad/s stated as °/s: 57.3 was left out of the condition."""
