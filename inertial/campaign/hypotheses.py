@@ -53,7 +53,8 @@ class Hypothesis:
 
     `stage`: whose finding it is; `manoeuvres`: those whose records it touches, or without which
     it is not there, none where that is not known or they are many; `verdict`: of
-    criticism, else empty; `members`: effects that it may be, the most probable first;
+    criticism, else empty; `members`: effects that it may be, the most probable first; `places`:
+    positions or turns that an effect of a single one may be at, the likeliest first;
     `repair`: the row of the repair that undoes it, if any; `rivals`: of repairs of which each
     would, so that none is applied; `masked`: whether its records are; `time`: s since the first
     sample of all logs, with its sigma, where it is one moment; `angle`: rad, by which it turns the
@@ -68,6 +69,7 @@ class Hypothesis:
     manoeuvres: frozenset[str] = frozenset()
     verdict: str = ""
     members: tuple[str, ...] = ()
+    places: tuple[str, ...] = ()
     repair: Row | None = None
     rivals: tuple[Row, ...] = ()
     masked: bool = False
@@ -163,15 +165,17 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
     for row in sorted(rows_of(findings.members), key=lambda row: row["rank"]):
         members.setdefault(row["finding"], []).append(row["effect"])
     repair_of, without = _repairs(findings)
-    positions = rows_of(findings.cause_positions)
-    place = {row["finding"]: row["position"] for row in positions if row["rank"] == 1}
+    places: dict[str, list[str]] = {}
+    for row in sorted(rows_of(findings.cause_positions), key=lambda row: row["rank"]):
+        places.setdefault(row["finding"], []).append(row["position"])
     times, angles, shares = _moments(findings), _angles(findings), _shares(findings)
     touched, carrying = _touched(findings), dict[str, set[str]]()
     for row in rows_of(findings.structure_manoeuvres):
         carrying.setdefault(row["finding"], set()).add(row["manoeuvre"])
     for stage, rows in findings.by_stage.items():
         for row in rows:
-            row = row | {"manoeuvre": row["manoeuvre"] or place.get(row["id"])}
+            at = tuple(places.get(row["id"], ()))
+            row = row | {"manoeuvre": row["manoeuvre"] or next(iter(at), None)}
             own = {row["manoeuvre"]} if row["manoeuvre"] else set()
             yield Hypothesis(
                 id=row["id"],
@@ -183,6 +187,7 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
                 ),
                 verdict=row.get("verdict") or "",
                 members=tuple(members.get(row["id"], ())),
+                places=at,
                 repair=next(iter(repair_of.get(row["id"], ())), None),
                 rivals=tuple(r for r in repair_of.get(row["id"], ()) if r["state"] == RIVAL),
                 masked=row["id"] in touched,

@@ -63,8 +63,8 @@ DONE = {
     NONE: _("Nothing was done about it."),
 }
 BY_MEMBERS = _(
-    "The parameters are the mean over the members of the class, by their probability; the further "
-    "terms are those of the most probable one."
+    "The parameters are the mean over all that it may be, by how probable each is; the further "
+    "terms are those of the most probable."
 )
 WITH_AND_WITHOUT = _(
     "The parameters are the mean of the result with it and the result without it, by how well each "
@@ -225,7 +225,7 @@ class Cause:
             names = names if self.verdict == ONE_OF_CLASS else []
             words = _(" or ").join(names or [in_words(self.main.cause)])
         axis = None if self.main.cause in LAWS else self.main.axis  # whose names hold it
-        place = self.manoeuvre
+        place = _(" or ").join(self.main.places) or self.manoeuvre
         words += _(" of the {axis} axis", axis=axis) if axis and self._one_axis() else ""
         return words + (_(" ({place})", place=place) if place else "")
 
@@ -495,6 +495,6 @@ def _mean_of(cause: Hypothesis, own: Sequence[SensorResult]) -> str:
     """What the parameters are a mean over, as a sentence; "" where they are of one fit."""
     means = [result for result in own if result.chosen.method == MIXTURE]
     without = any(result.decision.joint_share and result.models(cause.causes) for result in means)
-    if cause.verdict == ONE_OF_CLASS and means:
+    if means and (cause.verdict == ONE_OF_CLASS or len(cause.places) > 1):
         return BY_MEMBERS_AND_WITHOUT if without else BY_MEMBERS
     return WITH_AND_WITHOUT if without else ""
