@@ -64,13 +64,13 @@ def test_a_further_term_is_to_be_used(effect, share, said):
     [
         ("found", 0.0, "extended", ""),
         ("one_of_class", 0.0, "extended", ""),  # its members say the same
-        ("one_of_class", 0.0, "mixture", "over the members of the class, by"),
+        ("one_of_class", 0.0, "mixture", "over all that it may be, by how"),
         ("one_of_class", 0.1, "mixture", "over the members of the class and over the result wit"),
         ("found", 0.1, "mixture", "of the result with it and the result without it"),
     ],
 )
 def test_a_mean_says_what_it_is_over(verdict, share, method, said):
-    cause = SimpleNamespace(causes=WARM_UP.causes, verdict=verdict)
+    cause = SimpleNamespace(causes=WARM_UP.causes, verdict=verdict, places=())
     words = _mean_of(cause, [result("gyro_warm_up", joint_share=share, method=method)])
     assert words.startswith(f"The parameters are the mean {said}") if said else words == ""
 
