@@ -368,10 +368,10 @@ def _same_mount(cause: Hypothesis, other: Hypothesis) -> bool:
 def _explains_position(cause: Hypothesis, other: Hypothesis) -> bool:
     """A static position off the others: any effect of the accelerometers may look so.
 
-    None does where it is off by degrees.
+    Where it is off by degrees only what disturbs them in that position does.
     """
     if has_own_error(other):
-        return False
+        return cause.cause == "accel_bias_of_position" and same_manoeuvre(cause, other)
     if cause.stage == MODEL:
         off = not set(POSITION_OFF).isdisjoint(cause.causes)
         return cause.sensor in (None, other.sensor) or off

@@ -48,6 +48,15 @@ def test_a_gap_explains_the_turn_that_it_cuts_and_no_other():
     assert causes(gap, other) == {"gap": set(), "incomplete_turn": set()}
 
 
+def test_what_disturbs_a_position_explains_that_its_attitude_seems_off():
+    """Exchanged axes that are both level: a tilt by degrees, which is an unknown of the result."""
+    off = finding("accelerometer", "table_position_error", "accel", 1, **of("y-up"))
+    for place, explained in (("y-up", True), ("x-up", False)):
+        bias = replace(effect("accel_bias_of_position", "accel"), **of(place))
+        assert ("table_position_error" in causes(bias, off)["accel_bias_of_position"]) == explained
+    assert not causes(effect("accel_quadratic", "accel"), off)["accel_quadratic"]
+
+
 @pytest.mark.parametrize(("turns", "explained"), [(("z-back",), True), (("z-back", "z"), False)])
 def test_lines_of_the_turn_that_alone_carries_a_structure_are_its_spectrum(turns, explained):
     """A step of a gyro within a turn was up to six oscillations beside it."""
