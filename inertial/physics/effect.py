@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Self
@@ -226,7 +226,15 @@ class Effect(ABC):
 
     def candidates(self, motion: Motion) -> Sequence[Self]:
         """The effect with each value of the grid; without a scan the effect itself."""
-        return [self.fixed(float(at)) for at in self.grid(motion)] if self.scan else [self]
+        return self.at_each(self.grid(motion)) if self.scan else [self]
+
+    def at_each(self, values: Iterable[float]) -> list[Self]:
+        """The effect with each of these values; those that its label does not tell apart are one.
+
+        As of a moment of an even grid that falls by chance on one between two positions.
+        """
+        every = (self.fixed(float(at)) for at in values)
+        return list({effect.label: effect for effect in every}.values())
 
     def fixed(self, at: float) -> Self:
         """The effect with one value of the nonlinear parameter."""

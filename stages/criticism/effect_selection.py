@@ -294,7 +294,7 @@ def _evidence_given(
 
 def _finer(family: Sequence[Effect], places: Sequence[int]) -> tuple[Effect, ...]:
     values = np.array([effect.at for effect in family], np.float64)
-    return tuple(family[0].fixed(float(at)) for at in finer(values, places, FINER_STEPS))
+    return tuple(family[0].at_each(finer(values, places, FINER_STEPS)))
 
 
 def evidence_of(

@@ -114,6 +114,12 @@ def test_what_is_scanned_has_candidates_of_its_own(motion):
         assert all(one.name == effect.name and effect.at is None for one in candidates)
 
 
+def test_moments_that_a_label_does_not_tell_apart_are_one_candidate():
+    """1252.891 s, of an even grid, and 1252.893 s between two positions: columns of one name."""
+    jump = CATALOGUE["gyro_bias_jump"]
+    assert [one.at for one in jump.at_each([1252.891, 1252.893, 1300.0])] == [1252.893, 1300.0]
+
+
 def test_a_family_acts_with_the_middle_of_its_candidates(motion):
     for effect in CATALOGUE.values():
         if effect.scan:
