@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from inertial.campaign.competition import ExplainedFindings
-from inertial.campaign.explanations import PER_RUN, has_own_error, is_of_wrong_place
+from inertial.campaign.explanations import PER_RUN, PERIODIC, has_own_error, is_of_wrong_place
 from inertial.campaign.hypotheses import (
     COUNTS,
     FOUND,
@@ -226,11 +226,11 @@ class Cause:
             words = _(" or ").join(names or [in_words(self.main.cause)])
         axis = None if self.main.cause in LAWS else self.main.axis  # whose names hold it
         place = _(" or ").join(self.main.places) or self.manoeuvre
-        words += _(" of the {axis} axis", axis=axis) if axis and self._one_axis() else ""
+        words += _(" of the {axis} axis", axis=axis) if axis and self._one("axis") else ""
         return words + (_(" ({place})", place=place) if place else "")
 
-    def _one_axis(self) -> bool:
-        return len({member.cause.axis for member in self.members}) == 1
+    def _one(self, place: str) -> bool:
+        return len({getattr(member.cause, place) for member in self.members}) == 1
 
     def row(self, sizes: Mapping[str, Size], sentences: Mapping[str, str]) -> Row:
         """Its row; `sizes`, `sentences`: of effects, by the finding that names them."""
@@ -257,9 +257,9 @@ class Cause:
             "verdict": self.verdict,
             "mount": main.mount,
             "sensor": main.sensor,
-            "axis": (main.axis if self._one_axis() else None) or size.axis,
+            "axis": (main.axis if self._one("axis") else None) or size.axis,
             "log": main.row["log"] if len(self.members) == 1 else None,
-            "manoeuvre": self.manoeuvre if len(self.members) == 1 else None,
+            "manoeuvre": self.manoeuvre if self._one("manoeuvre") else None,
             "count": count,
             "sentence": sentence,
             "size": size.value,
@@ -304,13 +304,14 @@ class Evidence:
     gravity: Mapping[str, Gravity] = field(default_factory=dict)
 
     def causes(self, explained: Sequence[ExplainedFindings]) -> list[Cause]:
-        """Every cause once: equal faults of one sensor are one."""
+        """Every cause once: equal faults of one sensor, and lines of one turn, are one."""
         groups: dict[Any, list[ExplainedFindings]] = {}
         saturated = set[str]().union(*(r.decision.saturated for r in self.results.values()))
         for number, each in enumerate(explained):
-            cause = each.cause
+            cause, alike = each.cause, (each.cause.cause, each.cause.mount, each.cause.sensor)
+            lines = cause.cause in PERIODIC and cause.manoeuvre  # of one turn: the spectrum of it
             alone = cause.stage == MODEL or cause.cause in DIFFERENT_THINGS or cause.repair
-            key: Any = number if alone else (cause.cause, cause.mount, cause.sensor, cause.masked)
+            key: Any = number if alone and not lines else (*alike, cause.masked, lines)
             if cause.id in saturated:
                 key = cause.mount, cause.sensor
             groups.setdefault(key, []).append(each)
@@ -346,8 +347,7 @@ class Evidence:
         sensors = tuple(dict.fromkeys([*(result.sensor for result in own), *spoilt, *doubted]))
         gain, turns = gain_of(main, drop, own), {} if freed else turns_of(main, own)
         given = (members, sensors, cure, done, moves, drop, gain, modelled, freed, turns, spoilt)
-        gravity = self.gravity.get(main.id)
-        condition = None if gravity is None else gravity.condition
+        condition = self.gravity[main.id].condition if main.id in self.gravity else None
         return Cause(*given, condition, most_moved_by(main, moves, own), doubted, saturated)
 
     def _doubted(self, cause: Hypothesis, moves: float | None) -> frozenset[str]:

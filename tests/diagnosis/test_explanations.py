@@ -48,6 +48,17 @@ def test_a_gap_explains_the_turn_that_it_cuts_and_no_other():
     assert causes(gap, other) == {"gap": set(), "incomplete_turn": set()}
 
 
+def test_lines_of_one_turn_are_one_cause_and_those_of_others_their_own():
+    def line(name: str, turn: str | None) -> ExplainedFindings:
+        found = effect("oscillation", "gyro")
+        found = replace(found, id=name, row=found.row | {"manoeuvre": turn})
+        return ExplainedFindings(found, (found,))
+
+    lines = [line("1", "z-back"), line("2", "z-back"), line("3", "x"), line("4", None)]
+    made = Evidence({}, frozenset(), {}).causes([*lines, line("5", None)])
+    assert [[m.cause.id for m in one.members] for one in made] == [["1", "2"], ["3"], ["4"], ["5"]]
+
+
 def test_what_disturbs_a_position_explains_that_its_attitude_seems_off():
     """Exchanged axes that are both level: a tilt by degrees, which is an unknown of the result."""
     off = finding("accelerometer", "table_position_error", "accel", 1, **of("y-up"))
