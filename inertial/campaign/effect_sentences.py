@@ -83,7 +83,7 @@ def _numbers(parameters: Sequence[Estimated]) -> str:
     known = [p for p in parameters if p.value is not None and p.sigma]
     sizes, times = [p for p in known if p.unit != "s"], [p for p in known if p.unit == "s"]
     clear = [p for p in sizes if abs(p.value or 0.0) > MIN_SIGMAS * (p.sigma or 0.0)]
-    if not clear and len(known) < len(parameters):
+    if not clear and len(sizes) < sum(p.unit != "s" for p in parameters):
         sizes = []
     numbers = "; ".join(map(_number, (clear or sizes) + times)) or NO_NUMBER
     together = not clear and len(sizes) > 1

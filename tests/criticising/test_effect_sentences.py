@@ -30,3 +30,11 @@ def test_what_is_significant_together_alone_is_said_so():
 @pytest.mark.parametrize("sizes", [[(80, 13), (-2.9, 6.1), (3.9, 9.3)], [(32, 13)]])
 def test_one_that_is_clear_or_the_only_one_stands_for_itself(sizes):
     assert TOGETHER not in sentence(*sizes)
+
+
+def test_of_a_combination_that_shows_those_that_are_determined_are_no_size():
+    """A gyro in one position without a heading: the bias along the vertical is not what is off."""
+    told = [Estimated("b_x", "rad/s", ""), Estimated("b_z", "rad/s", "", 0.0, 1.8e-4)]
+    name = "gyro_bias_of_position"
+    said = effect_sentence(name, "something disturbs it", told, FOUND, [name], ["z-down"])
+    assert "no parameter by itself" in said and "b_z" not in said
