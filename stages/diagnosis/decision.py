@@ -4,8 +4,9 @@ One with effects does where it predicts the manoeuvres not used in its fit bette
 one, no finding shows that the model is still incomplete, no effect rests on a single manoeuvre, and
 no parameter is lost. Where these manoeuvres hold little of the effects, the joint one remains
 beside it, with the weight that they give it. What a single manoeuvre alone shows may be that
-manoeuvre's own error as well: with an unknown of its own it moves nothing, whatever it is. A
-manoeuvre that alone carries a structure without a name, and moves the joint one by it, is left out.
+manoeuvre's own error as well: with an unknown of its own it moves nothing, whatever it is; where it
+is more likely something that others show too, the result is the mean over both. A manoeuvre that
+alone carries a structure without a name, and moves the joint one by it, is left out.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -198,7 +199,7 @@ def decided(
         return Decision(JOINT, kept + others, saturated=saturated)
     if freed := _freed(own):
         if _reaches_others(effects_of(likely)):
-            members = [row["effect"] for row in effects if row["finding"] in freed]
+            members = [*dict.fromkeys(row["effect"] for row in effects if row["finding"] in freed)]
             reason = OF_CLASS.format(sensors=sensors, effects=_listed(members, "or"))
             return Decision(likely["method"], reason)
         manoeuvres = ", ".join(dict.fromkeys(freed.values()))

@@ -100,6 +100,56 @@ def test_what_one_manoeuvre_alone_shows_may_be_its_own_error_whatever_else_it_ma
     assert decided(rows, [effect("mounting_shift"), off, another]).method == "extended"
 
 
+@pytest.mark.parametrize(
+    ("law", "of_law"),
+    [
+        (effect("accel_quadratic", "y-down"), {}),
+        (effect("accel_hysteresis"), {"snr_squared": 1.0}),  # other manoeuvres cannot bear it out
+    ],
+)
+def test_a_law_or_the_own_error_of_a_position_is_the_mean_over_both(law, of_law):
+    """A law that fits six positions as well as a bias of one of them changes all of them."""
+    rows = [
+        JOINT,
+        candidate(probability=0.6, **of_law),
+        candidate("member_1", probability=0.3),
+        candidate("member_2", probability=0.1),
+    ]
+    own, other = (
+        effect("accel_bias_of_position", place, method=f"member_{number}")
+        for number, place in ((1, "y-down"), (2, "y-up"))
+    )
+    decision = decided(rows, [law, own, other])
+    assert (decision.method, decision.freed, decision.alike) == ("extended", {}, frozenset())
+    assert "one of these, and not which" in decision.reason
+    assert decision.reason.count("bias of the accelerometers in one position") == 1
+    assert competing(rows, decision) == {"extended": 0.6, "member_1": 0.3, "member_2": 0.1}
+
+
+def test_a_law_that_other_manoeuvres_bear_out_is_in_the_model_as_ever():
+    rows = [JOINT, candidate(probability=0.7), candidate("member_1", probability=0.3)]
+    own = effect("accel_bias_of_position", "y-down", method="member_1")
+    decision = decided(rows, [effect("accel_quadratic"), own])
+    assert decision.method == "extended" and "held-out manoeuvres falls" in decision.reason
+
+
+def test_those_that_say_the_same_count_together():
+    """A shift after the first rest, or that rest is off: its weight was one, whatever else is."""
+    rows = [
+        JOINT,
+        candidate(probability=0.5),
+        candidate("member_1", probability=0.3),
+        candidate("member_2", probability=0.2),
+    ]
+    effects = [
+        effect("mounting_shift", "x-up"),
+        effect("table_position_error", "x-up", method="member_1"),
+        effect("table_position_error", "x-down", method="member_2"),
+    ]
+    decision = decided(rows, effects)
+    assert competing(rows, decision) == pytest.approx({"member_1": 0.8, "member_2": 0.2})
+
+
 def test_what_held_out_manoeuvres_tell_a_little_of_counts_as_much_as_they_tell():
     """A K2 of 80 µg/g²: 3 sigma at most, so that neither result is left out."""
     rows = [
