@@ -26,17 +26,16 @@ from inertial.text.parameters import JOINT, WITHOUT_ONE
 UNKNOWN = "unknown_structure"
 UNEXPLAINED = "unexplained"
 RANDOM_WALKS = ("gyro_random_walk", "accel_random_walk")  # in the covariance of the joint result
-OF_ONE_MANOEUVRE = (
-    "table_position_error",
-    "table_axis_error",
-    "turn_angle_error",
-    "gyro_bias_of_position",
-    "accel_bias_of_position",
+OF_ONE_MANOEUVRE = frozenset(
+    name
+    for name, effect in KNOWN.items()
+    if effect.scan and effect.scan.name in ("position", "turn")
 )
 # What sets in at the first or the last manoeuvre is that manoeuvre's error, for all others; but a
 # slip turns the axes of all that follows.
-SETTING_IN = frozenset(name for name, effect in KNOWN.items() if isinstance(effect, SettingIn))
-LIKE_ONE_MANOEUVRE = SETTING_IN - {SLIP}
+LIKE_ONE_MANOEUVRE = OF_ONE_MANOEUVRE.union(
+    name for name, effect in KNOWN.items() if isinstance(effect, SettingIn) and name != SLIP
+)
 TWO_LEVELS = "_telegraph_of_time"  # a law that changes nothing else where one manoeuvre has both
 MAX_MOVE = 1.0  # sigma of a parameter: with more a cause that is not removed spoils the result
 MIN_SNR_SQUARED = 9.0  # of the effects in held-out manoeuvres: 3 sigma
@@ -336,7 +335,7 @@ def _freed(effects: Sequence[Row]) -> Mapping[str, str]:
 def _reaches_others(effects: Sequence[Row]) -> bool:
     """Whether any changes what others say as well, though one manoeuvre alone shows it."""
     names = (row["effect"] for row in effects)
-    return not all(_of_one_manoeuvre(name) or name in LIKE_ONE_MANOEUVRE for name in names)
+    return not all(name in LIKE_ONE_MANOEUVRE or name.endswith(TWO_LEVELS) for name in names)
 
 
 def _of_one_manoeuvre(effect: str) -> bool:

@@ -10,8 +10,6 @@ from inertial.text.parameters import EXTENDED, JOINT
 from stages.extension.cross_validation import CrossValidation, Trainings, carrier
 from stages.extension.named_effects import Combination
 
-OF_POSITION = "position"  # what is scanned of an effect that is in one position alone
-
 
 @dataclass(frozen=True)
 class Candidate:
@@ -84,16 +82,15 @@ def carriers_of(trainings: Trainings, sensor: str, candidate: Candidate) -> dict
     What is of one position is carried by it, whatever manoeuvres it has: all of them are in one
     attitude, whose error they share, so that they hardly predict one another.
     """
-    columns = candidate.columns
-    places = trainings.models.extended.positions
-    return {
-        effect.name: places[int(effect.at)]
-        if effect.at is not None and effect.scan is not None and effect.scan.name == OF_POSITION
-        else carrier(
-            trainings, sensor, columns, [name for name in columns if name in effect.columns]
-        )
-        for effect in candidate.effects
-    }
+    columns, positions = candidate.columns, trainings.models.extended.positions
+
+    def of(effect: Effect) -> str | None:
+        if effect.at is not None and effect.scan is not None and effect.scan.name == "position":
+            return positions[int(effect.at)]
+        own = [name for name in columns if name in effect.columns]
+        return carrier(trainings, sensor, columns, own)
+
+    return {effect.name: of(effect) for effect in candidate.effects}
 
 
 # ---- The gain of a candidate in words

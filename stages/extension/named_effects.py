@@ -224,11 +224,8 @@ def _compared(campaign: Campaign, own: NamedClass, others: Sequence[Effect]) -> 
         own.members, families, odds, open_scan, weights, strict=True
     ):
         probability = float(weight) if unknown else member.probability
-        members += (
-            _at_each(family, each, probability)
-            if scanned
-            else [member._replace(probability=probability)]
-        )
+        known = [member._replace(probability=probability)]
+        members += _at_each(family, each, probability) if scanned else known
     return replace(own, members=tuple(members))
 
 

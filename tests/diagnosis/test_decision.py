@@ -95,6 +95,7 @@ def test_what_one_manoeuvre_alone_shows_may_be_its_own_error_whatever_else_it_ma
     decision = decided(rows, [shift, off, another])
     assert (decision.method, decision.freed) == ("member_1", {"criticism/1": "x-up"})
     assert decision.alike == {"extended", "member_1"}  # not of another manoeuvre
+    assert competing(rows, decision) == pytest.approx({"member_1": 0.9, "member_2": 0.1})
     assert "Instead of set position that is off it may be shift of the IMU" in decision.reason
     # Half way of the campaign a shift is no single manoeuvre's error.
     assert decided(rows, [effect("mounting_shift"), off, another]).method == "extended"
@@ -131,23 +132,6 @@ def test_a_law_that_other_manoeuvres_bear_out_is_in_the_model_as_ever():
     own = effect("accel_bias_of_position", "y-down", method="member_1")
     decision = decided(rows, [effect("accel_quadratic"), own])
     assert decision.method == "extended" and "held-out manoeuvres falls" in decision.reason
-
-
-def test_those_that_say_the_same_count_together():
-    """A shift after the first rest, or that rest is off: its weight was one, whatever else is."""
-    rows = [
-        JOINT,
-        candidate(probability=0.5),
-        candidate("member_1", probability=0.3),
-        candidate("member_2", probability=0.2),
-    ]
-    effects = [
-        effect("mounting_shift", "x-up"),
-        effect("table_position_error", "x-up", method="member_1"),
-        effect("table_position_error", "x-down", method="member_2"),
-    ]
-    decision = decided(rows, effects)
-    assert competing(rows, decision) == pytest.approx({"member_1": 0.8, "member_2": 0.2})
 
 
 def test_what_held_out_manoeuvres_tell_a_little_of_counts_as_much_as_they_tell():

@@ -37,7 +37,7 @@ def test_a_turn_that_alone_sways_is_left_out_on_condition():
     error, sigma = scale_z_off(result, truth)
     assert abs(error) < 3 * sigma < 1e-4
     joint = results["gyroscope/parameters"].query("method == 'joint'")
-    assert abs(scale_z_off(joint, truth)[0]) > 10 * abs(error)
+    assert abs(scale_z_off(joint, truth)[0]) > 2 * sigma
 
 
 @pytest.mark.parametrize(
