@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+from scipy.special import chdtrc, ndtr, ndtri
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.sensors import CHANNELS, COLUMNS
@@ -31,6 +31,7 @@ FALSE_ALARM_LEVEL = 1e-4  # for all phases, periods and channels of a campaign
 COMPARABLE_SHARE = 0.5  # of its significance, by which other phases are off as well
 MIN_COMPARABLE_SIGMA = 3.0
 MAX_COMPARABLE = 0.1  # of the phases of a period; where more are, it oscillates
+SCATTER_LEVEL = 0.05  # of the phases of a period: where they scatter by more, that is its noise
 LIKELIER = 9.0  # chi-squared by which a period must be better, for another to be excluded
 NOT_HELD = np.zeros(2)  # share of the records that repeat a reading, by sensor
 # What may be off: a channel by a constant, or all of a sensor by a share of what they read.
@@ -240,7 +241,9 @@ def _of_clock(folded: Folded, scans: list[_Scan], tests: int) -> Iterator[Glitch
             for other, (of, one) in enumerate(SIGNATURES)
             if of == sensor and (one is None) != (channel is None)
         ]
-        if sigmas < least or sigmas < max(rivals) or not _stands_alone(scan, number, phase):
+        if sigmas < least or sigmas < max(rivals) or not _stands_alone(
+            scan, number, phase, least
+        ):
             continue
         step = PERIODS[0] / folded.places
         for peak in _peaks(scan, number, least):
@@ -275,13 +278,19 @@ def _apart(number: int, k: int, width: int) -> Booleans:
     return np.asarray(np.minimum(away, number - away) > SIDE + width - 1)
 
 
-def _stands_alone(scan: _Scan, number: int, k: int) -> bool:
-    """Whether few other phases are as far off: of an oscillation most are."""
+def _stands_alone(scan: _Scan, number: int, k: int, least: float) -> bool:
+    """Whether other phases are not off as well, as those of an oscillation are.
+
+    Few are as far off; and where all scatter by more than chance, it stands out of their scatter
+    as it should of noise: of an oscillation as weak as the noise one phase is the highest.
+    """
     sigmas = np.abs(scan.sigmas[:, number])
-    others = scan.tried[:, number] & _apart(len(sigmas), k, scan.width)
-    least = max(COMPARABLE_SHARE * sigmas[k], MIN_COMPARABLE_SIGMA)
-    comparable = np.count_nonzero(others & (sigmas > least))
-    return bool(comparable <= MAX_COMPARABLE * np.count_nonzero(others))
+    off = sigmas[scan.tried[:, number] & _apart(len(sigmas), k, scan.width)]
+    comparable = off > max(COMPARABLE_SHARE * sigmas[k], MIN_COMPARABLE_SIGMA)
+    if np.count_nonzero(comparable) > MAX_COMPARABLE * len(off):
+        return False
+    by_chance = len(off) == 0 or chdtrc(len(off), off @ off) > SCATTER_LEVEL
+    return bool(by_chance or sigmas[k] >= least * MAD_TO_SIGMA * median(off))
 
 
 def _peaks(scan: _Scan, number: int, least: float) -> Iterator[int]:
