@@ -241,9 +241,7 @@ def _of_clock(folded: Folded, scans: list[_Scan], tests: int) -> Iterator[Glitch
             for other, (of, one) in enumerate(SIGNATURES)
             if of == sensor and (one is None) != (channel is None)
         ]
-        if sigmas < least or sigmas < max(rivals) or not _stands_alone(
-            scan, number, phase, least
-        ):
+        if sigmas < least or sigmas < max(rivals) or not _stands_alone(scan, number, phase, least):
             continue
         step = PERIODS[0] / folded.places
         for peak in _peaks(scan, number, least):
