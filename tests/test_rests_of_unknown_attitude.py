@@ -264,6 +264,19 @@ def test_positions_that_were_moved_while_they_were_read_are_named_and_left_out(i
     assert not accelerometers_alone(recorded, imu)[2]
 
 
+@pytest.mark.parametrize("number", [20, 24])
+def test_one_position_of_few_that_was_moved_is_named_and_left_out(imu, number):
+    """Of the others ten or fourteen degrees of freedom are left; it is 60 times their noise off."""
+    recorded = every_way(imu, number)
+    size = 60 * imu.noise[0] / np.sqrt(20)
+    up = recorded.loc[recorded["manoeuvre"] == "by-hand-07", ["accel_x", "accel_y", "accel_z"]]
+    recorded.loc[up.index, up.columns] *= 1 + size / GIVEN.gravity
+    _, fit, (finding,) = accelerometers_alone(recorded, imu)
+    assert finding.manoeuvre == "by-hand-07" and finding.count == 1
+    assert finding.size == pytest.approx(size, rel=0.2)
+    assert list(fit.index[fit["reason"].fillna("") != ""]) == ["by-hand-07"]
+
+
 def test_positions_that_all_scatter_are_none_that_was_moved(imu):
     recorded = every_way(imu, 48)
     channels = ["accel_x", "accel_y", "accel_z"]

@@ -167,6 +167,8 @@ EXPLANATIONS = (
         same_axis,
     ),
     Explanation(("dead_axis", "zero_below_threshold"), ("bias_jump",), same_axis),
+    # Of two axes the specific force at rest is no gravity.
+    Explanation(("dead_axis",), ("wrong_scale_factor",), same_sensor),
     # A motion beyond the range does not explain findings of a rest before or after it.
     Explanation(("saturation",), ("bias_jump",), same_readings),
     # Once in every period a reading is off: those that were not masked look like spikes.
@@ -244,6 +246,8 @@ EXPLANATIONS = (
     ),
     # What was recorded is no turn as planned, at whatever rate it is.
     Explanation(("incomplete_turn", "wrong_angle"), ("wrong_rate",), same_manoeuvre),
+    # By hand a position whose specific force is not gravity is left out, with what it shows.
+    Explanation(("moved_while_read",), ("bias_jump",), same_manoeuvre),
     # A table that moves: the readings are right, the position is not the planned one.
     Explanation(
         ("table_moving", "impact"),

@@ -170,7 +170,9 @@ class Unknowns:
         the upward directions, carried on, come nearest to those of the accelerometers.
         """
         start = self.prior
-        start[UNKNOWNS - 3 : UNKNOWNS] = np.nanmedian([stop.mean for stop in self.stops], axis=0)
+        means = np.array([stop.mean for stop in self.stops])
+        read = np.isfinite(means).any(axis=0)
+        start[UNKNOWNS - 3 : UNKNOWNS][read] = np.nanmedian(means[:, read], axis=0)
 
         def miss(scale: float) -> float:
             return sum(

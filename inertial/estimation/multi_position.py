@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 from scipy.linalg import qr
 from scipy.optimize import least_squares
+from scipy.special import stdtr, stdtrit
 
 from inertial.arrays import Array, Booleans
 from inertial.estimation.elimination import eliminate, whitened
@@ -311,10 +312,11 @@ def lengths(estimate: Estimate) -> Array:
 # fits all positions with few that are far off by the Cauchy loss, whose influence falls with r.
 # Which are off is then decided by least squares of the others, which do not leave so little by
 # chance where nine parameters can follow them: a position is off by many times what the others
-# scatter by.
+# scatter by, and by more where few degrees of freedom tell how much that is.
 
-MIN_OFF_SIGMA = 10.0  # scatters of the others: more than a person's hand varies by
-MIN_DEGREES = 18  # of freedom of the others, twice the parameters: by which their scatter is known
+MIN_OFF_SIGMA = 10.0  # scatters of the others, well known: more than a person's hand varies by
+WELL_KNOWN_DEGREES = 18  # of freedom of the others; with fewer, as improbable of Student's t
+MIN_DEGREES = 9  # as many as parameters
 MAX_SHARE = 0.1  # of the positions: where more are off, it is how they scatter
 FIRST_SCATTER = 0.01  # m/s², before it is known
 ROUNDS = 5  # of the scatter, and of what is left out
@@ -353,10 +355,17 @@ def off_lengths(means: Array, sigma: Array, gravity: float) -> list[OffLength]:
         about, left = _fitted(means, gravity, ~off, about, scatter, "linear")
         if np.array_equal(before, off):
             break
-    scatter = float(np.sqrt(np.sum(left[~off] ** 2) / (n - np.count_nonzero(off) - unknowns)))
-    if np.abs(left[off]).min() < MIN_OFF_SIGMA * scatter:
+    degrees = n - np.count_nonzero(off) - unknowns
+    scatter = float(np.sqrt(np.sum(left[~off] ** 2) / degrees))
+    if np.abs(left[off]).min() < _least_ratio(degrees) * scatter:
         return []
     return [OffLength(i, float(left[i]), scatter) for i in np.flatnonzero(off).tolist()]
+
+
+def _least_ratio(degrees: int) -> float:
+    """By how many scatters of the others a position is off, given their degrees of freedom."""
+    few = min(degrees, WELL_KNOWN_DEGREES)
+    return -float(stdtrit(few, stdtr(WELL_KNOWN_DEGREES, -MIN_OFF_SIGMA)))
 
 
 def _scatter(left: Array) -> float:

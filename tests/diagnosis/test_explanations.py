@@ -48,6 +48,20 @@ def test_a_gap_explains_the_turn_that_it_cuts_and_no_other():
     assert causes(gap, other) == {"gap": set(), "incomplete_turn": set()}
 
 
+def test_a_dead_axis_explains_a_force_at_rest_that_is_no_gravity():
+    dead = finding("quality", "dead_axis", "accel")
+    factor = finding("quality", "wrong_scale_factor", "accel", severity=3)
+    assert causes(dead, factor) == {"dead_axis": {"wrong_scale_factor"}}
+
+
+def test_a_position_that_was_moved_explains_the_step_in_it_and_no_other():
+    moved = finding("accelerometer", "moved_while_read", "accel", severity=1, **of("by-hand-06"))
+    step = finding("quality", "bias_jump", "accel", **of("by-hand-06"))
+    other = finding("quality", "bias_jump", "accel", **of("by-hand-09"))
+    assert causes(moved, step) == {"moved_while_read": {"bias_jump"}}
+    assert causes(moved, other) == {"moved_while_read": set(), "bias_jump": set()}
+
+
 def test_lines_of_one_turn_are_one_cause_and_those_of_others_their_own():
     def line(name: str, turn: str | None) -> ExplainedFindings:
         found = effect("oscillation", "gyro")
