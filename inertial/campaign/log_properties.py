@@ -387,6 +387,7 @@ def logs(
             count=np.array([_count(row, clock[log].step) for row in channels]),
             windows=windows.get(log, Windows.none()),
             records=rows[log]["records"],
+            records_of_all=int(clocks["records"].sum()),
             reach=in_all["reach"].to_numpy(np.float64),
             usual_noise=in_all["noise"].to_numpy(np.float64),
             increments=any(row.get("increments") for row in channels),

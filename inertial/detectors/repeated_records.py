@@ -115,7 +115,7 @@ def _coarse(stamps: Array, changed: Booleans, records: int) -> bool:
     return bool(np.count_nonzero(still) > MAX_CHANCE_EQUAL * records)
 
 
-MAX_CHANCE = 1e-3  # probability in the whole log below which a run is not random
+MAX_CHANCE = 1e-3  # probability in all logs, or of a copy in its own, below which it is not random
 SIDE_PAIRS = 100  # pairs on each side of a run by which its chance is judged
 # Pairs on each side, where half of the channels are equal, or more than usual: a swing turns round.
 CLOSE_COUNTS = (1, 3, 10)
@@ -140,10 +140,10 @@ class HeldRecord(Detector):
     """A record whose readings are all equal to those of the one before, though time goes on.
 
     With the coarse counts of a consumer MEMS that happens by chance. The chance of a run of r
-    records is (number of records) × Pʳ, with P the chance that a pair is equal in all channels. It
-    follows from the pairs that are not: how often a channel is equal in them, beside the run and in
-    the whole, the larger counts. For a run of more than one it is also judged by how often the
-    readings that are held come beside it. A channel that never changes does not count.
+    records is (number of records in all logs) × Pʳ, with P the chance that a pair is equal in all
+    channels. It follows from the pairs that are not: how often a channel is equal in them, beside
+    the run and in the whole, the larger counts. For a run of more than one it is also judged by how
+    often the readings that are held come beside it. A channel that never changes does not count.
 
     Or records whose readings are, in their order, those of a stretch before, where there are no
     stamps that would be repeated too: see `_copied`.
@@ -169,9 +169,10 @@ class HeldRecord(Detector):
                 yield from self._copies(piece, values, log.records)
             if not _any_equal(values):
                 continue
+            searched = max(log.records, log.records_of_all)
             slower = min(log.held[sensor] for sensor in set((changing // 3).tolist()))
             usual = MAX_USUAL_RUNS / (1 - slower) if slower else 0.0
-            for start, end, chance in _held(values, log.records, usual):
+            for start, end, chance in _held(values, searched, usual):
                 # The rows of another sensor may lie between; they are not concerned.
                 own = places[start + 1 : end + 1]
                 whole = own[-1] - own[0] + 1 == len(own)
@@ -217,7 +218,7 @@ class HeldRecord(Detector):
             _(
                 "{name}: {records} from line {line}{at} {value} the readings of the one before "
                 "in all {facts} channels, though time goes on; by chance that happens with "
-                "{p_value} in this log.",
+                "{p_value} in this campaign.",
                 name=name,
                 records=records,
                 line=event.line,

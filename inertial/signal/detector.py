@@ -90,7 +90,7 @@ class Log:
     limit: (6,), how far the channel reaches, infinite where not stated.
     threshold: (6,), below which the channel reads 0, NaN where it does not.
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
-    records: how many. increments: readings are increments over `interval`, and what a count leaves
+    records: how many; records_of_all: of all logs. increments: readings are increments over `interval`, and what a count leaves
     over goes into the next. imu: the types of IMU in its messages, by NovAtel's list.
     stamp_scatter: s, rms of the stamps about the regular clock that is used instead, NaN where the
     stamps are used; interval_sigma: s, of its interval; shortest_gap: s, that such stamps show.
@@ -120,6 +120,7 @@ class Log:
     interval_sigma: float = np.nan
     shortest_gap: float = np.nan
     glitches: tuple["Glitch", ...] = ()
+    records_of_all: int = 0
 
     def event(self, size: float, **more: Any) -> "Event":
         """An event that concerns the log as a whole."""

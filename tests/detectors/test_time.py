@@ -176,6 +176,17 @@ def test_a_held_record_is_masked_though_time_passes(times):
     assert HeldRecord.masks and not HeldRecord.repeats
 
 
+def test_the_chance_of_a_held_record_is_that_of_all_logs():
+    values = rest(3000)
+    values[901] = values[900]
+    one = piece(values, stamps(3000))
+    (alone,) = causes(one)["held_record"]
+    (of_ten,) = causes(one, records_of_all=30_000)["held_record"]
+    assert of_ten.p_value == pytest.approx(10 * alone.p_value)
+    many = int(2e-3 / alone.p_value * 3000)
+    assert not causes(one, records_of_all=many)
+
+
 def test_a_held_record_is_found_beside_dead_axes_and_in_rows_of_its_own():
     values = rest(3000)
     values[:, 2] = 0.0
