@@ -90,8 +90,9 @@ class Log:
     limit: (6,), how far the channel reaches, infinite where not stated.
     threshold: (6,), below which the channel reads 0, NaN where it does not.
     count: (6,), what one count is by the campaign, m/s² and rad/s, NaN where not stated.
-    records: how many; records_of_all: of all logs. increments: readings are increments over `interval`, and what a count leaves
-    over goes into the next. imu: the types of IMU in its messages, by NovAtel's list.
+    records: how many; records_of_all: of all logs.
+    increments: readings are increments over `interval`, and what a count leaves over goes into the
+    next. imu: the types of IMU in its messages, by NovAtel's list.
     stamp_scatter: s, rms of the stamps about the regular clock that is used instead, NaN where the
     stamps are used; interval_sigma: s, of its interval; shortest_gap: s, that such stamps show.
     glitches: what is off at one phase of a period.
