@@ -3,9 +3,16 @@
 from collections.abc import Callable
 from math import hypot, inf
 
-from inertial.campaign.hypotheses import FOUND, MOUNTINGS, TABLE_MOVING, Hypothesis
+from inertial.campaign.hypotheses import (
+    FOUND,
+    MOUNTINGS,
+    OF_ATTITUDES,
+    TABLE_MOVING,
+    Hypothesis,
+)
 
 JUMPS = frozenset({"gyro_bias_jump", "accel_bias_jump"})
+JUMP_IN_REST = "bias_jump"  # as the readings of one rest show it
 RESTARTS = frozenset({"gyro_restarts", "accel_restarts"})
 MAX_APART_SIGMAS = 3.0  # of two times of one event
 MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with any other
@@ -105,8 +112,9 @@ def at_the_gaps(cause: Hypothesis, gaps: Hypothesis) -> bool:
 def is_same_event(cause: Hypothesis, other: Hypothesis) -> bool:
     """Whether one event is both: what tilts in a rest and stays, or biases that one knock changes.
 
-    A shift of the IMU in its fixture stands for the rest in which it tilts; of two sensors the one
-    whose time is known better stands for both.
+    A shift of the IMU in its fixture stands for the rest in which it tilts, and any tilt for the
+    level accelerometer that jumps; of two sensors the one whose time is known better stands for
+    both.
     """
     if {cause.cause, other.cause} == RESTARTS and cause.named and other.named:
         return cause.id < other.id
@@ -114,6 +122,8 @@ def is_same_event(cause: Hypothesis, other: Hypothesis) -> bool:
         return False
     if cause.cause in MOUNTINGS and other.cause == TABLE_MOVING:
         return _same_angle(cause, other)
+    if other.cause == JUMP_IN_REST and not cause.causes.isdisjoint(OF_ATTITUDES):
+        return other.sensor == "accel" and cause.time is not None and cause.time[1] < MAX_VAGUE_S
     if {cause.cause, other.cause} != JUMPS or {cause.verdict, other.verdict} != {FOUND}:
         return False
     vague = [one.time[1] for one in (cause, other) if one.time]

@@ -10,9 +10,15 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
-from inertial.campaign.hypotheses import MOUNTINGS, STEP_IN_TURN, TABLE_MOVING, Hypothesis
+from inertial.campaign.hypotheses import (
+    MOUNTINGS,
+    OF_ATTITUDES,
+    STEP_IN_TURN,
+    TABLE_MOVING,
+    Hypothesis,
+)
 from inertial.campaign.records import Row, clocks_of, rows_of
-from inertial.campaign.where_causes_act import JUMPS, RESTARTS
+from inertial.campaign.where_causes_act import JUMP_IN_REST, JUMPS, RESTARTS
 from inertial.sensors import PLURAL
 from inertial.tables import AXES
 from inertial.text.messages import _
@@ -65,6 +71,7 @@ def _same_event(cause: Cause) -> Iterator[Hypothesis]:
         for each in member.consequences:
             alike = {each.cause, cause.main.cause} in (JUMPS, RESTARTS)
             moved = cause.main.cause in MOUNTINGS and each.cause == TABLE_MOVING
+            moved |= each.cause == JUMP_IN_REST and not cause.main.causes.isdisjoint(OF_ATTITUDES)
             gap = each.cause == "gap" and cause.main.cause in JUMPS | RESTARTS
             alike = alike or gap
             if each.id != cause.main.id and (alike or moved or each.cause == STEP_IN_TURN):

@@ -328,6 +328,28 @@ def test_a_rest_in_which_the_imu_tilts_is_the_shift_that_begins_there(seconds, a
 
 
 @pytest.mark.parametrize(
+    ("sensor", "seconds", "sigma", "one"),
+    [
+        ("accel", 1357.9, 1.2, True),
+        ("accel", 1372.0, 1.2, False),
+        ("accel", 1300.0, 60.0, False),  # a time that is not known agrees with any
+        ("gyro", 1357.9, 1.2, False),
+    ],
+)
+def test_a_level_accelerometer_that_jumps_in_a_rest_is_the_tilt_of_the_table(
+    sensor, seconds, sigma, one
+):
+    """17″ of the table at 1357.9 ± 1.2 s; there the z accelerometer jumps by 86 µg."""
+    tilt = at(effect("table_tilt_jump", "accel"), seconds, sigma)
+    jump = at(finding("segment", "bias_jump", sensor, **of("y-down")), 1358.01, 0.03)
+    assert causes(tilt, jump) == (
+        {"table_tilt_jump": {"bias_jump"}}
+        if one
+        else {"table_tilt_jump": set(), "bias_jump": set()}
+    )
+
+
+@pytest.mark.parametrize(
     ("seconds", "sigma", "verdict", "one"),
     [
         (125.0, 2.5, "found", True),
