@@ -1,6 +1,7 @@
 """The plan of a campaign as a list of manoeuvres, its shorthand expanded."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import sqrt
 from typing import Any, Final
 
@@ -25,6 +26,8 @@ def expanded_plan(campaign: Mapping[str, Any], still: float) -> list[Manoeuvre]:
             raise PlanError(Complaint(f"{place}.log", "nothing", expected))
         check_keys(written, place)
         first = manoeuvre_of(written, log, place, still)
+        if manoeuvres and "position" not in written and written["do"] != "tumble":
+            first = staying(manoeuvres[-1], first)
         for manoeuvre in rests_of(first, written, place) if written["do"] == "tumble" else [first]:
             if manoeuvre.name in (other.name for other in manoeuvres):
                 raise PlanError(Complaint(f"{place}.id", f"{manoeuvre.name} again", "another id"))
@@ -54,6 +57,18 @@ def manoeuvre_of(written: Mapping[str, Any], log: str, place: str, still: float)
     return Manoeuvre(
         written["id"], log, position, position, mount, up, mark, azimuth, about, profile, seconds
     )
+
+
+def staying(before: Manoeuvre, after: Manoeuvre) -> Manoeuvre:
+    """The second of two, in the position of the first where it begins as that ended."""
+    same = (before.log, before.mount) == (after.log, after.mount) and before.comes_back
+    marked = (before.azimuth is None) == (after.azimuth is None)
+    if not (same and marked and before.step is None):
+        return after
+    if not (np.allclose(before.up, after.up) and np.allclose(before.mark, after.mark)):
+        return after
+    azimuth = None if after.azimuth is None else before.azimuth
+    return replace(after, position=before.position, shares=before.shares, azimuth=azimuth)
 
 
 SPECIFIC_KEYS: Final = {  # by kind of manoeuvre

@@ -131,10 +131,15 @@ def gyro_inputs(data: "CampaignData") -> GyroInputs:
 
 
 def position_of(m: Manoeuvre, heading: float | None) -> Position:
-    """The set position of a manoeuvre; north is known where mark and heading are."""
+    """The set position of a manoeuvre; north is known where mark and heading are.
+
+    The axis of a tumble is level and stays where it is, so its rests share the azimuth of it.
+    """
     up = m.up
     if up is None:
         return Position(m.position, np.zeros(3))
+    if m.mark is None and m.tumble is not None and m.tumble_axis is not None:
+        return Position(m.position, up, horizontal(m.tumble_axis, up), azimuth=m.tumble)
     if m.mark is None:
         return Position(m.position, up)
     mark = horizontal(m.mark, up)
@@ -162,7 +167,7 @@ def rate_segment_of(
     missing = gaps_of(part)
     position = position_of(m, heading)
     if rotation.in_part and not rotation.begun:
-        position = Position(position.name, position.up, start=f"{m.name}, on the way")
+        position = Position(position.name, position.up, azimuth=f"{m.name}, on the way")
     return RateSegment(
         position=position,
         about=m.axis,

@@ -9,12 +9,13 @@ from scipy.spatial.transform import Rotation
 
 from inertial.arrays import Array
 from inertial.campaign.records import Known, Manoeuvre, Row, rows_of
+from inertial.estimation.gyroscope_equations import horizontal_axes, horizontal_names
 from inertial.estimation.gyroscope_observations import TABLE, Earth, Position
 from inertial.estimation.position_outlier import is_off
 from inertial.estimation.scatter_and_random_walk import covering
 from inertial.estimation.triad import linear_names, triad_of_errors
 from inertial.physics.forward import Site, Triad
-from inertial.physics.motion import cross, level_axes
+from inertial.physics.motion import level_axes
 from inertial.tables import AXES
 from inertial.text.parameters import BIAS, FREE, JOINT
 
@@ -80,9 +81,7 @@ class Solution:
         """
         if position.north is not None:
             return position.north
-        axes, name = level_axes(position.up), position.name
-        if position.mark is not None:
-            axes, name = (position.mark, cross(position.up, position.mark)), TABLE
+        name, axes = horizontal_names(position)[0][1], horizontal_axes(position)
         parts = [self.position_parameters.get((name, "horizontal", i), np.nan) for i in (0, 1)]
         return np.asarray((parts[0] * axes[0] + parts[1] * axes[1]) / self.site.earth_level)
 

@@ -91,7 +91,7 @@ def horizontal_names(position: Position) -> tuple[Name, ...]:
         return ()
     if not position.is_known:
         return tuple((f"earth {i}", position.name) for i in (0, 1, 2))
-    name = TABLE if position.mark is not None else position.start or position.name
+    name = position.azimuth or (position.name if position.mark is None else TABLE)
     return tuple((f"level {i}", name) for i in (0, 1))
 
 

@@ -36,17 +36,18 @@ class Earth:
 class Position:
     """A set position: the upward direction, and what is known of north, in body axes.
 
-    `north` where mark and heading are given; `mark` where only the mark is; else
-    the azimuth is an unknown of this position. Where nothing is known of the attitude, `up` is zero
-    and all three components of the earth's rate are unknowns. `start`: of a record that begins on
-    the way, the name of the azimuth at which it does; the tilt is that of the position.
+    `north` where mark and heading are given; `mark`, a level direction, where its azimuth is an
+    unknown that positions share: by the name `azimuth`, or that of the table's zero mark. Without
+    either the azimuth is an unknown of this position, or of this name: of a record that begins on
+    the way that at which it does; the tilt is that of the position. Where nothing is known of the
+    attitude, `up` is zero and all three components of the earth's rate are unknowns.
     """
 
     name: str
     up: Array
     mark: Array | None = None
     north: Array | None = None
-    start: str = ""
+    azimuth: str = ""
 
     @property
     def is_known(self) -> bool:

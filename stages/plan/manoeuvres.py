@@ -1,7 +1,7 @@
 """The manoeuvres of a plan, every shorthand expanded: one row each, SI, body axes."""
 
 from collections.abc import Iterator, Mapping
-from math import cos, isclose, radians
+from math import cos, isclose, pi, radians
 from typing import Any
 
 import numpy as np
@@ -13,12 +13,13 @@ from inertial.physics.motion import Profile, turned
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE, ICE_POINT, in_si
+from stages.plan.sampling import are_means
 from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 
 DIRECTIONS = np.eye(3)
 MAX_BELOW_RATE = 0.01  # by which a turn may stay below its rate
 
-
+ATTITUDE = tuple(f"{of}_{axis}" for of in ("up", "mark") for axis in tables.AXES)
 _ALWAYS = {
     "id",
     "do",
@@ -107,6 +108,23 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
         yield from _tumble(file, key, item, row, up, mark)
     else:
         yield row | _vectors(up, mark, None)
+
+
+def stays_in_position(before: Row, after: Row) -> bool:
+    """Whether a manoeuvre of the same log begins in the attitude in which the one before ended.
+
+    Then it is the same set position, with the same error, unless the campaign says otherwise. A
+    tumble is set at each of its rests, and so is what rows of means are of.
+    """
+    if any(before[name] != after[name] for name in ("file", "format", "mount")):
+        return False
+    if before["up_x"] is None or {before["do"], after["do"]} - {"rest", "turn"}:
+        return False
+    turns = (before["angle"] or 0.0) / (2 * pi)
+    comes_back = before["do"] == "rest" or (bool(turns) and isclose(turns, round(turns)))
+    alike = all(before[name] == after[name] for name in ATTITUDE)
+    set_anew = before["tumble"] or after["tumble"] or are_means(after["layout"])
+    return comes_back and alike and not set_anew
 
 
 def _temperature(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:
