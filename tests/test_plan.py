@@ -55,6 +55,32 @@ def test_about_takes_the_sign_of_up(tmp_path):
     np.testing.assert_array_equal(turn.axis, [0, 0, -1])
 
 
+def test_what_follows_in_one_log_and_attitude_shares_its_position(tmp_path):
+    """Rest, turn and turn back of one setting have one error: with three sigmas are too small."""
+    of = "do: turn, up: +x, rate_deg_s: 10, accel_deg_s2: 5, degrees"
+    text = BY_TABLE + "".join(
+        f"  - {{id: {row}}}\n"
+        for row in (
+            f"x-backward, {of}: -360",
+            f"x-quarter, {of}: 90",
+            "x-turned, do: rest, up: +x, seconds: 60",
+            "x-elsewhere, do: rest, up: +x, seconds: 60, log: other.asc",
+            "x-again, do: rest, up: +x, seconds: 60, log: other.asc, position: anew",
+            "x-marked, do: rest, up: +x, mark: +y, seconds: 60, log: other.asc",
+            "y-up, do: rest, up: +y, seconds: 60, log: other.asc",
+        )
+    )
+    rows = manoeuvres_of(planned(tmp_path, text)["manoeuvres"])
+    assert {row.name: row.position for row in rows} == {
+        **dict.fromkeys(["x-up", "x-forward", "x-backward", "x-quarter"], "x-up"),
+        "x-turned": "x-turned",  # a quarter further about the vertical
+        "x-elsewhere": "x-elsewhere",
+        "x-again": "anew",
+        "x-marked": "x-marked",
+        "y-up": "y-up",
+    }
+
+
 def test_a_tumble_turns_the_body_under_the_plumb_line(tmp_path):
     tumble = "do: tumble, about: +x, up: +z, step_degrees: 20, steps: 18, and_back: true"
     text = BY_TABLE.split("plan:")[0] + f"plan:\n  - {{id: t, {tumble}, seconds: 20}}\n"

@@ -7,6 +7,7 @@ import chain
 import numpy as np
 import pandas as pd
 import pytest
+from hidden_plans import sensors
 
 import laboratory
 
@@ -123,3 +124,27 @@ def test_the_sense_of_the_last_rate_is_that_of_the_last_step(
     assert set(forwards.loc[~back, "sense_x"]) == {1.0}
     assert set(forwards.loc[back, "sense_x"]) == {-1.0}
     assert forwards[["sense_y", "sense_z"]].isna().all(axis=None)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_clean_tumble_whose_heading_nobody_states_shows_no_fault(seed: int) -> None:
+    """The level axis of a tumble stays where it is: all its rests have one unknown azimuth.
+
+    With one for each rest the gyros had g-sensitivities and no earth rate, with scale factors 50
+    sigma off.
+    """
+    document = tumbles(seed=seed)
+    document["handling"]["change_s"] = 4
+    document["truth"] = sensors(np.random.default_rng(seed))
+    tumble = {"id": "about-x", "do": "tumble", "about": "+x", "up": "+z", "step_degrees": 30}
+    tumble |= {"steps": 13, "and_back": True, "seconds": 40, "log": "tumble.asc"}
+    document["campaign"]["plan"] = [tumble]
+    recording = laboratory.perform(laboratory.specify(document))
+    results = chain.in_memory(recording, "diagnosis", chain.BESIDE)
+    assert not len(results["diagnosis/causes"])
+    azimuths = results["gyroscope/positions"].query("quantity == 'horizontal'")
+    assert set(azimuths["position"]) == {"about-x"}
+    found = results["gyroscope/parameters"].query("method == 'joint'").set_index("parameter")
+    matrix = np.array(document["truth"]["gyro"]["matrix"])
+    for name, true in (("cross_xy", matrix[0, 1]), ("cross_xz", matrix[0, 2])):
+        assert abs(found.at[name, "value"] - true) < 4 * found.at[name, "sigma"]

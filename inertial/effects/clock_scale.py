@@ -20,7 +20,10 @@ class ClockScale(Effect):
     source = "Allan, Ashby & Hodge 1997, The Science of Timekeeping, quartz oscillators"
     parameters = (Parameter("e", "1", 2e-5, _("by how much an interval is longer than stated")),)
     sizes = by_grade(1e-6, 1, 20, 20, 50)
-    absorbed_by = _("the scale factors of the accelerometers")
+    absorbed_by = _(
+        "the scale factors of the accelerometers where increments are logged, of the gyros where "
+        "rates are"
+    )
 
     def moves(self, truth: Truth, motion: Motion, values: Array) -> Truth:
         upward, level = known_earth(truth, motion)

@@ -28,7 +28,7 @@ from stages.criticism.laws import law_sentence
 MIN_SEPARATION = 0.1  # sigma; below, which manoeuvre is the best says nothing
 
 REASONS = {
-    NOT_EXCITED: _("no manoeuvre of this plan changes a reading by it"),
+    NOT_EXCITED: _("none of the readings that the estimates use changes by it"),
     ABSORBED: _("it cannot be separated here from the parameters that are always estimated"),
     ONLY_TOGETHER: _("only combinations of its parameters are determined, none by itself"),
 }

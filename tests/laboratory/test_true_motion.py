@@ -207,7 +207,8 @@ def test_the_true_axis_stays_vertical_and_the_case_leans_against_it(
 def test_position_errors_scatter_as_the_table_says(ideal: Callable[..., dict[str, object]]) -> None:
     """200 positions, two tilts each: chi-squared with 400 degrees of freedom."""
     plan = [
-        {"id": f"p{k}", "do": "rest", "up": "+z", "seconds": 1, "log": "p.asc"} for k in range(200)
+        {"id": f"p{k}", "do": "rest", "up": "+z", "seconds": 1, "log": "p.asc", "position": f"{k}"}
+        for k in range(200)
     ]
     document = ideal(*plan)
     document["handling"] = {"still_s": 0, "change_s": 1}
