@@ -355,7 +355,7 @@ def off_lengths(means: Array, sigma: Array, gravity: float) -> list[OffLength]:
         about, left = _fitted(means, gravity, ~off, about, scatter, "linear")
         if np.array_equal(before, off):
             break
-    degrees = n - np.count_nonzero(off) - unknowns
+    degrees = n - int(np.count_nonzero(off)) - unknowns
     scatter = float(np.sqrt(np.sum(left[~off] ** 2) / degrees))
     if np.abs(left[off]).min() < _least_ratio(degrees) * scatter:
         return []
