@@ -550,3 +550,18 @@ def test_logs_of_two_faces_are_exchanged_together_and_those_of_turns_by_their_si
     assert {*repairs["state"]} == {"applied"}
     assert list(results["diagnosis/causes"]["cause"]) == ["manoeuvre_swapped"] * len(repairs)
     assert {*results["diagnosis/verdict"]["verdict"]} == {"on_condition"}
+
+
+def up_exchanged(document: Document) -> None:
+    """In one log, the directions of two rests are exchanged in the plan, and not their turns."""
+    in_one_log(document)
+    sides = {one["id"]: one["up"] for one in document["campaign"]["plan"]}
+    misstated(plan={"y-up": {"up": sides["y-down"]}, "y-down": {"up": sides["y-up"]}})(document)
+
+
+def test_an_exchange_by_which_a_rest_is_not_found_explains_less_than_one_that_finds_all():
+    """Where a rest is not found, it is that before a turn, which then agrees with the plan."""
+    results = recorded(up_exchanged, until="segment")
+    (row,) = repairs(results).reset_index().to_dict("records")
+    assert (row["id"], row["state"]) == ("exchanged_manoeuvres/y-down/y-up", "applied")
+    assert results["segment/performed"]["complete"].all()
