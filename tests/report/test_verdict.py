@@ -206,6 +206,7 @@ def test_of_several_runs_the_size_is_that_of_the_longest() -> None:
     assert how_large(row) == "10 samples in the longest of 3 places"
     assert how_large(row | {"count": 1}) == "10 samples"
     assert how_large(row | {"cause": "dead_axis"}) == "10 samples"
+    assert how_large(row | {"cause": "latitude_sign"}) is None  # it is there, or it is not
 
 
 def test_a_storm_of_equal_causes_of_one_card_stands_at_no_single_place() -> None:
