@@ -97,6 +97,15 @@ def test_what_was_set_right_states_its_gain_and_its_condition() -> None:
     assert "Not set right, it would shift a parameter by up to 240 σ." in told["What it does"]
 
 
+def test_repairs_of_one_kind_are_named_once_and_each_says_what_would_be_true() -> None:
+    made = synthetic_unmodelled.of_a_class()
+    made["cause_members"]["member"] = "exchanged_manoeuvres"
+    made["cause_members"]["condition"] = ["y-up and y-down", "y-up and z-up"]
+    card = cards(made)["criticism/accel_quadratic"]
+    assert "<strong>Exchanged manoeuvres</strong>" in card
+    assert "distinguish: y-up and y-down, y-up and z-up (SNR" in answers(card)["How sure"]
+
+
 def test_a_class_names_its_members_in_title_and_certainty() -> None:
     made = synthetic_unmodelled.of_a_class()
     card = cards(made)["criticism/accel_quadratic"]
