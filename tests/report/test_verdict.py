@@ -102,7 +102,7 @@ def test_repairs_of_one_kind_are_named_once_and_each_says_what_would_be_true() -
     made["cause_members"]["member"] = "exchanged_manoeuvres"
     made["cause_members"]["condition"] = ["y-up and y-down", "y-up and z-up"]
     card = cards(made)["criticism/accel_quadratic"]
-    assert "<strong>Exchanged manoeuvres</strong>" in card
+    assert "<strong>Exchanged manoeuvres · accelerometer</strong>" in card
     assert "distinguish: y-up and y-down, y-up and z-up (SNR" in answers(card)["How sure"]
 
 
