@@ -430,7 +430,7 @@ def _answers(each: ExplainedFindings) -> Iterator[tuple[str, str]]:
     names = (in_words(other.cause) for other in each.consequences if other.id != each.cause.id)
     following = Counter(name for name in names if name not in in_words(row["cause"]))
     yield _("Therefore"), ", ".join(f"{name} ({n})" for name, n in following.most_common())
-    yield _("What to do"), row["action"]
+    yield _("What to do"), each.cause.action
 
 
 def _summary(recording: Recording) -> str:

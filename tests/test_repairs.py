@@ -6,6 +6,7 @@ from dataclasses import replace
 from functools import cache
 from math import degrees
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import chain
@@ -16,6 +17,7 @@ import pytest
 import laboratory
 from inertial.estimation.triad import linear_names
 from inertial.tables.errors import Refusal
+from stages.segment.recording_explanations import _rivals
 
 sys.path.insert(0, str(Path(__file__).parent / "hidden"))
 import hidden_plans
@@ -550,3 +552,28 @@ def test_logs_of_two_faces_are_exchanged_together_and_those_of_turns_by_their_si
     assert {*repairs["state"]} == {"applied"}
     assert list(results["diagnosis/causes"]["cause"]) == ["manoeuvre_swapped"] * len(repairs)
     assert {*results["diagnosis/verdict"]["verdict"]} == {"on_condition"}
+
+
+def exchanging(found: int, fitting: set[tuple[str, int]]) -> Any:
+    """An exchange with as many agreements as any, by which so many manoeuvres are found."""
+    return SimpleNamespace(
+        step=object(),
+        balance=18,
+        fitting=frozenset(fitting),
+        of_exchange=True,
+        of_sense=False,
+        of_planned_size=6,
+        found_whole=found,
+        exchanged=(),
+        plans=(),
+        axes=None,
+    )
+
+
+@pytest.mark.parametrize(("found", "rival"), [(11, False), (12, True)])
+def test_an_exchange_by_which_a_rest_is_not_found_is_no_rival_of_one_that_finds_all(found, rival):
+    """Where a rest is not found, it is that before a turn, which then agrees with the plan."""
+    case = SimpleNamespace(fitting=frozenset())
+    best = exchanging(12, {("y-down", 0), ("z-up", 0)})
+    other = exchanging(found, {("y-down", 0), ("y-forward", 1)})
+    assert _rivals(case, best, other) == rival

@@ -139,3 +139,15 @@ def test_what_is_masked_in_a_turn_is_not_compared(lossy):
     assert turn.loc[spikes, "residual_gyro_x"].isna().all()
     others = turn.drop(spikes)["residual_gyro_x"] / COUNTS["gyro"]
     assert others.abs().max() < 1.01
+
+
+def test_a_turn_at_another_rate_than_stated_is_met_at_the_rate_that_it_had():
+    """At half its rate, through its angle: what is left of its readings is noise, and no line."""
+    stated = {"y-backward": {"rate_deg_s": 120.0}}
+    results = chain.in_memory_of(chain.short(misstated={"plan": stated}), "criticism")
+    simulated = results["simulation/simulated"]
+    steady = simulated[simulated["phase"] == "steady"].groupby("manoeuvre")
+    rms = steady["residual_gyro_y"].apply(lambda residual: np.sqrt(np.mean(residual**2)))
+    assert rms["y-backward"] == pytest.approx(rms["y-forward"], rel=0.3)
+    causes = {*results["criticism/findings"]["cause"]}
+    assert not causes & {"oscillation", "table_ripple", "table_eccentricity"}

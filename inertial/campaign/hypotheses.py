@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.campaign.records import Row, clocks_of, rows_of
+from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND
 
 FOUND, ONE_OF_CLASS, UNKNOWN_STRUCTURE = "found", "one_of_class", "unknown_structure"
@@ -41,6 +42,7 @@ OF_ATTITUDES = frozenset(
         "table_angle_scale",
     }
 )
+CONFIRMED = _("Nothing more: the campaign file confirms it by accept: [{repair}].")
 TIME = "t0"  # the parameter of effects that set in at a moment
 CLEAR_SIGMAS = 3.0  # of an angle
 MAX_CARRYING = 3  # manoeuvres that carry a structure of the residuals; it is elsewhere with more
@@ -111,6 +113,13 @@ class Hypothesis:
     def size(self) -> float:
         """How large it is, in its unit; 0 where that is not known."""
         return abs(float(self.row["size"] or 0.0))
+
+    @property
+    def action(self) -> str:
+        """What to do; nothing more where the campaign file confirms what was set right."""
+        if self.repair is not None and self.repair["state"] == "confirmed":
+            return CONFIRMED.format(repair=self.repair["id"])
+        return str(self.row["action"])
 
     @property
     def unresolved(self) -> bool:

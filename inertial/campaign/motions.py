@@ -25,6 +25,7 @@ from inertial.text.messages import _
 
 
 MAX_ANGLE_OFF = 1e-3  # relative, of a turn by the gyros, to which first-order effects are exact
+MAX_RATE_OFF = 0.1  # relative, of the rate of a turn, beyond which it was another than stated
 MIN_BEND = 0.002  # rad/s, off a straight line in a block; less is a ramp without a corner
 
 
@@ -120,8 +121,8 @@ def in_samples(
     """A rotation from rest to rest, sample by sample, and the origin of its profile.
 
     With a stated rate and acceleration the rate is a trapezoid, whose middle in time is
-    estimated from the steady part of the gyros' angle. Otherwise the angle is that of the gyros,
-    scaled to the stated one.
+    estimated from the steady part of the gyros' angle; of a turn that was done at another rate, it
+    is at that. Otherwise the angle is that of the gyros, scaled to the stated one.
 
     Parameters
     ----------
@@ -154,8 +155,11 @@ def in_samples(
     )
     if m.rate is not None and m.acceleration is not None and steady.any():
         after = so_far(measured)
-        middle = float(np.mean(ends[steady] - (after[steady] - m.angle / 2) / m.rate))
-        profile = Profile(abs(m.angle), abs(m.rate), m.acceleration)
+        stated = np.copysign(m.rate, m.angle)
+        read = float(np.median(measured[steady])) / step * m.angle / float(after[-1])
+        rate_had = read if abs(read / stated - 1) > MAX_RATE_OFF else stated
+        middle = float(np.mean(ends[steady] - (after[steady] - m.angle / 2) / rate_had))
+        profile = Profile(abs(m.angle), abs(rate_had), m.acceleration)
         sign, start = np.sign(m.angle), middle - profile.seconds / 2
         edges = [sign * np.stack(profile.at(edge - start)) for edge in (ends - step, ends)]
         (first, after), (rate, rate_after) = zip(*edges, strict=True)

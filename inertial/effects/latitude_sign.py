@@ -16,9 +16,9 @@ class LatitudeSign(Effect):
 
     name = "latitude_sign"
     cause = _(
-        "the sign of the latitude is wrong: south was taken for north, or north for south; or each "
-        "`up` of the plan was read off a log of accelerometers that read −g on the axis that "
-        "points up; or the axes of both sensors are left-handed"
+        "attitudes, or each `up` of the plan, were taken from accelerometers that read −g on the "
+        "axis that points up; or the sign of the latitude is wrong: south was taken for north, or "
+        "north for south; or the axes of both sensors are left-handed"
     )
     source = "Titterton & Weston 2004, earth's rate in the local frame"
     parameters = (Parameter("s", "1", 1.0, _("1 on the other hemisphere, 0 on the stated one")),)

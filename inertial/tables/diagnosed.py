@@ -169,13 +169,14 @@ CAUSES = table(
 )
 CAUSE_MEMBERS = table(
     "cause_members",
-    1,
+    2,
     text("id", "stable identifier; no code reads anything from it"),
     CAUSE,
     MOUNT,
     integer("rank", "1 for the most probable"),
     text("member", "what it may be: an effect of the catalogue or a fault"),
     optional_number("probability", "1", "posterior probability, where compared"),
+    optional_sentence("condition", "of a repair: what would have to be true, in words"),
 )
 CONSEQUENCES = table(
     "consequences",

@@ -129,7 +129,7 @@ NAMES = {
     "heading_error": _("wrong heading"),
     "impact": _("impact on the IMU"),
     "latitude_error": _("wrong latitude"),
-    "latitude_sign": _("latitude of the other hemisphere"),
+    "latitude_sign": _("wrong sign of gravity or of the latitude"),
     "manoeuvre_missing": _("missing manoeuvre"),
     "manoeuvre_swapped": _("exchanged manoeuvres"),
     "noise_above_data_sheet": _("noise above the data sheet"),

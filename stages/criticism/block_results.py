@@ -190,7 +190,10 @@ class BlockResults:
             known = np.arcsin(self.campaign.solution.site.earth_up / EARTH_RATE)
             return sentences.action_against_latitude(known + (parameters[0].value or 0.0))
         timed = not without_clock(self.campaign.motion)
-        return sentences.action_against(KNOWN.get(cause.effect), timed=timed, free=free)
+        chosen = cause.effect in self.selection.families
+        effect = self.selection.effect(cause.effect, cause.value) if chosen else None
+        effect = effect or KNOWN.get(cause.effect)
+        return sentences.action_against(effect, timed=timed, free=free)
 
     def _finding(self, number: int, cause: Cause) -> Iterator[TableRow]:
         split = None if cause.effect in LAWS else self.extended.splitting(number)

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
+from inertial.effects.latitude_sign import LatitudeSign
 from inertial.effects.law import Law
+from inertial.effects.temperature_model import TemperatureModel
 from inertial.model_selection.cause import Cause, EffectTest
 from inertial.model_selection.detection_limits import (
     ABSORBED,
@@ -14,7 +16,7 @@ from inertial.model_selection.detection_limits import (
     VISIBLE,
     Visible,
 )
-from inertial.physics.drift import Jump
+from inertial.physics.drift import Drift, Jump, OfTemperature, SettingIn, WarmUp
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, listed
@@ -25,6 +27,7 @@ from inertial.text.units import quantity
 from stages.criticism.class_splitting import TURNED_OVER, Splitting
 from stages.criticism.laws import law_sentence
 
+SETTLED = 5.0  # time constants, after which e⁻⁵ of a warm-up is left
 MIN_SEPARATION = 0.1  # sigma; below, which manoeuvre is the best says nothing
 
 REASONS = {
@@ -36,6 +39,29 @@ REASONS = {
 ACTION = _(
     "Remove it at its origin, or compensate readings with its terms too, which the export "
     "holds where the result includes them."
+)
+ACTION_OF_SENSOR = _(
+    "It is a property of the sensor, and stays: compensate readings with its terms too, which the "
+    "export holds where the result includes them."
+)
+ACTION_OF_WARM_UP = _(
+    "Switch the IMU on and wait until it has settled before recording: after {minutes} min, five "
+    "time constants, less than 1 % of it is left. Or compensate readings with its terms too, which "
+    "the export holds where the result includes them."
+)
+ACTION_OF_TEMPERATURE = _(
+    "Record at the temperature at which the IMU is used, or keep it constant; or compensate "
+    "readings with its terms too, which the export holds where the result includes them."
+)
+ACTION_OF_LATITUDE_SIGN = _(
+    "Check the sign of latitude_deg, which is positive in the north. If that is right, see whether "
+    "each `up` was read off accelerometers that read −g on the axis that points up, and whether "
+    "the axes are right-handed."
+)
+ACTION_OF_GRAVITY_SIGN = _(
+    "By hand nothing tells these two apart. If the accelerometers read −g on the axis that points "
+    "up, as those of iPhones do, which is the likelier, state accelerometer: {reads: gravity} in "
+    "the format; else correct the sign of latitude_deg, which is positive in the north."
 )
 ACTION_WITHOUT_TERMS = _("Remove it at its origin. Readings are not compensated for it: {stays}.")
 ACTION_PER_RUN = _(
@@ -240,8 +266,14 @@ def action_against(effect: Effect | None, *, timed: bool = True, free: bool = Fa
         return action if timed else action + NO_COMMON_TIME
     if isinstance(effect, Jump):
         return ACTION_OF_FREE_CHANGE if free else ACTION_OF_JUMP
+    if isinstance(effect, LatitudeSign):
+        return ACTION_OF_GRAVITY_SIGN if free else ACTION_OF_LATITUDE_SIGN
+    if isinstance(effect, WarmUp) and effect.at:
+        return ACTION_OF_WARM_UP.format(minutes=significant(SETTLED * effect.at / 60, 2))
+    if effect.terms and isinstance(effect, (OfTemperature, TemperatureModel)):
+        return ACTION_OF_TEMPERATURE
     if effect.terms:
-        return ACTION
+        return ACTION if isinstance(effect, (Drift, SettingIn)) else ACTION_OF_SENSOR
     return ACTION_WITHOUT_TERMS.format(stays=effect.stays)
 
 

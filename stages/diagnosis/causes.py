@@ -29,6 +29,23 @@ from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, listed, plural
 from inertial.text.parameters import MIXTURE
+from stages.diagnosis.cause_sentences import (
+    ALONE,
+    BY_MEMBERS,
+    BY_MEMBERS_AND_WITHOUT,
+    HARMLESS,
+    IN_COVARIANCE,
+    NO_ATTITUDE,
+    NO_JUMP,
+    OF_EACH_MANOEUVRE,
+    OF_GYROS,
+    ONE_CHANGE,
+    ONLY_MODELLED,
+    OWN_ERROR,
+    STAMPS_RIGHT,
+    TURN_AGAIN,
+    WITH_AND_WITHOUT,
+)
 from stages.diagnosis.decision import MAX_MOVE, UNEXPLAINED
 from stages.diagnosis.gravity_by_latitude import Gravity
 from stages.diagnosis.sensor_results import SensorResult
@@ -51,7 +68,8 @@ APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were ma
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
 ENCODER_JUMP = "encoder_jump"  # which segment takes out of the angles
 QUANTISATION = "quantisation"
-DIFFERENT_THINGS = ("manoeuvre_missing", "manoeuvre_swapped")  # each is one of its own
+SWAPPED = "manoeuvre_swapped"
+DIFFERENT_THINGS = ("manoeuvre_missing", SWAPPED)  # each is one of its own
 
 DONE = {
     REPAIRED: _("It was set right before anything was estimated."),
@@ -62,44 +80,6 @@ DONE = {
     LEFT_OUT: _("The manoeuvres concerned are left out of the estimates."),
     NONE: _("Nothing was done about it."),
 }
-BY_MEMBERS = _(
-    "The parameters are the mean over all that it may be, by how probable each is; the further "
-    "terms are those of the most probable."
-)
-WITH_AND_WITHOUT = _(
-    "The parameters are the mean of the result with it and the result without it, by how well each "
-    "predicts manoeuvres that its fit has not seen; the further terms are those with it."
-)
-BY_MEMBERS_AND_WITHOUT = _(
-    "The parameters are the mean over the members of the class and over the result without any of "
-    "them, by their probability; the further terms are those of the most probable member."
-)
-OWN_ERROR = _(
-    "{manoeuvre} has an unknown error of its own in the model, so that it moves no parameter."
-)
-ONLY_MODELLED = _("It is in the model of the {sensors} alone.")
-IN_COVARIANCE = _("The covariance of the result includes it.")
-NO_JUMP = _("The biases of the {sensors} did not change when those of the others did.")
-ONE_CHANGE = _(
-    "The biases of the {sensors} changed at that place alone, and do not differ from run to run."
-)
-ALONE = _("What disturbs {manoeuvre}, which is left out, is in this manoeuvre alone.")
-OF_GYROS = _("The asymmetry is that of the gyros, and not of the table.")
-NO_ATTITUDE = _(
-    "What the residuals of the accelerometers show is in their readings, and no error of "
-    "attitudes, which the cross-axis terms of the gyros would contain."
-)
-STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
-OF_EACH_MANOEUVRE = _(
-    "The {sensors} differ from manoeuvre to manoeuvre by more than noise. {effects} would explain "
-    "it, but together they have a term for nearly every manoeuvre and would explain anything: the "
-    "plan does not show what it is."
-)
-TURN_AGAIN = _(
-    "Repeat the turns in the same positions, some time later: what is the same again goes with the "
-    "attitude or the turn, the rest with time."
-)
-HARMLESS = _("Nothing need be done about it for this result.")
 
 
 @dataclass(frozen=True)
@@ -276,7 +256,7 @@ class Cause:
             "condition": self.condition,
             "consequence": self.most_moved + main.row["consequence"],
             "done": self.done,
-            "action": TURN_AGAIN if self.saturated else main.row["action"],
+            "action": TURN_AGAIN if self.saturated else main.action,
         }
 
 
@@ -403,7 +383,10 @@ class Evidence:
     ) -> tuple[str, float | None, float | None]:
         """The cure, the largest shift of a parameter in sigma, and the gain on held-out data."""
         if cause.cause == ENCODER_JUMP or cause.repair is not None:
-            return _cure_of_repaired(cause.repair, own)
+            repaired = _cure_of_repaired(cause.repair, own)
+            there = self.performed.get(cause.manoeuvre or "")
+            lost = cause.cause == SWAPPED and there is not None and not there.complete
+            return (LEFT_OUT, None, None) if repaired[0] == NONE and lost else repaired
         if cause.row.get("predictor") == "temperature" and self.curves & {
             (result.sensor, result.mount) for result in own
         }:

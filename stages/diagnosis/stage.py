@@ -121,9 +121,9 @@ def _recorded(channel_statistics: pd.DataFrame) -> set[str]:
 def _members(cause: Cause, findings: Findings) -> Iterator[Row]:
     """The members of its class: effects, or repairs of which each would undo it."""
     own = [row for row in rows_of(findings.members) if row["finding"] == cause.main.id]
-    members = [(row["effect"], row["probability"]) for row in sorted(own, key=_rank)]
-    members += [(row["repair"], None) for row in cause.main.rivals]
-    for rank, (member, probability) in enumerate(members, 1):
+    members = [(row["effect"], row["probability"], None) for row in sorted(own, key=_rank)]
+    members += [(row["repair"], None, row["condition"]) for row in cause.main.rivals]
+    for rank, (member, probability, condition) in enumerate(members, 1):
         yield {
             "id": f"{cause.id}/{rank}",
             "cause": cause.id,
@@ -131,6 +131,7 @@ def _members(cause: Cause, findings: Findings) -> Iterator[Row]:
             "rank": rank,
             "member": member,
             "probability": probability,
+            "condition": condition,
         }
 
 

@@ -145,9 +145,13 @@ def size_in_words(row: Record) -> str | None:
     return number + (shown.name if shown.name in ("°", "″") else f" {shown.name}".rstrip())
 
 
+# Effects that are there or not: 1 if they are, and no other size is possible.
+THERE_OR_NOT = frozenset({"latitude_sign", "earth_rate_omitted"})
+
+
 def how_large(row: Record) -> str | None:
     """The same of a cause; of readings lost at several places it is the longest run of them."""
-    size = size_in_words(row)
+    size = None if row["cause"] in THERE_OR_NOT else size_in_words(row)
     if size is None or row["cause"] not in RUNS or (row["count"] or 1) < 2:
         return size
     return _("{size} in the longest of {count} places", size=size, count=row["count"])

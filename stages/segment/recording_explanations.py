@@ -93,7 +93,7 @@ def explain(
         best = max(supposed, key=lambda one: one.balance, default=case)
         if best.of_exchange:  # turns of one axis and sense differ by their sizes
             exchanges = [one for one in supposed if one.of_exchange]
-            best = max(exchanges, key=lambda one: (one.balance, one.of_planned_size))
+            best = max(exchanges, key=_worth)
         gain = best.balance - case.balance
         # Two turns the other way, or in each other's place, of one log cost one of them at most:
         # the other one fits.
@@ -166,14 +166,21 @@ def _of_turns(case: Case) -> tuple[object, object]:
     return case.exchanged, case.other_sense
 
 
+def _worth(case: Case) -> tuple[int, int, int]:
+    """What an exchange explains, the more the better; what it loses no other agreement makes up.
+
+    A rest that is not found in its place leaves that to be the rest before a turn, which agrees.
+    """
+    return case.balance, case.found_whole, case.of_planned_size
+
+
 def _rivals(case: Case, best: Case, other: Case) -> bool:
     """Whether another supposition explains the same observations as the best one, and as many."""
     if other.step == best.step or other.balance < best.balance:
         return False
     if not (best.fitting - case.fitting) & (other.fitting - case.fitting):
         return False  # they explain different things, and both may be
-    exchanges = best.of_exchange and other.of_exchange
-    if exchanges and other.of_planned_size < best.of_planned_size:
+    if best.of_exchange and other.of_exchange and _worth(other) < _worth(best):
         return False
     if (best.of_sense or other.of_sense) and _turns_each_other(best, other):
         return False

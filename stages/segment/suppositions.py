@@ -78,6 +78,15 @@ class Case:
         return sum(abs(abs(ratio) - 1) <= MAX_WHOLE_DIFFERENCE for ratio in ratios)
 
     @property
+    def found_whole(self) -> int:
+        """Manoeuvres that are found, and of which no small part alone is."""
+        return sum(
+            located.place(m) is not None and not located.in_part(m)
+            for located in self.located
+            for m in located.plan
+        )
+
+    @property
     def lacking(self) -> list[int]:
         """The windows in which something does not agree with the plan."""
         counts = [located.agreeing for located in self.located]

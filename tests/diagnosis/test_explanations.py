@@ -456,3 +456,24 @@ def test_gyros_hold_on_condition_where_attitudes_may_be_wrong(sensor, member, mo
     cause = Cause((each,), ("accel", "gyro"), "none", "", moves, doubted=frozenset(doubted))
     assert cause.of("accel").condition is None and cause.of("accel").spoils
     assert (cause.of("gyro").condition is not None) == bool(doubted) != cause.of("gyro").spoils
+
+
+@pytest.mark.parametrize(
+    ("state", "complete", "cure"),
+    [("rival", False, "left_out"), ("rival", True, "none"), ("applied", False, "repaired")],
+)
+def test_exchanged_manoeuvres_that_are_not_set_right_are_left_out(state, complete, cure):
+    swapped = finding("segment", "manoeuvre_swapped", severity=3)
+    row = swapped.row | {"manoeuvre": "y-up"}
+    repair = {"state": state, "value": None, "stated": None}
+    swapped = replace(swapped, row=row, repair=repair)
+    performed = {"y-up": SimpleNamespace(complete=complete)}
+    assert Evidence({}, frozenset(), performed)._cure(swapped, (), ())[0] == cure
+
+
+def test_what_the_campaign_file_confirms_need_not_be_confirmed():
+    swapped = finding("segment", "manoeuvre_swapped")
+    row = swapped.row | {"action": "or confirm it by accept: [a/b]"}
+    for state, said in (("applied", "or confirm it"), ("confirmed", "Nothing more")):
+        repair = {"state": state, "id": "a/b"}
+        assert replace(swapped, row=row, repair=repair).action.startswith(said)

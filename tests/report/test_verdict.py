@@ -97,6 +97,15 @@ def test_what_was_set_right_states_its_gain_and_its_condition() -> None:
     assert "Not set right, it would shift a parameter by up to 240 σ." in told["What it does"]
 
 
+def test_repairs_of_one_kind_are_named_once_and_each_says_what_would_be_true() -> None:
+    made = synthetic_unmodelled.of_a_class()
+    made["cause_members"]["member"] = "exchanged_manoeuvres"
+    made["cause_members"]["condition"] = ["y-up and y-down", "y-up and z-up"]
+    card = cards(made)["criticism/accel_quadratic"]
+    assert "<strong>Exchanged manoeuvres · accelerometer</strong>" in card
+    assert "distinguish: y-up and y-down, y-up and z-up (SNR" in answers(card)["How sure"]
+
+
 def test_a_class_names_its_members_in_title_and_certainty() -> None:
     made = synthetic_unmodelled.of_a_class()
     card = cards(made)["criticism/accel_quadratic"]
@@ -206,6 +215,7 @@ def test_of_several_runs_the_size_is_that_of_the_longest() -> None:
     assert how_large(row) == "10 samples in the longest of 3 places"
     assert how_large(row | {"count": 1}) == "10 samples"
     assert how_large(row | {"cause": "dead_axis"}) == "10 samples"
+    assert how_large(row | {"cause": "latitude_sign"}) is None  # it is there, or it is not
 
 
 def test_a_storm_of_equal_causes_of_one_card_stands_at_no_single_place() -> None:

@@ -29,13 +29,11 @@ from stages.report.sections.effect_sentences import (
 )
 from stages.report.sections.effect_terms import is_scanned, meanings_of
 from stages.report.tables import Record, Tables
-from stages.report.words import count_in_words, with_mount
+from stages.report.words import THERE_OR_NOT, count_in_words, with_mount
 
 MIN_SIGMAS = 3.0  # from which a parameter is listed and a shift is marked
 VISIBLE = "visible"
 Effect = tuple[str, str]  # its name in the catalogue, and the mount
-# Effects that are there or not: 1 if they are, and no other size is possible.
-THERE_OR_NOT = frozenset({"latitude_sign", "earth_rate_omitted"})
 NOTICED, NOT_NOTICED = _("would be noticed"), _("would not be noticed")
 NOT_DETECTABLE = _("not detectable here")
 MIN_CLOCK_SHARE = 1e-6  # of a frequency: no clock of a log is known to less

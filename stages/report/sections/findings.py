@@ -134,7 +134,8 @@ def cause_of_finding(tables: Tables) -> dict[str, Record]:
 
 def title_of(tables: Tables, row: Record) -> str:
     """What it is, its class, and where; equal ones in several places have no place."""
-    names = [in_words(one["member"]) for one in members(tables, row)] or [in_words(row["cause"])]
+    own = [in_words(one["member"]) for one in members(tables, row)]
+    names = [*dict.fromkeys(own)] or [in_words(row["cause"])]
     if len(names) > MOST_NAMES:
         names = [*names[: MOST_NAMES - 1], _("{count} others", count=len(names) - MOST_NAMES + 1)]
     name, where = listed(names, "or"), concerned(row)

@@ -160,7 +160,7 @@ def _sure(tables: Tables, row: Record) -> str:
     words = NOT_TESTABLE if row["cause"] == JUMP_NOT_TESTABLE else SURE[row["verdict"]]
     if own := members(tables, row):
         shares = [one["probability"] for one in own]
-        each = [in_words(one["member"]) for one in own]
+        each = [one["condition"] or in_words(one["member"]) for one in own]
         if None not in shares:
             if max(shares) > MAX_PROBABILITY:
                 words = _("by far the likeliest of a class of which each can show much the same")

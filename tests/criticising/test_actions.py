@@ -1,0 +1,31 @@
+"""What to do against an effect: of each kind what a laboratory can do, and not one for all."""
+
+import pytest
+
+from inertial.effects import KNOWN
+from inertial.physics.drift import WarmUp
+from stages.criticism.block_sentences import action_against
+
+
+def test_a_warm_up_is_waited_for_as_long_as_it_takes():
+    effect = KNOWN["gyro_warm_up"]
+    assert isinstance(effect, WarmUp)
+    effect.at = 600.0  # s: five of them are 50 min
+    try:
+        assert "after 50 min" in action_against(effect)
+    finally:
+        effect.at = None
+
+
+@pytest.mark.parametrize(
+    ("effect", "free", "said"),
+    [
+        ("gyro_bias_temperature", False, "at the temperature at which the IMU is used"),
+        ("gyro_g_sensitivity", False, "a property of the sensor"),
+        ("latitude_sign", False, "Check the sign of latitude_deg"),
+        ("latitude_sign", True, "accelerometer: {reads: gravity}"),
+    ],
+)
+def test_what_is_done_is_that_which_helps(effect, free, said):
+    action = action_against(KNOWN[effect], free=free)
+    assert said in action and "at its origin" not in action
