@@ -213,3 +213,24 @@ def test_a_log_of_each_sensor_may_count_in_another_unit_by_another_name(apart, t
     samples = chain.run(folder, tmp_path / "derived", "decode")["decode/samples"]
     turned = samples["gyro_x"].to_numpy()
     assert np.corrcoef(turned, log.rate[-len(turned) :, 0])[0, 1] > 0.99
+
+
+# ---- what is said of columns
+
+
+def test_a_column_of_text_is_called_text_and_no_rarer_sensor(tmp_path):
+    """It sent one looking for a second sensor: a date is in no notation that is read."""
+    log = by_hand_log(36)
+    time = np.arange(len(log.force)) / RATE
+    rows = written([90211.5 + time, log.force, log.rate], digits=9).splitlines()
+    dates = (
+        f"at {60 * second:.0f} after noon,{row}" for second, row in zip(time, rows, strict=True)
+    )
+    folder = drafted({"log.csv": f"when,t(s),{NAMES}\n" + "\n".join(dates) + "\n"}, tmp_path)
+    said = comments(folder)
+    assert "text, and not read: when" in said and "without a number" not in said
+
+
+def test_it_is_said_whose_name_states_the_unit_of_the_time(tmp_path):
+    _layout, said = layout_of(logged("t_ms", 10, 37), tmp_path)
+    assert "at 100.0 Hz; t_ms counts ms by its name" in said

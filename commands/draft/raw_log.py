@@ -34,6 +34,7 @@ MINNUMBERS = 3  # in a row of data
 USUAL = 0.9  # share of rows in which a column of numbers holds one
 DELIMITERS, DECIMALS = (None, ",", ";", "\t"), (".", ",")
 QUOTED_COMMA = re.compile(r'"[+-]?\d+,\d+",|,"[+-]?\d+,\d+"')
+NO_NUMBER = ("", "nan", "na", "n/a", "null")  # in lower case, among the numbers of a column
 COMMENTS = ("#", "//", "%")
 _DATE = re.compile(
     r"(\d{4}-?\d\d?-?\d\d?[T ]\d\d?:?\d\d?(:?\d\d?([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?)"
@@ -83,7 +84,8 @@ def text_layout(path: Path) -> TextLayout | None:
     if labelled and labelled >= plain.rows:
         bare = [without_names(line.encode()).decode() for line in lines]
         if (separated := _separated(bare)).rows:
-            return _layout(bare, separated, labels)
+            found = _layout(bare, separated, labels)
+            return replace(found, header=lines[: len(found.header)])
     return _layout(lines, plain) if plain.rows else None
 
 
@@ -163,7 +165,7 @@ def _layout(
 
     numbers = holding(lambda text: is_number(text, decimal))
     dates = holding(_DATE.fullmatch)
-    some = [[text for text in own if text] for own in fields]
+    some = [[text for text in own if text.lower() not in NO_NUMBER] for own in fields]
     sparse = [n for n, own in enumerate(some) if all(is_number(text, decimal) for text in own)]
     words = [n for n in range(len(fields)) if n not in numbers + dates + sparse]
     header = lines[:first]
@@ -208,8 +210,9 @@ class RawLog:
 
     `layout`: what the format of the campaign file states beside the columns; `header`: the lines
     before the data; `columns`: (n,) numbers each, NaN where there is none; `words`: n texts each,
-    of a few different ones; `dates`: columns of dates, in s; `unread`: columns of none of these;
-    `left_out`: rows at the end of the file that hold no samples, and are not among these.
+    of a few different ones; `dates`: columns of dates, in s; `unread`: columns that hold numbers
+    in some rows only; `texts`: columns of other texts; `left_out`: rows at the end of the file
+    that hold no samples, and are not among these.
     """
 
     path: Path
@@ -219,6 +222,7 @@ class RawLog:
     words: Mapping[Name, Sequence[str]] = field(default_factory=dict)
     dates: Sequence[Name] = ()
     unread: Sequence[Name] = ()
+    texts: Sequence[Name] = ()
     left_out: int = 0
 
     @property
@@ -271,7 +275,7 @@ def raw_log(path: Path) -> RawLog:
         raise Refusal(
             path.name,
             "",
-            _("no rows of three numbers or more; a line of it is '{line}'", line=_a_line(path)),
+            _("no rows of three numbers or more; {line}", line=_a_line(path)),
             _("the samples of an IMU: messages of a receiver, or rows of columns"),
             _(
                 "leave it out where it is no log of an IMU; another format has to be exported as "
@@ -282,10 +286,12 @@ def raw_log(path: Path) -> RawLog:
 
 
 def _a_line(path: Path) -> str:
-    """The last line of the beginning of a file."""
+    """The last line of the beginning of a file, with its number."""
     with path.open("rb") as file:
-        lines = file.read(HEAD_BYTES).strip().splitlines()
-    return quoted(lines[-1]) if lines else ""
+        lines = file.read(HEAD_BYTES).rstrip().splitlines()
+    if not lines:
+        return _("it is empty")
+    return _("line {number} of it is '{line}'", number=len(lines), line=quoted(lines[-1]))
 
 
 def _text_log(path: Path, found: TextLayout) -> RawLog:
@@ -302,9 +308,9 @@ def _text_log(path: Path, found: TextLayout) -> RawLog:
         words = _words(path, layout, column(place))
         if len(set(words)) <= MAX_WORDS:
             labels[column(place)] = words
-    others = map(column, sorted({*found.sparse, *found.words}))
-    unread = [name for name in others if name not in labels]
-    return RawLog(path, layout, columns, found.header, labels, dates, unread)
+    unread = [column(place) for place in found.sparse]
+    texts = [name for name in map(column, found.words) if name not in labels]
+    return RawLog(path, layout, columns, found.header, labels, dates, unread, texts)
 
 
 def _receiver_log(path: Path) -> RawLog | None:

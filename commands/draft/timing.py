@@ -242,16 +242,27 @@ def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
         return _Clock(unit_of(likely), likely, why, guessed=True, doubt=doubt)
     unit = SPELT.get(found[1].lower(), found[1].lower())
     named = UNITS[unit]
+    told = _("{column} counts {unit} by its name", column=column, unit=unit.replace("us", "µs"))
     plausible = MIN_RATE <= named / ticks <= MAX_RATE
     if (named == likely) or (plausible and not agrees):
-        return _Clock(unit, named, _("by its name"))
+        return _Clock(unit, named, told)
     if not agrees and not MIN_RATE <= likely / ticks <= MAX_RATE:
-        return _Clock(unit, named, _("by its name"))
+        return _Clock(unit, named, told)
     by_name, rate = significant(named / ticks), significant(likely / ticks)
     why = (
-        _("its name says {unit}, {named} Hz; the header states the rate", unit=unit, named=by_name)
+        _(
+            "the name of {column} says {unit}, {named} Hz; the header states the rate",
+            column=column,
+            unit=unit,
+            named=by_name,
+        )
         if agrees
-        else _("its name says {unit}, {named} Hz, the rate of no IMU", unit=unit, named=by_name)
+        else _(
+            "the name of {column} says {unit}, {named} Hz, the rate of no IMU",
+            column=column,
+            unit=unit,
+            named=by_name,
+        )
     )
     doubt = _(
         "its name says {unit}, by which there are {named} samples a second; the draft takes ticks "
