@@ -234,3 +234,38 @@ def test_a_column_of_text_is_called_text_and_no_rarer_sensor(tmp_path):
 def test_it_is_said_whose_name_states_the_unit_of_the_time(tmp_path):
     _layout, said = layout_of(logged("t_ms", 10, 37), tmp_path)
     assert "at 100.0 Hz; t_ms counts ms by its name" in said
+
+
+# ---- stamps of the sensor beside those of arrival
+
+
+@pytest.mark.parametrize(
+    ("secs", "nsecs"),
+    [
+        ("header.stamp.secs", "header.stamp.nsecs"),
+        ("secs", "nsecs"),
+        ("header.stamp.sec", "header.stamp.nanosec"),
+    ],
+)
+def test_the_stamps_of_the_sensor_are_preferred_to_those_of_arrival(secs, nsecs, tmp_path):
+    """The time of arrival was taken, and the report advised to log the stamps of the sensor."""
+    log = by_hand_log(38)
+    stamps = np.arange(len(log.force)) * 10**7 + 1717000000 * 10**9
+    late = np.random.default_rng(38).exponential(2e-3, len(stamps))
+    rows = written([log.force, log.rate], digits=9).splitlines()
+    times = (
+        f"{stamp / 1e9 + after:.6f},{stamp // 10**9},{stamp % 10**9}"
+        for stamp, after in zip(stamps.tolist(), late.tolist(), strict=True)
+    )
+    text = f"Time,{secs},{nsecs},{NAMES}\n" + "".join(
+        f"{time},{row}\n" for time, row in zip(times, rows, strict=True)
+    )
+    folder = drafted({"log.csv": text}, tmp_path)
+    assert told(folder)["instrument"]["format"]["time"] == {
+        "columns": [secs, nsecs],
+        "units": ["s", "ns"],
+    }
+    said = comments(folder)
+    assert f"{secs}, {nsecs} hold the time in s and ns" in said and "not used: Time" in said
+    results = chain.run(folder, tmp_path / "derived", "decode")
+    assert np.ptp(np.diff(results["decode/samples"]["time"])) < 1e-9

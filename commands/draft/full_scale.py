@@ -59,7 +59,7 @@ class FullScale:
 def of_accel(header: Sequence[str]) -> FullScale | None:
     """The range of accelerometers, ± g; None where the header states none, or several."""
     most = _stated(header, ACCEL_RANGES, USUAL_ACCEL_RANGES)
-    return most and FullScale(f"±{most:g} g", (_largest(header) / most,))
+    return None if most is None else FullScale(f"±{most:g} g", (_largest(header) / most,))
 
 
 def of_gyro(header: Sequence[str]) -> FullScale | None:

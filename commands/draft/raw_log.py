@@ -205,6 +205,14 @@ SENT_SIGNS = (1, -1, 1, 1, -1, 1)
 
 
 @dataclass(frozen=True)
+class Pair:
+    """Two columns that hold one time: whole seconds, and the fraction in another unit."""
+
+    columns: tuple[Name, Name]
+    units: tuple[str, str]
+
+
+@dataclass(frozen=True)
 class RawLog:
     """A log: `columns` and `words` by the name, or number from 1, of the campaign file.
 
@@ -212,7 +220,8 @@ class RawLog:
     before the data; `columns`: (n,) numbers each, NaN where there is none; `words`: n texts each,
     of a few different ones; `dates`: columns of dates, in s; `unread`: columns that hold numbers
     in some rows only; `texts`: columns of other texts; `left_out`: rows at the end of the file
-    that hold no samples, and are not among these.
+    that hold no samples, and are not among these; `pairs`: of a column that the file holds as two,
+    whole units of time and a fraction, these two and their units.
     """
 
     path: Path
@@ -224,6 +233,7 @@ class RawLog:
     unread: Sequence[Name] = ()
     texts: Sequence[Name] = ()
     left_out: int = 0
+    pairs: Mapping[Name, "Pair"] = field(default_factory=dict)
 
     @property
     def kind(self) -> str:
@@ -258,6 +268,44 @@ def raw_log(path: Path) -> RawLog:
     Refusal
         where no columns of numbers are in it
     """
+    return _with_whole_times(_as_it_stands(path))
+
+
+SECONDS = re.compile(r"(?P<stem>.*?)(?:secs?|seconds|tv_sec)", re.IGNORECASE)
+FRACTIONS = (
+    ("ns", 1e9, re.compile(r"(?:nsecs?|nanosecs?|nanoseconds?|tv_nsec)", re.IGNORECASE)),
+    ("us", 1e6, re.compile(r"(?:usecs?|microsecs?|microseconds?|tv_usec)", re.IGNORECASE)),
+)
+
+
+def _with_whole_times(log: RawLog) -> RawLog:
+    """The log with one column for each two of seconds and their fraction, as ROS has them."""
+    columns, pairs = dict[Name, Array](), dict[Name, Pair]()
+    parts = {part: pair for pair in _pairs(log) for part in pair[0].columns}
+    for name, values in log.columns.items():
+        if name not in parts:
+            columns[name] = values
+        elif name == parts[name][0].columns[0]:
+            pair, time = parts[name]
+            both = ", ".join(map(str, pair.columns))
+            columns[both], pairs[both] = time, pair
+    return replace(log, columns=columns, pairs=pairs) if pairs else log
+
+
+def _pairs(log: RawLog) -> Iterator[tuple[Pair, Array]]:
+    """Columns of whole seconds and of their fraction, by their names and values; and both in s."""
+    for name, whole in log.columns.items():
+        seconds = SECONDS.fullmatch(str(name))
+        if seconds is None or (finite(whole) % 1).any():
+            continue
+        for (other, part), (unit, ticks, pattern) in product(log.columns.items(), FRACTIONS):
+            if len(part) == len(whole) and str(other).startswith(seconds["stem"]):
+                own, named = finite(part), pattern.fullmatch(str(other), len(seconds["stem"]))
+                if named and own.min() >= 0 and 1 < own.max() <= ticks and not (own % 1).any():
+                    yield Pair((name, other), ("s", unit)), whole + part / ticks
+
+
+def _as_it_stands(path: Path) -> RawLog:
     names = column_reader.names_in(path)
     if names is not None:
         layout: dict[str, Any] = {"kind": "columns"}
