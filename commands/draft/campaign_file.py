@@ -320,7 +320,7 @@ def _time(kind: Kind, file: int) -> dict[str, Any]:
         time["rate_hz"] = timing.rate
     if timing.ticks_per_s is not None:
         time["ticks_per_s"] = timing.ticks_per_s
-    if timing.wraps_at:
+    if timing.wraps_at and pair is None:
         time["wraps_at"] = timing.wraps_at
     return time
 
