@@ -213,3 +213,59 @@ def test_a_log_of_each_sensor_may_count_in_another_unit_by_another_name(apart, t
     samples = chain.run(folder, tmp_path / "derived", "decode")["decode/samples"]
     turned = samples["gyro_x"].to_numpy()
     assert np.corrcoef(turned, log.rate[-len(turned) :, 0])[0, 1] > 0.99
+
+
+# ---- what is said of columns
+
+
+def test_a_column_of_text_is_called_text_and_no_rarer_sensor(tmp_path):
+    """It sent one looking for a second sensor: a date is in no notation that is read."""
+    log = by_hand_log(36)
+    time = np.arange(len(log.force)) / RATE
+    rows = written([90211.5 + time, log.force, log.rate], digits=9).splitlines()
+    dates = (
+        f"at {60 * second:.0f} after noon,{row}" for second, row in zip(time, rows, strict=True)
+    )
+    folder = drafted({"log.csv": f"when,t(s),{NAMES}\n" + "\n".join(dates) + "\n"}, tmp_path)
+    said = comments(folder)
+    assert "text, and not read: when" in said and "without a number" not in said
+
+
+def test_it_is_said_whose_name_states_the_unit_of_the_time(tmp_path):
+    _layout, said = layout_of(logged("t_ms", 10, 37), tmp_path)
+    assert "at 100.0 Hz; t_ms counts ms by its name" in said
+
+
+# ---- stamps of the sensor beside those of arrival
+
+
+@pytest.mark.parametrize(
+    ("secs", "nsecs"),
+    [
+        ("header.stamp.secs", "header.stamp.nsecs"),
+        ("secs", "nsecs"),
+        ("header.stamp.sec", "header.stamp.nanosec"),
+    ],
+)
+def test_the_stamps_of_the_sensor_are_preferred_to_those_of_arrival(secs, nsecs, tmp_path):
+    """The time of arrival was taken, and the report advised to log the stamps of the sensor."""
+    log = by_hand_log(38)
+    stamps = np.arange(len(log.force)) * 10**7 + 1717000000 * 10**9
+    late = np.random.default_rng(38).exponential(2e-3, len(stamps))
+    rows = written([log.force, log.rate], digits=9).splitlines()
+    times = (
+        f"{stamp / 1e9 + after:.6f},{stamp // 10**9},{stamp % 10**9}"
+        for stamp, after in zip(stamps.tolist(), late.tolist(), strict=True)
+    )
+    text = f"Time,{secs},{nsecs},{NAMES}\n" + "".join(
+        f"{time},{row}\n" for time, row in zip(times, rows, strict=True)
+    )
+    folder = drafted({"log.csv": text}, tmp_path)
+    assert told(folder)["instrument"]["format"]["time"] == {
+        "columns": [secs, nsecs],
+        "units": ["s", "ns"],
+    }
+    said = comments(folder)
+    assert f"{secs}, {nsecs} hold the time in s and ns" in said and "not used: Time" in said
+    results = chain.run(folder, tmp_path / "derived", "decode")
+    assert np.ptp(np.diff(results["decode/samples"]["time"])) < 1e-9

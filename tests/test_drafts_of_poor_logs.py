@@ -73,14 +73,16 @@ def test_columns_without_a_number_in_many_rows_are_named(gyros, tmp_path):
         rates = [f"{row}*{k % 256:02X}" for k, row in enumerate(rates)]
     lines = [f"{row},{rate}\n" for row, rate in zip(rows, rates, strict=True)]
     text = comments(drafted({"log.csv": NAMES + "".join(lines)}, tmp_path))
-    lost = "gx, gy, gz" if gyros == "in every second row" else "gz"
-    assert f"one row of ten or more, and not read: {lost};" in text
+    if gyros == "in every second row":
+        assert "one row of ten or more, and not read: gx, gy, gz;" in text
+    else:
+        assert "text, and not read: gz" in text
     assert "gyros: none are among the columns that are read" in text
 
 
 def test_a_log_without_rows_of_numbers_is_shown_by_a_line(tmp_path):
     text = "".join(f"{k}.0D+00 1.0D+00 2.0D+00 9.8D+00\n" for k in range(9))
-    with pytest.raises(Refusal, match=r"a line of it is '8\.0D\+00 1"):
+    with pytest.raises(Refusal, match=r"line \d+ of it is '8\.0D\+00 1"):
         drafted({"log.txt": text}, tmp_path)
 
 

@@ -313,11 +313,14 @@ def _time(kind: Kind, file: int) -> dict[str, Any]:
     timing = _timing(kind, file)
     column = None if timing.column is None else kind.columns.time[file]
     time: dict[str, Any] = {} if column is None else {"column": column, "unit": timing.unit}
+    pair = None if column is None else kind.parts[0].logs[file].pairs.get(column)
+    if pair is not None:
+        time = {"columns": list(pair.columns), "units": list(pair.units)}
     if timing.unit in (None, "sample"):
         time["rate_hz"] = timing.rate
     if timing.ticks_per_s is not None:
         time["ticks_per_s"] = timing.ticks_per_s
-    if timing.wraps_at:
+    if timing.wraps_at and pair is None:
         time["wraps_at"] = timing.wraps_at
     return time
 

@@ -129,6 +129,11 @@ def _evidence(kind: Kind) -> Iterator[str]:
             log=log.path.name,
             count=whole(log.left_out),
         )
+    yield from _not_used(kind)
+
+
+def _not_used(kind: Kind) -> Iterator[str]:
+    """The columns that are not read, with the reason, and those that are not needed."""
     if unread := [name for log in kind.recordings[0] for name in log.unread]:
         yield _(
             "without a number in one row of ten or more, and not read: {columns}; a sensor that is "
@@ -137,8 +142,10 @@ def _evidence(kind: Kind) -> Iterator[str]:
             columns=", ".join(map(str, unread)),
             key="gyro: {log: …, format: …}",
         )
-    if columns.unused:
-        yield _("not used: {columns}", columns=", ".join(map(str, columns.unused)))
+    if texts := [name for log in kind.recordings[0] for name in log.texts]:
+        yield _("text, and not read: {columns}", columns=", ".join(map(str, texts)))
+    if kind.columns.unused:
+        yield _("not used: {columns}", columns=", ".join(map(str, kind.columns.unused)))
 
 
 def _left_out(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
@@ -184,7 +191,12 @@ def _missing(kinds: Sequence[Kind], plan: Sequence[Manoeuvre]) -> Iterator[str]:
     if not with_gyros:
         yield (
             _("gyros: none are among the columns that are read")
-            if any(log.unread for kind in kinds for logs in kind.recordings for log in logs)
+            if any(
+                [*log.unread, *log.texts]
+                for kind in kinds
+                for logs in kind.recordings
+                for log in logs
+            )
             else _("gyros: none are recorded")
         )
     elif not positions:

@@ -34,6 +34,7 @@ MINNUMBERS = 3  # in a row of data
 USUAL = 0.9  # share of rows in which a column of numbers holds one
 DELIMITERS, DECIMALS = (None, ",", ";", "\t"), (".", ",")
 QUOTED_COMMA = re.compile(r'"[+-]?\d+,\d+",|,"[+-]?\d+,\d+"')
+NO_NUMBER = ("", "nan", "na", "n/a", "null")  # in lower case, among the numbers of a column
 COMMENTS = ("#", "//", "%")
 _DATE = re.compile(
     r"(\d{4}-?\d\d?-?\d\d?[T ]\d\d?:?\d\d?(:?\d\d?([.,]\d+)?)?(Z|[+-]\d\d:?\d\d)?)"
@@ -83,7 +84,8 @@ def text_layout(path: Path) -> TextLayout | None:
     if labelled and labelled >= plain.rows:
         bare = [without_names(line.encode()).decode() for line in lines]
         if (separated := _separated(bare)).rows:
-            return _layout(bare, separated, labels)
+            found = _layout(bare, separated, labels)
+            return replace(found, header=lines[: len(found.header)])
     return _layout(lines, plain) if plain.rows else None
 
 
@@ -163,7 +165,7 @@ def _layout(
 
     numbers = holding(lambda text: is_number(text, decimal))
     dates = holding(_DATE.fullmatch)
-    some = [[text for text in own if text] for own in fields]
+    some = [[text for text in own if text.lower() not in NO_NUMBER] for own in fields]
     sparse = [n for n, own in enumerate(some) if all(is_number(text, decimal) for text in own)]
     words = [n for n in range(len(fields)) if n not in numbers + dates + sparse]
     header = lines[:first]
@@ -203,13 +205,23 @@ SENT_SIGNS = (1, -1, 1, 1, -1, 1)
 
 
 @dataclass(frozen=True)
+class Pair:
+    """Two columns that hold one time: whole seconds, and the fraction in another unit."""
+
+    columns: tuple[Name, Name]
+    units: tuple[str, str]
+
+
+@dataclass(frozen=True)
 class RawLog:
     """A log: `columns` and `words` by the name, or number from 1, of the campaign file.
 
     `layout`: what the format of the campaign file states beside the columns; `header`: the lines
     before the data; `columns`: (n,) numbers each, NaN where there is none; `words`: n texts each,
-    of a few different ones; `dates`: columns of dates, in s; `unread`: columns of none of these;
-    `left_out`: rows at the end of the file that hold no samples, and are not among these.
+    of a few different ones; `dates`: columns of dates, in s; `unread`: columns that hold numbers
+    in some rows only; `texts`: columns of other texts; `left_out`: rows at the end of the file
+    that hold no samples, and are not among these; `pairs`: of a column that the file holds as two,
+    whole units of time and a fraction, these two and their units.
     """
 
     path: Path
@@ -219,7 +231,9 @@ class RawLog:
     words: Mapping[Name, Sequence[str]] = field(default_factory=dict)
     dates: Sequence[Name] = ()
     unread: Sequence[Name] = ()
+    texts: Sequence[Name] = ()
     left_out: int = 0
+    pairs: Mapping[Name, "Pair"] = field(default_factory=dict)
 
     @property
     def kind(self) -> str:
@@ -254,6 +268,44 @@ def raw_log(path: Path) -> RawLog:
     Refusal
         where no columns of numbers are in it
     """
+    return _with_whole_times(_as_it_stands(path))
+
+
+SECONDS = re.compile(r"(?P<stem>.*?)(?:secs?|seconds|tv_sec)", re.IGNORECASE)
+FRACTIONS = (
+    ("ns", 1e9, re.compile(r"(?:nsecs?|nanosecs?|nanoseconds?|tv_nsec)", re.IGNORECASE)),
+    ("us", 1e6, re.compile(r"(?:usecs?|microsecs?|microseconds?|tv_usec)", re.IGNORECASE)),
+)
+
+
+def _with_whole_times(log: RawLog) -> RawLog:
+    """The log with one column for each two of seconds and their fraction, as ROS has them."""
+    columns, pairs = dict[Name, Array](), dict[Name, Pair]()
+    parts = {part: pair for pair in _pairs(log) for part in pair[0].columns}
+    for name, values in log.columns.items():
+        if name not in parts:
+            columns[name] = values
+        elif name == parts[name][0].columns[0]:
+            pair, time = parts[name]
+            both = ", ".join(map(str, pair.columns))
+            columns[both], pairs[both] = time, pair
+    return replace(log, columns=columns, pairs=pairs) if pairs else log
+
+
+def _pairs(log: RawLog) -> Iterator[tuple[Pair, Array]]:
+    """Columns of whole seconds and of their fraction, by their names and values; and both in s."""
+    for name, whole in log.columns.items():
+        seconds = SECONDS.fullmatch(str(name))
+        if seconds is None or (finite(whole) % 1).any():
+            continue
+        for (other, part), (unit, ticks, pattern) in product(log.columns.items(), FRACTIONS):
+            if len(part) == len(whole) and str(other).startswith(seconds["stem"]):
+                own, named = finite(part), pattern.fullmatch(str(other), len(seconds["stem"]))
+                if named and own.min() >= 0 and 1 < own.max() <= ticks and not (own % 1).any():
+                    yield Pair((name, other), ("s", unit)), whole + part / ticks
+
+
+def _as_it_stands(path: Path) -> RawLog:
     names = column_reader.names_in(path)
     if names is not None:
         layout: dict[str, Any] = {"kind": "columns"}
@@ -271,7 +323,7 @@ def raw_log(path: Path) -> RawLog:
         raise Refusal(
             path.name,
             "",
-            _("no rows of three numbers or more; a line of it is '{line}'", line=_a_line(path)),
+            _("no rows of three numbers or more; {line}", line=_a_line(path)),
             _("the samples of an IMU: messages of a receiver, or rows of columns"),
             _(
                 "leave it out where it is no log of an IMU; another format has to be exported as "
@@ -282,10 +334,12 @@ def raw_log(path: Path) -> RawLog:
 
 
 def _a_line(path: Path) -> str:
-    """The last line of the beginning of a file."""
+    """The last line of the beginning of a file, with its number."""
     with path.open("rb") as file:
-        lines = file.read(HEAD_BYTES).strip().splitlines()
-    return quoted(lines[-1]) if lines else ""
+        lines = file.read(HEAD_BYTES).rstrip().splitlines()
+    if not lines:
+        return _("it is empty")
+    return _("line {number} of it is '{line}'", number=len(lines), line=quoted(lines[-1]))
 
 
 def _text_log(path: Path, found: TextLayout) -> RawLog:
@@ -302,9 +356,9 @@ def _text_log(path: Path, found: TextLayout) -> RawLog:
         words = _words(path, layout, column(place))
         if len(set(words)) <= MAX_WORDS:
             labels[column(place)] = words
-    others = map(column, sorted({*found.sparse, *found.words}))
-    unread = [name for name in others if name not in labels]
-    return RawLog(path, layout, columns, found.header, labels, dates, unread)
+    unread = [column(place) for place in found.sparse]
+    texts = [name for name in map(column, found.words) if name not in labels]
+    return RawLog(path, layout, columns, found.header, labels, dates, unread, texts)
 
 
 def _receiver_log(path: Path) -> RawLog | None:

@@ -236,6 +236,11 @@ class Scale:
         """One count, or one of the unit, in SI."""
         return CHANNEL_UNITS[self.unit] / (self.counts or 1.0)
 
+    @property
+    def size_in_degrees(self) -> float:
+        """How many counts are in 1 °/s, of gyros."""
+        return DEGREE / self.size
+
     def in_si(self, values: Array) -> Array:
         """Readings (n, 3) in SI, along the axes of the other sensor."""
         if not len(values):

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from commands.draft import full_scale
 from commands.draft.columns import Columns, Named, columns_of
 from commands.draft.groups import alike, recorded_together, runs_of, sensors_apart
 from commands.draft.raw_log import RawLog, without_tail
@@ -129,10 +130,16 @@ def _kind_by_clock(group: Sequence[Sequence[RawLog]], columns: Columns, timing: 
         return Kind(columns, timing, receiver.accel, receiver.gyro, parts, own, receiver)
     accel = accel_scale(own) if columns.accel else None
     _refuse_without_gravity(accel, columns, group)
+    if accel and columns.accel:
+        stated = full_scale.of_accel(group[0][columns.accel.file].header)
+        accel = full_scale.accel_in_range(accel, stated)
     turned = turning(own, accel.zero) if accel and columns.gyro else None
     gyro = None
     if columns.gyro:
         gyro = gyro_scale(own, turned, columns.gyro.columns, accel)
+        if not (timing.guessed and timing.unit in (None, "sample")):  # else the rate is not known
+            stated = full_scale.of_gyro(group[0][columns.gyro.file].header)
+            gyro = full_scale.gyro_in_range(gyro, stated, own, moved=turned is not None)
         if turned is not None:
             gyro, timing = _rate_by_motion(gyro, timing, turned, own)
     return Kind(columns, timing, accel, gyro, parts, own)

@@ -17,6 +17,7 @@ CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
 TIME = re.compile(
     r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]|^ms$|^us$|millis|micros", re.IGNORECASE
 )
+SENSORS_STAMP = re.compile(r"header[._]?stamp", re.IGNORECASE)  # of ROS; others are of arrival
 PACKETS = re.compile(r"packet|number|count|index|sequence|\bseq\b|frame|message", re.IGNORECASE)
 UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}  # ticks in a second
 TICKS = (1e4,)  # in a second, of clocks in no such unit: SampleTimeFine of Xsens
@@ -57,9 +58,10 @@ def time_of(log: RawLog) -> Name | None:
         for name, values in log.columns.items()
         if grows(values) and not _numbers_packets(name, values)
     ]
-    named = [name for name in growing if TIME.search(str(name))]
+    named = [name for name in growing if TIME.search(str(name)) or name in log.pairs]
     # A temperature T that rises stands still from row to row.
     named.sort(key=lambda name: np.mean(np.diff(finite(log.columns[name])) > 0) < MIN_ADVANCING)
+    named.sort(key=lambda name: name not in log.pairs and not SENSORS_STAMP.search(str(name)))
     return next(iter(named + growing), None)
 
 
@@ -156,7 +158,7 @@ def timing_of(
         timing = _without_time(column, "sample", stated, _("it counts samples"))
         return replace(timing, wraps_at=_wraps_at(counters))
     dated = column in logs[0].dates
-    clock = _Clock("iso8601", 1.0, _("it holds dates")) if dated else _clock(column, ticks, stated)
+    clock = _clock_of(logs[0], column, ticks, stated)
     why, rate = clock.why, clock.ticks_per_s / ticks
     if clock.guessed and not MIN_RATE <= rate <= MAX_RATE:  # such as days
         why = _(
@@ -207,6 +209,16 @@ def unit_of(ticks_per_s: float) -> str:
     return next((unit for unit, own in UNITS.items() if own == ticks_per_s), "tick")
 
 
+def _clock_of(log: RawLog, column: Name, ticks: float, stated: float | None) -> _Clock:
+    """The unit of a column: by what it holds, or by its name and the rate."""
+    if (pair := log.pairs.get(column)) is not None:
+        why = _("{columns} hold the time in {units}", columns=column, units=listed(pair.units))
+        return _Clock("s", 1.0, why)
+    if column in log.dates:
+        return _Clock("iso8601", 1.0, _("it holds dates"))
+    return _clock(column, ticks, stated)
+
+
 def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
     """The unit of a column with so many ticks from row to row.
 
@@ -242,16 +254,27 @@ def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
         return _Clock(unit_of(likely), likely, why, guessed=True, doubt=doubt)
     unit = SPELT.get(found[1].lower(), found[1].lower())
     named = UNITS[unit]
+    told = _("{column} counts {unit} by its name", column=column, unit=unit.replace("us", "µs"))
     plausible = MIN_RATE <= named / ticks <= MAX_RATE
     if (named == likely) or (plausible and not agrees):
-        return _Clock(unit, named, _("by its name"))
+        return _Clock(unit, named, told)
     if not agrees and not MIN_RATE <= likely / ticks <= MAX_RATE:
-        return _Clock(unit, named, _("by its name"))
+        return _Clock(unit, named, told)
     by_name, rate = significant(named / ticks), significant(likely / ticks)
     why = (
-        _("its name says {unit}, {named} Hz; the header states the rate", unit=unit, named=by_name)
+        _(
+            "the name of {column} says {unit}, {named} Hz; the header states the rate",
+            column=column,
+            unit=unit,
+            named=by_name,
+        )
         if agrees
-        else _("its name says {unit}, {named} Hz, the rate of no IMU", unit=unit, named=by_name)
+        else _(
+            "the name of {column} says {unit}, {named} Hz, the rate of no IMU",
+            column=column,
+            unit=unit,
+            named=by_name,
+        )
     )
     doubt = _(
         "its name says {unit}, by which there are {named} samples a second; the draft takes ticks "

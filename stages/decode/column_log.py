@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.formats.columns import column_reader
-from inertial.formats.columns.column_layout import ticks_per_second
+from inertial.formats.columns.column_layout import has_stamps, ticks_per_second
 from inertial.formats.columns.data_rows import Rows
 from inertial.signal.regular_clock import RegularClock, are_regular, regular_clock
 from inertial.signal.scale_factor import bits_without_sign, signed
 from inertial.signal.stamps import sent_again
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import significant
 from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
 from stages.decode.decoded import ANGLE_UNITS, Continuous, Decoded, first_of, interval_of, on_axis
@@ -117,7 +117,7 @@ class ColumnLog:
         time = self._layout.get("time")
         if time is None:
             return 0.0, None
-        if time.get("column") is None:  # rows are counted from the first, though it be refused
+        if not has_stamps(time):  # rows are counted from the first, though it be refused
             return 0.0, 1 / self._ticks
         first = first_of(each.ticks[~each.repeated] for each in self._stamps())
         if not len(first):
@@ -141,7 +141,7 @@ class ColumnLog:
                 _(
                     "{rate} samples a second, by stamps in {unit} that are {ticks} apart",
                     rate=significant(self._ticks / mean),
-                    unit=time["unit"],
+                    unit=time.get("unit") or listed(time["units"]),
                     ticks=significant(mean),
                 ),
                 _("at most {rate} a second", rate=f"{1 / MIN_INTERVAL:g}"),

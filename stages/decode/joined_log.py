@@ -26,6 +26,7 @@ import numpy as np
 
 from inertial.arrays import Array, Integers
 from inertial.formats.account import DECODED, NOT_SELECTED, Account, RefusedLine
+from inertial.formats.columns.column_layout import has_stamps
 from inertial.sensors import FILE_KEYS
 from inertial.tables import AXES
 from inertial.tables.errors import Refusal
@@ -84,8 +85,10 @@ class _Readings:
 
 def of_both_sensors(layout: Mapping[str, Any], file: str) -> dict[str, Any] | None:
     """The layout of a log whose rows hold either sensor, as of a log of each; None of others."""
-    timed = (layout.get("time") or {}).get("column") is not None
-    if not (timed and all("rows" in layout.get(key, {}) for key in FILE_KEYS.values())):
+    if not (
+        has_stamps(layout.get("time"))
+        and all("rows" in layout.get(key, {}) for key in FILE_KEYS.values())
+    ):
         return None
     own = {key: value for key, value in layout.items() if key != "gyro"}
     gyro = {key: value for key, value in layout.items() if key not in ("accelerometer", "label")}

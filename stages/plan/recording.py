@@ -371,11 +371,40 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
 RATES = {"sample": "rate_hz", "tick": "ticks_per_s"}  # what a time in this unit requires
 
 
+UNITS = ("s", "ms", "us", "ns")  # of time, from the longest
+
+
+def _check_two_columns(file: YamlFile, key: Key, time: dict[str, Any]) -> None:
+    """A time in two columns has a unit for each, the longer first, and nothing else."""
+    example = "{columns: [secs, nsecs], units: [s, ns]}"
+    columns, units = time.get("columns", []), time.get("units", [])
+    others = [own for own in time if own not in ("columns", "units")]
+    found = ""
+    if len(columns) < 2 or len(units) < 2:
+        found = _("columns without units") if columns else _("units without columns")
+    elif others:
+        found = _("columns, and beside them {key}", key=others[0])
+    elif columns[0] == columns[1]:
+        found = _("column {column} twice", column=columns[0])
+    elif UNITS.index(units[0]) >= UNITS.index(units[1]):
+        found = _("{units}, of which the first is not the longer", units=", ".join(units))
+    if found:
+        raise file.refuse_text(
+            key,
+            found,
+            _("whole seconds and their fraction, such as {example}", example=example),
+            _("state both columns with a unit for each, or one column with its unit"),
+        )
+
+
 def _check_text(file: YamlFile, key: Key, layout: dict[str, Any]) -> None:
     """Its time must have a unit, and a number must not hold what separates two of them."""
     time = layout.get("time") or {}
     rate = RATES.get(time.get("unit", ""))
-    if time.get("column") is None:
+    if "columns" in time or "units" in time:
+        _check_two_columns(file, [*key, "time"], time)
+        missing = []
+    elif time.get("column") is None:
         missing = [] if not time or "rate_hz" in time else ["rate_hz"]
     else:
         missing = [each for each in ("unit", rate) if each and each not in time]

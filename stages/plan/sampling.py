@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from inertial.campaign.records import Row
+from inertial.formats.columns.column_layout import has_stamps
 from inertial.sensors import FILE_KEYS
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
@@ -67,7 +68,7 @@ def with_rate(
                 ),
             )
         return layout | {"time": {SAMPLE_RATE: rate}}
-    if time and rate and (time.get("column") is None or time.get("unit") == "sample"):
+    if time and rate and (not has_stamps(time) or time.get("unit") == "sample"):
         return layout | {"time": {**time, SAMPLE_RATE: rate}}
     return layout
 

@@ -17,6 +17,7 @@ from inertial.text.messages import _
 ISO_8601 = "iso8601"  # dates with the time of the day, which are read as nanoseconds
 EXACT = ("ns", ISO_8601)  # stamps that a floating-point number does not hold to the last digit
 _TICKS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9, ISO_8601: 1e9}  # in a second
+NANOSECONDS = {"s": 10**9, "ms": 10**6, "us": 10**3, "ns": 1}  # in one of a unit
 _NAMES_SHOWN = 60  # of a container, that may have thousands
 
 
@@ -53,6 +54,8 @@ class ColumnLayout:
     by_name: bool  # some column goes by name, so the header has their number
     time_unit: str = "s"
     decimal: str = "."  # between the digits of a number in a text
+    fraction: Column | None = None  # the rest of the time, where two columns hold it
+    fraction_unit: str = "ns"
 
     @property
     def triads(self) -> tuple[Triad, Triad]:
@@ -62,19 +65,23 @@ class ColumnLayout:
     @property
     def of_every_row(self) -> list[Column]:
         """The columns that hold a number in every row; a temperature may be unknown."""
-        columns = (self.time, self.mean_of, self.table_angle)
+        columns = (self.time, self.fraction, self.mean_of, self.table_angle)
         return [column for column in columns if column]
 
     @property
-    def exact_time(self) -> Column | None:
+    def exact_time(self) -> tuple[Column, ...]:
         """The time, where a floating-point number would not hold all its digits."""
-        return self.time if self.time_unit in EXACT else None
+        if self.time is None:
+            return ()
+        if self.fraction is not None:
+            return self.time, self.fraction
+        return (self.time,) if self.time_unit in EXACT else ()
 
     @property
     def texts(self) -> list[Column]:
         """The columns whose text is required."""
         rows = [column for triad in self.triads for column, _ in triad.rows]
-        return [*self.label, *rows, *([self.exact_time] if self.exact_time else [])]
+        return [*self.label, *rows, *self.exact_time]
 
     @property
     def number_indices(self) -> list[int]:
@@ -127,9 +134,16 @@ def names_in_header(line: str, delimiter: str | None) -> list[str]:
     return names[:-1] if len(names) > 1 and not names[-1] else names
 
 
+def has_stamps(time: Mapping[str, Any] | None) -> bool:
+    """Whether the time of a layout is in a column, or in two, and not the number of the row."""
+    return time is not None and (time.get("column") is not None or "columns" in time)
+
+
 def ticks_per_second(layout: Mapping[str, Any]) -> float:
     """How many ticks of the log's time make a second; a tick is a sample where it counts these."""
     time = layout["time"]
+    if "columns" in time:
+        return _TICKS["ns"]
     if time.get("column") is None or time["unit"] == "sample":
         return float(time["rate_hz"])
     if time["unit"] == "tick":
@@ -157,18 +171,22 @@ def column_layout(
     """
     finder = _Finder(names, file, container, len(names) if container else most)
     time = layout.get("time")
+    of_time = finder.time(time)
+    units = (time or {}).get("units") or [(time or {}).get("unit", "s"), "ns"]
     return ColumnLayout(
         accelerometer=finder.triad("accelerometer", layout.get("accelerometer")),
         gyro=finder.triad("gyro", layout.get("gyro")),
-        counts_rows=time is not None and time.get("column") is None,
-        time=finder.column_of("time", time),
+        counts_rows=time is not None and not has_stamps(time),
+        time=of_time[0],
         mean_of=finder.column("mean_of", layout.get("mean_of")),
         table_angle=finder.column_of("table_angle", layout.get("table_angle")),
         temperature=finder.column_of("temperature", layout.get("temperature")),
         label=tuple(finder.known("label", name) for name in layout.get("label") or ()),
         by_name=finder.by_name,
-        time_unit=(time or {}).get("unit", "s"),
+        time_unit=units[0],
         decimal=layout.get("decimal", "."),
+        fraction=of_time[1],
+        fraction_unit=units[1],
     )
 
 
@@ -196,6 +214,13 @@ class _Finder:
                 for name in stated.get("sigma_columns", [None] * 3)
             ),
         )
+
+    def time(self, stated: Mapping[str, Any] | None) -> tuple[Column | None, Column | None]:
+        """The column of the time, and that of its fraction, where it is one of its own."""
+        if stated is None or "columns" not in stated:
+            return self.column_of("time", stated), None
+        first, second = (self.known("time.columns", name) for name in stated["columns"])
+        return first, second
 
     def column_of(self, key: str, stated: Mapping[str, Any] | None) -> Column | None:
         return None if stated is None else self.column(f"{key}.column", stated.get("column"))

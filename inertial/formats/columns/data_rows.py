@@ -7,7 +7,13 @@ import numpy as np
 
 from inertial.arrays import Array, Booleans, Integers
 from inertial.formats.account import Account, RefusedLine, quoted
-from inertial.formats.columns.column_layout import ISO_8601, Column, ColumnLayout, Triad
+from inertial.formats.columns.column_layout import (
+    ISO_8601,
+    NANOSECONDS,
+    Column,
+    ColumnLayout,
+    Triad,
+)
 from inertial.formats.columns.column_values import ColumnValues
 from inertial.text.messages import _
 
@@ -76,10 +82,12 @@ def sort_rows(
     intact = np.ones(count, bool)
     intact[list(reasons)] = False
     exact = columns.exact_time
-    numbers = {each: fields[each.index].numbers() for each in columns.of_numbers if each != exact}
+    numbers = {
+        each: fields[each.index].numbers() for each in columns.of_numbers if each not in exact
+    }
     held = [_held(triad, fields, numbers, count) for triad in columns.triads]
     selected = _selected(columns, held)
-    wanted = [(column, selected) for column in columns.of_every_row if column != exact]
+    wanted = [(column, selected) for column in columns.of_every_row if column not in exact]
     axes = [_axes(*each, numbers) for each in zip(columns.triads, held, strict=True)]
     of_triads = zip(columns.triads, held, strict=True)
     wanted += [(column, holds) for triad, holds in of_triads for column in triad.columns if column]
@@ -94,11 +102,10 @@ def sort_rows(
             )
             intact[row] = False
 
-    if exact is not None:
-        iso = columns.time_unit == ISO_8601
-        stamps, known = fields[exact.index].nanoseconds(iso=iso)
-        whole = _("a time such as 2026-11-02T09:30:00.005Z") if iso else _("nanoseconds")
-        refuse(exact, selected & ~known, whole)
+    stamps = np.zeros(count, np.int64)
+    for column, own, known, expected in _exact_parts(columns, fields):
+        refuse(column, selected & ~known, expected)
+        stamps += own
     for column, needed in wanted:
         refuse(column, needed & ~np.isfinite(numbers[column]), _("a finite number"))
     if warm := columns.temperature:
@@ -111,7 +118,7 @@ def sort_rows(
     def ticks() -> Array | Integers | None:
         if columns.counts_rows:
             return record.astype(np.float64)
-        return stamps[taken] if exact is not None else of(columns.time)
+        return stamps[taken] if exact else of(columns.time)
 
     def of(column: Column | None) -> Array | None:
         return None if column is None else numbers[column][taken]
@@ -133,6 +140,38 @@ def sort_rows(
         gyro_sigma=_sigmas(columns.gyro, numbers, taken),
     )
     return SortedRows(rows, taken, intact & ~selected, reasons)
+
+
+def _exact_parts(
+    columns: ColumnLayout, fields: Mapping[int, ColumnValues]
+) -> Iterator[tuple[Column, Integers, Booleans, str]]:
+    """Each column of a time that is exact: ns, which are known, (n,) each, and what is expected."""
+    time, fraction = columns.time, columns.fraction
+    if time is not None and fraction is not None:
+        size, part = (NANOSECONDS[unit] for unit in (columns.time_unit, columns.fraction_unit))
+        most = (1 << 62) // size
+        for column, unit, limits in (
+            (time, size, (-most, most)),
+            (fraction, part, (0, size // part)),
+        ):
+            own, known = _whole_numbers(fields[column.index], *limits)
+            whole = _("a whole number from {least} to {most}", least=limits[0], most=limits[1])
+            yield column, unit * own, known, whole
+        return
+    for column in columns.exact_time:
+        iso = columns.time_unit == ISO_8601
+        stamps, known = fields[column.index].nanoseconds(iso=iso)
+        expected = _("a time such as 2026-11-02T09:30:00.005Z") if iso else _("nanoseconds")
+        yield column, stamps, known, expected
+
+
+def _whole_numbers(values: ColumnValues, least: int, most: int) -> tuple[Integers, Booleans]:
+    """The whole numbers of a column, to the last digit, 0 where there is none; and where one is."""
+    found, known = values.nanoseconds(iso=False)
+    numbers = values.numbers()
+    known = known & np.isfinite(numbers) & (found >= least) & (found <= most)
+    known &= np.where(known, numbers, 0.0) % 1 == 0
+    return np.where(known, found, 0), known
 
 
 def _held(
