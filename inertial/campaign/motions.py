@@ -156,7 +156,8 @@ def in_samples(
     if m.rate is not None and m.acceleration is not None and steady.any():
         after = so_far(measured)
         stated = np.copysign(m.rate, m.angle)
-        read = float(np.median(measured[steady])) / step * m.angle / float(after[-1])
+        share = m.angle / after[-1] if after[-1] else np.nan  # of what the gyros read
+        read = float(np.median(measured[steady]) / step * share)
         rate_had = read if abs(read / stated - 1) > MAX_RATE_OFF else stated
         middle = float(np.mean(ends[steady] - (after[steady] - m.angle / 2) / rate_had))
         profile = Profile(abs(m.angle), abs(rate_had), m.acceleration)
