@@ -163,6 +163,39 @@ def test_by_hand_a_support_that_tilts_is_no_drift_of_the_accelerometers(seed):
     assert on_table.walk == pytest.approx(1e-5 * np.sqrt(2 / 3), rel=0.3)
 
 
+@pytest.mark.parametrize("shaken", [0, 2])
+@pytest.mark.parametrize("disturbance", ["swing", "creep"])
+def test_by_hand_a_rest_that_is_shaken_or_creeps_is_not_in_the_noise_of_all(shaken, disturbance):
+    """Of twelve rests of 5 s one swings at 1.3 Hz by 30 times the noise of 0.4 s, or creeps as far.
+
+    From one sample to the next it is as the others; it was in their noise, eight times as much.
+    """
+    rate, samples, rests = 100.0, 500, 12
+    sigma = np.repeat([WHITE["accel"], WHITE["gyro"]], 3) * np.sqrt(rate)
+    values = sigma * np.random.default_rng(shaken).standard_normal((rests * samples, 6))
+    time = np.arange(samples) / rate
+    course = np.sin(2 * np.pi * 1.3 * time) if disturbance == "swing" else time
+    own = slice(shaken * samples, (shaken + 1) * samples)
+    values[own] += 5.0 * sigma * course[:, None]
+    inputs = of_stretches(values, campaign=pd.DataFrame({"table": ["by hand"]}))
+    starts = np.arange(rests) * samples
+    inputs["segments"] = pd.DataFrame(
+        {"manoeuvre": [f"m{i}" for i in range(rests)], "phase": "rest", "log": "a"}
+        | {"from_record": starts, "to_record": starts + samples}
+    )
+    inputs["clocks"] = inputs["clocks"].assign(interval=1 / rate, end=len(values) / rate)
+    made = noise_of(inputs)
+    terms = made["terms"].set_index(["channel", "term"])
+    for channel in tables.CHANNELS:
+        found, true = terms.loc[(channel, "white_noise")], WHITE[channel.split("_")[0]]
+        assert found["value"] == pytest.approx(true, rel=0.05)
+        assert not terms.loc[channel, "detected"].drop("white_noise").any()
+    allan = made["allan"]
+    true = allan["channel"].str.split("_").str[0].map(WHITE) / np.sqrt(allan["tau"])
+    assert (np.abs(allan["deviation"] / true - 1) < 5 / np.sqrt(allan["degrees"])).all()
+    assert set(allan["stretches"]) == {rests - 1}
+
+
 def test_where_none_is_seen_the_instability_of_the_data_sheet_enters_as_far_as_it_may_be(hidden):
     """2e-6 m/s² are far below what the rests show; 1e-4 rad/s are excluded by them."""
     levels, terms = NoiseLevels(hidden["levels"]), hidden["terms"].set_index(["channel", "term"])

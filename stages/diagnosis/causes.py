@@ -66,8 +66,7 @@ REPAIRED, MODELLED, CURVE, MASKED = "repaired", "modelled", "curve", "masked"
 INTERPOLATED, LEFT_OUT, NONE = "interpolated", "left_out", "none"
 APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were made with
 GOOD_TO_KNOW, SPOILS = 1, 3  # severity of a finding
-ENCODER_JUMP = "encoder_jump"  # which segment takes out of the angles
-QUANTISATION = "quantisation"
+ENCODER_JUMP, QUANTISATION = "encoder_jump", "quantisation"  # the former segment takes out
 SWAPPED = "manoeuvre_swapped"
 DIFFERENT_THINGS = ("manoeuvre_missing", SWAPPED)  # each is one of its own
 
@@ -399,7 +398,8 @@ class Evidence:
             return NONE, moves, None
         in_matrix = cause.stage == COUNTS and int(cause.row["severity"]) < SPOILS
         if in_matrix or has_own_error(cause) or _rounds(cause):  # or in the covariance
-            return LEFT_OUT if in_matrix and cause.manoeuvre else MODELLED, None, None
+            left_out = cause.manoeuvre and (in_matrix or cause.cause == "moved_while_read")
+            return LEFT_OUT if left_out else MODELLED, None, None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]
         if cause.cause == "gap":

@@ -15,16 +15,19 @@ from inertial.campaign.findings import Finding
 from inertial.campaign.passages import RecordedPassage, passages_of
 from inertial.campaign.records import Part, omissions, with_mount
 from inertial.campaign.unknown_attitude import (
+    MAX_NAMED,
+    MOVED,
     FreeStaticPosition,
     fitted_to,
     free_static_positions,
 )
-from inertial.estimation.between_positions import Prior, fit
+from inertial.estimation.between_positions import Prior, Stop, fit
 from inertial.estimation.gyroscopes import BIAS, PRIOR_SIGMA
 from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate
 from inertial.signal.scale_factor import MAX_SCALE_ERROR
+from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.tables import AXES, GYRO
-from inertial.text.messages import _
+from inertial.text.messages import _, listed, plural
 from inertial.text.numbers import significant
 from inertial.text.parameters import FREE, PARTS
 from inertial.text.units import DEGREE
@@ -46,6 +49,8 @@ UNIT = "wrong_scale_factor"
 MAX_BY_HAND, FASTEST = 40.0, 0.99  # rad/s, of the block at this quantile: more no hand turns
 MAX_LEVEL = 0.5  # of gravity along an axis that is level
 MIN_TURN = np.radians(45.0)  # about it, that would determine its parameters
+MAX_MOVED = 0.25  # of the rests: where more are left out, it is not that single ones were moved
+MIN_MOVED_SIGMA = 10.0  # of the others, by which one is off: as of the accelerometers
 MIN_SIGMAS = 5.0  # by which a scale factor is further off than that of any gyro
 
 
@@ -76,10 +81,65 @@ def add_free_gyros(estimates: Estimates, data: CampaignData) -> list[Finding]:
     broken += [replace(parts[i], reason=reason[i]) for i in off]
     used = [part for i, part in enumerate(parts) if i not in off]
     estimates.add_fit(FREE, fitted, used, left_out + broken)
+    moved = [i for i in off if i < len(stops)]
+    raised = list(_moved(stops, moved, data.mount))
     turning = np.nanquantile(np.abs(data.blocks[GYRO].to_numpy(np.float64)), FASTEST)
     if turning > MAX_BY_HAND:
-        return [_unit(float(turning), data.mount)]
-    return list(_count_size(fitted.estimate, data.mount))
+        return [*raised, _unit(float(turning), data.mount)]
+    return [*raised, *_count_size(fitted.estimate, data.mount)]
+
+
+def _moved(stops: Sequence[Stop], moved: Sequence[int], mount: str) -> Iterator[Finding]:
+    """A finding about the rests, by number, in which the gyros read otherwise than in all others.
+
+    None where that is so of many, or by little more than the others scatter by.
+    """
+    if not 0 < len(moved) <= MAX_MOVED * len(stops):
+        return
+    means, sigmas = np.array([[stop.mean, stop.sigma] for stop in stops]).swapaxes(0, 1)
+    others = np.delete(means, moved, axis=0)
+    recorded = np.isfinite(others).any(axis=0)
+    usual = np.nanmedian(others[:, recorded], axis=0)
+    scatter = MAD_TO_SIGMA * np.nanmedian(np.abs(others[:, recorded] - usual), axis=0)
+    off = np.abs(means[:, recorded] - usual)[moved]
+    clear = off > MIN_MOVED_SIGMA * np.maximum(scatter, sigmas[:, recorded][moved])
+    moved = [moved[i] for i in np.flatnonzero(clear.any(axis=1)).tolist()]
+    if not moved:
+        return
+    sizes = np.nanmax(off[clear.any(axis=1)], axis=1)
+    names = [stop.forces.name for stop in stops]
+    largest, size = moved[int(np.argmax(sizes))], float(sizes.max())
+    told = [names[i] for i in moved]
+    if len(told) > MAX_NAMED:
+        told = [*told[:MAX_NAMED], _("{count} more", count=len(told) - MAX_NAMED)]
+    yield Finding(
+        id="/".join(("gyroscope", with_mount(MOVED, mount), "all")),
+        cause=MOVED,
+        mount=mount,
+        sensor="gyro",
+        manoeuvre=names[largest],
+        count=len(moved),
+        size=size,
+        unit="rad/s",
+        severity=1,
+        sentence=plural(
+            "In the position {names} the gyros read {size}°/s otherwise than in all others: the "
+            "IMU was not at rest there.",
+            "In {count} positions ({names}) the gyros read up to {size}°/s otherwise than in all "
+            "others: the IMU was not at rest there.",
+            len(moved),
+            names=listed(told),
+            size=significant(size / DEGREE, 2),
+        ),
+        consequence=_(
+            "Used, they would move the biases of the gyros, and the angles of the motions before "
+            "and after them."
+        ),
+        action=_(
+            "They are left out of the gyros. The IMU was shaken while it was read, or it slipped "
+            "or crept on what it lay on: record them again, on something hard."
+        ),
+    )
 
 
 def _cures(moving: Sequence[RecordedPassage], broken: Sequence[Part]) -> dict[str, str]:

@@ -154,8 +154,9 @@ def noise(
         clocks_of(clocks),
         carried,
         (from_hz, to_hz),
+        by_hand,
     )
-    noises = list(static.noises(by_hand, counts))
+    noises = list(static.noises(counts))
     _without_quantisation(spectra, noises)
     shapes = shapes_of(spectra)
     rows = [
@@ -229,11 +230,12 @@ def _read(
     clock: Mapping[str, Clock],
     carried: frozenset[tuple[str, str]],
     band: tuple[float, float],
+    by_hand: bool,
 ) -> tuple[dict[tuple[str, str], Spectra], StaticStretches, Array]:
     """From one pass over the samples: spectra by manoeuvre and phase, rests, sizes of counts."""
     lengths = [row["to_record"] - row["from_record"] for row in quiet if row["phase"] != "steady"]
     spectra: dict[tuple[str, str], Spectra] = {}
-    static = StaticStretches(max(lengths, default=0))
+    static = StaticStretches(max(lengths, default=0), by_hand)
     number = 0
     changes = np.full(len(tables.CHANNELS), np.inf)
     levels_seen: list[Array] = []

@@ -6,6 +6,9 @@ for it has an attitude of its own. Stretches in which the same channels of a sen
 the same rate, with about the same scatter, are pooled; of several such pools the one with the most
 time counts. Where somebody drills next door for an hour the other hours tell the noise.
 
+By hand an IMU may be shaken, or creep, in one rest so slowly that no two samples beside each other
+show it. So there the means over longer times must scatter alike, too.
+
 A support that tilts by ε drifts in an accelerometer by g ε where that is level, and by next to
 nothing where it is upright. So by hand, on a desk or a cushion, a drift is the accelerometer's own
 only if it drifts in the stretches in which it is upright, too; these are pooled besides.
@@ -25,6 +28,7 @@ from inertial.estimation.low_pass import LowPass
 from inertial.estimation.multiresolution import MIN_WHOLE, Powers, Spectrum, WelchSums, segment_for
 from inertial.estimation.noise_model import TERMS, NoiseModel
 from inertial.estimation.noise_terms import QUANTISATION, NoiseTerms, noise_terms
+from inertial.estimation.probability import f_sf
 from inertial.sensors import COLUMNS
 from inertial.tables import AXES
 
@@ -105,6 +109,60 @@ def of_one_manoeuvre(steps: Sequence[Step], channels: int) -> Booleans:
     return found
 
 
+# ---- Whether a stretch is as quiet as others: variances of means over 1, 2, 4, … samples.
+
+LEAST_OF_MEANS = 8  # of which a variance is known well enough
+SAME_VARIANCE = 9.0  # ratio of variances that are alike: desks and floors differ by less
+MAX_CHANCE = 1e-4  # that of noise alone two variances differ so
+INDEPENDENT = 2 / 3  # degrees of freedom of white noise for each difference of successive means
+
+
+@dataclass
+class SlowScatter:
+    """Squares of half the differences of successive means, by averaging time 2^k samples.
+
+    `squares`: (k, c) each; `counts`: (k,), differences in them.
+    """
+
+    squares: Array
+    counts: Array
+
+    @classmethod
+    def of(cls, values: Array) -> "SlowScatter":
+        """Of the samples (n, c) of one stretch."""
+        squares, counts = [], []
+        means = values
+        while len(means) >= LEAST_OF_MEANS:
+            squares.append((np.diff(means, axis=0) ** 2).sum(axis=0) / 2)
+            counts.append(len(means) - 1.0)
+            even = means[: len(means) // 2 * 2]
+            means = (even[::2] + even[1::2]) / 2
+        return cls(np.reshape(squares, (-1, values.shape[1])), np.array(counts))
+
+    def add(self, other: "SlowScatter") -> None:
+        """The stretches of the other, too."""
+        few, more = sorted((self, other), key=lambda each: len(each.counts))
+        squares, counts = more.squares.copy(), more.counts.copy()
+        squares[: len(few.counts)] += few.squares
+        counts[: len(few.counts)] += few.counts
+        self.squares, self.counts = squares, counts
+
+    def alike(self, other: "SlowScatter") -> bool:
+        """Whether no variance is far from that of the other, and by more than chance."""
+        both = min(len(self.counts), len(other.counts))
+        if not both:
+            return True
+        counts = np.array([self.counts[:both], other.counts[:both]])[:, :, None]
+        variance = np.array([self.squares[:both], other.squares[:both]]) / counts
+        louder = np.take_along_axis(counts, variance.argmax(axis=0)[None], axis=0)[0]
+        quieter = counts.sum(axis=0) - louder
+        low, high = variance.min(axis=0), variance.max(axis=0)
+        far = (high > SAME_VARIANCE * low) & (low > 0)  # a channel that stands still tells nothing
+        ratio = high / np.where(low > 0, low, np.inf)
+        chance = f_sf(ratio, INDEPENDENT * louder, INDEPENDENT * quieter)
+        return not bool((far & (chance < MAX_CHANCE)).any())
+
+
 # ---- All static stretches together.
 
 StaticStretch = tuple[str, str, int]  # manoeuvre, phase, and its number there
@@ -125,7 +183,8 @@ UNITS = {  # of quantisation, white noise, bias instability, random walk and ram
 class _Pool:
     """The stretches in which some channels of a sensor are recorded at one rate.
 
-    `scatter`: (c,), from sample to sample, where the first stretch begins; `upright`: of the
+    `scatter`: (c,), from sample to sample, where the first stretch begins; `slow`: where each
+    begins, by hand; `upright`: of the
     stretches in which an accelerometer is upright, by its number; `standing`: which are now.
     """
 
@@ -136,6 +195,7 @@ class _Pool:
     sums: AllanSums
     powers: Powers
     welch: WelchSums
+    slow: SlowScatter
     upright: dict[int, Powers] = field(default_factory=dict)
     stretch: StaticStretch | None = None
     standing: tuple[int, ...] = ()
@@ -162,6 +222,7 @@ class _Pool:
             AllanSums(channels, factors),
             Powers(channels, interval),
             WelchSums(channels, interval, segment_for([longest])),
+            SlowScatter.of(np.zeros((0, channels))),
         )
 
     def add(self, stretch: StaticStretch, values: Array) -> None:
@@ -208,10 +269,12 @@ class _Pool:
 class StaticStretches:
     """Takes in the samples at rest piece by piece, in bounded memory.
 
-    `longest`: records of the longest stretch, as planned from the segments.
+    `longest`: records of the longest stretch, as planned from the segments; `by_hand`: whether the
+    support may tilt.
     """
 
     longest: int
+    by_hand: bool = False
     _pools: list[_Pool] = field(default_factory=list)
 
     def add(self, stretch: StaticStretch, values: Array, interval: float) -> None:
@@ -242,17 +305,20 @@ class StaticStretches:
                 return pool  # it goes on
         enough = len(values) >= MIN_WHOLE
         scatter = np.diff(values, axis=0).std(axis=0) if enough else np.zeros(values.shape[1])
-        for pool in known:
-            if not enough or pool.takes(*kind, scatter):
-                return pool
-        pool = _Pool.of(*kind, scatter, self.longest)
-        self._pools.append(pool)
+        slow = SlowScatter.of(values if enough and self.by_hand else values[:0])
+        for pool in sorted(known, key=lambda pool: -pool.samples):  # a short one is like many
+            if not enough or (pool.takes(*kind, scatter) and pool.slow.alike(slow)):
+                break
+        else:
+            pool = _Pool.of(*kind, scatter, self.longest)
+            self._pools.append(pool)
+        pool.slow.add(slow)
         return pool
 
-    def noises(self, by_hand: bool, counts: Array) -> Iterator["SensorNoise"]:
+    def noises(self, counts: Array) -> Iterator["SensorNoise"]:
         """The noise of each sensor, where there is a stretch that is long enough.
 
-        `by_hand`: whether the support may tilt; `counts`: (6,), see `noise_terms`.
+        `counts`: (6,), see `noise_terms`.
         """
         for sensor in COLUMNS:
             own = [pool for pool in self._pools if pool.sensor == sensor]
@@ -260,7 +326,7 @@ class StaticStretches:
                 pool.end()
                 if max(pool.powers.seconds, default=0.0) >= MIN_WHOLE * pool.interval:
                     own_counts = counts[COLUMNS[sensor]][np.array(pool.recorded)]
-                    yield _noise_of(pool, by_hand, own_counts)
+                    yield _noise_of(pool, self.by_hand, own_counts)
 
 
 class Filtered(NamedTuple):
