@@ -9,7 +9,7 @@ ARCSECONDS = 2.0  # of positions and angles
 
 def rest(name: str, up: str, seconds: float, position: str | None = None) -> dict[str, Any]:
     own = {"id": name, "do": "rest", "up": up, "mark": MARKS[up[1]], "seconds": seconds}
-    return own | ({"position": position} if position else {})
+    return own | {"position": position or name}  # else each is set anew
 
 
 def turn(
@@ -17,7 +17,7 @@ def turn(
 ) -> dict[str, Any]:
     own = {"id": name, "do": "turn", "up": up, "mark": MARKS[up[1]], "degrees": degrees}
     own |= {"rate_deg_s": rate, "accel_deg_s2": ramp}
-    return own | ({"position": position} if position else {})
+    return own | {"position": position or name}  # else each is set anew
 
 
 def six_positions(seconds: float = 300) -> list[dict[str, Any]]:
