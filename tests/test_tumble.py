@@ -7,7 +7,7 @@ import chain
 import numpy as np
 import pandas as pd
 import pytest
-from hidden_plans import sensors
+from hidden_plans import PLANS, sensors
 
 import laboratory
 
@@ -148,3 +148,27 @@ def test_a_clean_tumble_whose_heading_nobody_states_shows_no_fault(seed: int) ->
     matrix = np.array(document["truth"]["gyro"]["matrix"])
     for name, true in (("cross_xy", matrix[0, 1]), ("cross_xz", matrix[0, 2])):
         assert abs(found.at[name, "value"] - true) < 4 * found.at[name, "sigma"]
+
+
+def test_a_table_that_counts_the_other_way_does_so_in_its_tumbles() -> None:
+    """Their rests were sought in mirrored attitudes: half were missing, two seemed exchanged."""
+    document = PLANS["rates"](seed=3)
+    stated = {"turn": "degrees", "tumble": "about"}
+    misstated: dict[str, dict[str, Any]] = {}
+    for item in document["campaign"]["plan"]:
+        if (key := stated.get(item["do"])) is not None:
+            misstated[item["id"]] = {key: item[key]}
+            other = {"+": "-", "-": "+"}
+            item[key] = -item[key] if key == "degrees" else other[item[key][0]] + item[key][1]
+    document["misstated"] = {"plan": misstated}
+    recording = laboratory.perform(laboratory.specify(document))
+    results = chain.in_memory(recording, "segment")
+    assert results["segment/repairs"]["repair"].tolist() == ["sense_of_table"]
+    assert results["segment/performed"]["found"].all()
+    causes = set(results["segment/findings"]["cause"])
+    assert causes.isdisjoint({"manoeuvre_swapped", "manoeuvre_missing"})
+    taken = results["segment/manoeuvres"].set_index("manoeuvre")
+    # From y up 90° about −x: z, which lay level, has come up.
+    up, tumbled = (taken.loc["about-x-02", f"{of}_x" : f"{of}_z"] for of in ("up", "tumbled"))
+    np.testing.assert_allclose(up.astype(float), [0, 0, 1], atol=1e-9)
+    np.testing.assert_allclose(np.degrees(tumbled.astype(float)), [-90, 0, 0], atol=1e-9)

@@ -285,7 +285,7 @@ def plan_as_taken(stated: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFra
     for name in (*places, "angle", "rate", "rate_sigma"):
         values = pd.Series([getattr(m, name) for m in plan], dtype=object)
         table[name] = values.where(values.notna(), None)
-    for name in ("up", "mark", "about"):
+    for name in ("up", "mark", "about", "tumbled"):
         vectors = [getattr(m, name) for m in plan]
         for i, axis in enumerate(AXES):
             table[f"{name}_{axis}"] = [None if vector is None else vector[i] for vector in vectors]

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from inertial.arrays import nearest_axis
 from inertial.campaign.records import Manoeuvre, Row
+from inertial.physics.motion import turned
 from inertial.sensors import PLURAL
 from inertial.signal.axis_permutations import Permutation
 from inertial.signal.misread_axes import reads_in_words
@@ -279,9 +280,13 @@ def _placed(m: Manoeuvre, like: Manoeuvre) -> Manoeuvre:
 
 
 def turned_back(plan: Sequence[Manoeuvre], turns: OtherSense) -> list[Manoeuvre]:
-    """The plan with some of its turns the other way, or the other way up."""
+    """The plan with some of its turns the other way, or the other way up.
+
+    Where the table counts all of them the other way, it counts the steps of tumbles so, too.
+    """
     other = _other_way_up if turns.upended else _turned_back
-    return [other(m) if m.name in turns.names else m for m in plan]
+    whole = not (turns.about or turns.upended)
+    return [other(m) if m.name in turns.names else _tumbled_back(m) if whole else m for m in plan]
 
 
 def _other_way_up(m: Manoeuvre) -> Manoeuvre:
@@ -291,6 +296,15 @@ def _other_way_up(m: Manoeuvre) -> Manoeuvre:
 def _turned_back(m: Manoeuvre) -> Manoeuvre:
     angle = None if m.angle is None else -m.angle
     return replace(m, angle=angle, rate=None if m.rate is None else -m.rate)
+
+
+def _tumbled_back(m: Manoeuvre) -> Manoeuvre:
+    """A rest of a tumble after as many steps the other way; any other manoeuvre as it is."""
+    if m.tumbled is None or m.tumble_axis is None:
+        return m
+    axis, back = m.tumble_axis, -2 * float(m.tumbled @ m.tumble_axis)
+    up, mark = (None if v is None else turned(v, axis, back) for v in (m.up, m.mark))
+    return replace(m, up=up, mark=mark, tumbled=-m.tumbled)
 
 
 def at_other_rate(
