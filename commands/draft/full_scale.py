@@ -24,7 +24,7 @@ from inertial.text.numbers import significant
 from inertial.text.units import DEGREE
 
 BITS = re.compile(r"(?<!\d)(\d\d)[ -]?bits?(?![a-z])", re.IGNORECASE)  # of a converter
-BAUD = ("32", "64")  # bits of a processor, and of no converter
+OF_PROCESSORS = ("32", "64")  # bits, which no converter has
 NUMBER = r"(?<![\d.,])(?<!\d/)(?P<range>\d+(?:\.\d+)?)"
 RANGE = r"(?:range|full[ _-]?scale|\bfsr?\b|(?<![a-z])fsr?_|bereich|scale|±|\+/?-|\+\\-)"
 PER_S = r"(?:dps|°/s|deg(?:rees?)?[ _]?(?:/[ ]?|per[ _]|_|p)s(?:ec(?:ond)?)?)(?![a-z/])"
@@ -87,7 +87,7 @@ def _stated(
 
 def _largest(header: Sequence[str]) -> float:
     """The largest count, with its half: of 16 bits where no others are stated."""
-    bits = {m[1] for line in header for m in BITS.finditer(line)} - set(BAUD)
+    bits = {m[1] for line in header for m in BITS.finditer(line)} - set(OF_PROCESSORS)
     own = int(bits.pop()) if len(bits) == 1 else 16
     return float(2 ** ((own if own >= LEAST_BITS else 16) - 1))
 

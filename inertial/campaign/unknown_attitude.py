@@ -192,12 +192,15 @@ def add_free_accelerometers(estimates: Estimates, data: "CampaignData") -> list[
     return [_moved(off, data.mount)] if off else []
 
 
+def first_of(names: Sequence[str]) -> str:
+    """The first positions of a finding, and how many more there are."""
+    more = len(names) - MAX_NAMED
+    return listed([*names[:MAX_NAMED], *([_("{count} more", count=more)] if more > 0 else [])])
+
+
 def _moved(off: Sequence[tuple[Part, OffLength]], mount: str) -> Finding:
     """The positions whose specific force is not gravity, as one finding."""
     part, largest = max(off, key=lambda each: abs(each[1].size))
-    names = [part.manoeuvre for part, _ in off]
-    if len(names) > MAX_NAMED:
-        names = [*names[:MAX_NAMED], _("{count} more", count=len(names) - MAX_NAMED)]
     return Finding(
         id="/".join(("accelerometer", with_mount(MOVED, mount), "all")),
         cause=MOVED,
@@ -214,7 +217,7 @@ def _moved(off: Sequence[tuple[Part, OffLength]], mount: str) -> Finding:
             "In {count} positions ({names}) the specific force misses gravity by up to {size} "
             "m/s², {times} times what the others scatter by.",
             len(off),
-            names=listed(names),
+            names=first_of([part.manoeuvre for part, _ in off]),
             size=significant(largest.size, 2),
             times=significant(abs(largest.size) / largest.scatter, 2),
         ),

@@ -115,7 +115,7 @@ def _coarse(stamps: Array, changed: Booleans, records: int) -> bool:
     return bool(np.count_nonzero(still) > MAX_CHANCE_EQUAL * records)
 
 
-MAX_CHANCE = 1e-3  # probability in all logs, or of a copy in its own, below which it is not random
+MAX_CHANCE = 1e-3  # in all logs; of a copy in its own. What is less probable is not random
 SIDE_PAIRS = 100  # pairs on each side of a run by which its chance is judged
 # Pairs on each side, where half of the channels are equal, or more than usual: a swing turns round.
 CLOSE_COUNTS = (1, 3, 10)

@@ -36,11 +36,12 @@ class Earth:
 class Position:
     """A set position: the upward direction, and what is known of north, in body axes.
 
-    `north` where mark and heading are given; `mark`, a level direction, where its azimuth is an
-    unknown that positions share: by the name `azimuth`, or that of the table's zero mark. Without
-    either the azimuth is an unknown of this position, or of this name: of a record that begins on
-    the way that at which it does; the tilt is that of the position. Where nothing is known of the
-    attitude, `up` is zero and all three components of the earth's rate are unknowns.
+    `north` is known where mark and heading are given; else an azimuth is an unknown: that of the
+    level direction `mark`, which positions share, or without one that of this position. `azimuth`
+    is the name of the unknown, where it is neither that of the table's zero mark nor that of the
+    position: the axis of a tumble, or the attitude in which a record begins on the way. Where
+    nothing is known of the attitude, `up` is zero and all three components of the earth's rate are
+    unknowns.
     """
 
     name: str

@@ -24,6 +24,7 @@ from inertial.campaign.hypotheses import (
     Hypothesis,
 )
 from inertial.campaign.records import Performed, Row
+from inertial.campaign.unknown_attitude import MOVED
 from inertial.effects import LAWS
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
@@ -398,7 +399,7 @@ class Evidence:
             return NONE, moves, None
         in_matrix = cause.stage == COUNTS and int(cause.row["severity"]) < SPOILS
         if in_matrix or has_own_error(cause) or _rounds(cause):  # or in the covariance
-            left_out = cause.manoeuvre and (in_matrix or cause.cause == "moved_while_read")
+            left_out = cause.manoeuvre and (in_matrix or cause.cause == MOVED)
             return LEFT_OUT if left_out else MODELLED, None, None
         touched = frozenset().union(*(member.cause.manoeuvres for member in members))
         done = [self.performed[name] for name in touched if name in self.performed]

@@ -15,9 +15,9 @@ from inertial.campaign.findings import Finding
 from inertial.campaign.passages import RecordedPassage, passages_of
 from inertial.campaign.records import Part, omissions, with_mount
 from inertial.campaign.unknown_attitude import (
-    MAX_NAMED,
     MOVED,
     FreeStaticPosition,
+    first_of,
     fitted_to,
     free_static_positions,
 )
@@ -27,7 +27,7 @@ from inertial.estimation.least_squares import MIN_SIGMA_REDUCTION, Estimate
 from inertial.signal.scale_factor import MAX_SCALE_ERROR
 from inertial.signal.scatter import MAD_TO_SIGMA
 from inertial.tables import AXES, GYRO
-from inertial.text.messages import _, listed, plural
+from inertial.text.messages import _, plural
 from inertial.text.numbers import significant
 from inertial.text.parameters import FREE, PARTS
 from inertial.text.units import DEGREE
@@ -109,9 +109,6 @@ def _moved(stops: Sequence[Stop], moved: Sequence[int], mount: str) -> Iterator[
     sizes = np.nanmax(off[clear.any(axis=1)], axis=1)
     names = [stop.forces.name for stop in stops]
     largest, size = moved[int(np.argmax(sizes))], float(sizes.max())
-    told = [names[i] for i in moved]
-    if len(told) > MAX_NAMED:
-        told = [*told[:MAX_NAMED], _("{count} more", count=len(told) - MAX_NAMED)]
     yield Finding(
         id="/".join(("gyroscope", with_mount(MOVED, mount), "all")),
         cause=MOVED,
@@ -128,7 +125,7 @@ def _moved(stops: Sequence[Stop], moved: Sequence[int], mount: str) -> Iterator[
             "In {count} positions ({names}) the gyros read up to {size}°/s otherwise than in all "
             "others: the IMU was not at rest there.",
             len(moved),
-            names=listed(told),
+            names=first_of([names[i] for i in moved]),
             size=significant(size / DEGREE, 2),
         ),
         consequence=_(

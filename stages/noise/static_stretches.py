@@ -183,9 +183,9 @@ UNITS = {  # of quantisation, white noise, bias instability, random walk and ram
 class _Pool:
     """The stretches in which some channels of a sensor are recorded at one rate.
 
-    `scatter`: (c,), from sample to sample, where the first stretch begins; `slow`: where each
-    begins, by hand; `upright`: of the
-    stretches in which an accelerometer is upright, by its number; `standing`: which are now.
+    `scatter`: (c,), from sample to sample, where the first stretch begins; `slow`: of means, where
+    each begins, by hand; `upright`: of the stretches in which an accelerometer is upright, by its
+    number; `standing`: which are now.
     """
 
     sensor: str

@@ -116,7 +116,7 @@ WITHOUT_BAR: Mapping[str, tuple[str, Told]] = {
 def drawn(name: str) -> Drawn:
     """The draw of a name: `part|plan|what|size`."""
     part, plan, what, number = name.split("|")
-    random = np.random.default_rng([2032, zlib.crc32(name.encode())])
+    random = np.random.default_rng([2033, zlib.crc32(name.encode())])
     document = _document(plan, random)
     made = PARTS[part](plan, what, float(number), random, document)
     made.pop("spoiled", None)

@@ -62,6 +62,14 @@ def test_a_position_that_was_moved_explains_the_step_in_it_and_no_other():
     assert causes(moved, other) == {"moved_while_read": set(), "bias_jump": set()}
 
 
+@pytest.mark.parametrize(("stage", "sensor"), [("accelerometer", "accel"), ("gyroscope", "gyro")])
+def test_a_position_that_was_moved_is_left_out(stage, sensor):
+    moved = finding(stage, "moved_while_read", sensor, severity=1, **of("by-hand-06"))
+    moved = replace(moved, row=moved.row | {"manoeuvre": "by-hand-06"})
+    (cause,) = Evidence({}, frozenset(), {}).causes([ExplainedFindings(moved, (moved,))])
+    assert cause.cure == "left_out" and "left out" in cause.done
+
+
 def test_lines_of_one_turn_are_one_cause_and_those_of_others_their_own():
     def line(name: str, turn: str | None) -> ExplainedFindings:
         found = effect("oscillation", "gyro")
