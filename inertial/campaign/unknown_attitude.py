@@ -201,6 +201,7 @@ def first_of(names: Sequence[str]) -> str:
 def _moved(off: Sequence[tuple[Part, OffLength]], mount: str) -> Finding:
     """The positions whose specific force is not gravity, as one finding."""
     part, largest = max(off, key=lambda each: abs(each[1].size))
+    names = first_of([each.manoeuvre for each, _size in off])
     return Finding(
         id="/".join(("accelerometer", with_mount(MOVED, mount), "all")),
         cause=MOVED,
@@ -217,7 +218,7 @@ def _moved(off: Sequence[tuple[Part, OffLength]], mount: str) -> Finding:
             "In {count} positions ({names}) the specific force misses gravity by up to {size} "
             "m/s², {times} times what the others scatter by.",
             len(off),
-            names=first_of([part.manoeuvre for part, _ in off]),
+            names=names,
             size=significant(largest.size, 2),
             times=significant(abs(largest.size) / largest.scatter, 2),
         ),
