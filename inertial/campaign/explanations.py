@@ -128,6 +128,7 @@ IN_PROPORTION = frozenset(
         "table_axis_error",
         "table_wobble",
         "table_eccentricity",
+        "tumble_eccentricity",
         "table_ripple",
         "table_angle_scale",
         "gravity_error",
@@ -210,6 +211,7 @@ EXPLANATIONS = (
     Explanation(("clock_scale", "rate_off"), ("clock_scale", "rate_off", "wrong_rate"), as_large),
     # Level turns show by gravity that it is the angle, neither the samples nor the speed.
     Explanation(("table_angle_scale",), ("rate_off",), by_as_much),
+    Explanation(("table_eccentricity",), ("tumble_eccentricity",), anywhere),
     Explanation(("encoder_scale", "encoder_scale_or_eccentricity"), ("rate_off",), anywhere),
     Explanation(("encoder_angles",), (*BY_ANGLES_OF_TURNS, *MISFITS), same_sensor),
     Explanation(("clock_scale", "rate_off"), ("table_rate_off",), as_large),

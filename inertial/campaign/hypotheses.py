@@ -40,6 +40,7 @@ OF_ATTITUDES = frozenset(
         "table_tilt_jump",
         "turn_angle_error",
         "table_angle_scale",
+        "tumble_eccentricity",
     }
 )
 CONFIRMED = _("Nothing more: the campaign file confirms it by accept: [{repair}].")

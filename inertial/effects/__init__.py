@@ -77,6 +77,7 @@ from inertial.effects.table_zero_shift import TableZeroShift
 from inertial.effects.table_zero_shift_outer import TableZeroShiftOuter
 from inertial.effects.temperature_model import TemperatureModel
 from inertial.effects.thermal_hysteresis import ThermalHysteresis
+from inertial.effects.tumble_eccentricity import TumbleEccentricity
 from inertial.effects.turn_angle_error import TurnAngleError
 from inertial.physics.effect import Effect
 
@@ -147,6 +148,7 @@ CATALOGUE: dict[str, Effect] = {
         TableAxisError(),
         TableWobble(),
         TableEccentricity(),
+        TumbleEccentricity(),
         TableRipple(),
         Oscillation(),
         TableAngleScale(),

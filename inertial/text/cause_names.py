@@ -18,6 +18,7 @@ NAMES = {
     "table_tilt_jump": _("tilt of the table from a time on"),
     "table_wobble": _("table wobble"),
     "table_eccentricity": _("table eccentricity"),
+    "tumble_eccentricity": _("table eccentricity in a tumble"),
     "table_ripple": _("table ripple"),
     "oscillation": _("oscillation"),
     "bias_jump": _("bias jump"),

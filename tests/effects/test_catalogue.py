@@ -29,12 +29,16 @@ def motion():
 
 
 def with_a_tumble() -> Motion:
-    """Plan b twice, three oblique rests, and a turn about a level axis."""
+    """Plan b twice, three oblique rests, each of a tumble, and a turn about a level axis."""
     plan = plans.plan_b(2)
+    tumbled = {}
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        tumbled[len(plan.manoeuvres)] = np.arctan2(0.6, 0.8) * np.eye(3)[k]
         plan.rest(0.6 * np.eye(3)[i] + 0.8 * np.eye(3)[j], np.eye(3)[k], 60)
     plan.turn(np.eye(3)[2], np.eye(3)[1], np.eye(3)[0], 90, 20, 20)
-    return plan.campaign().motion
+    motion = plan.campaign().motion
+    turned = [tumbled.get(visit, np.zeros(3)) for visit in motion.visit]
+    return replace(motion, tumbled=np.array(turned))
 
 
 @pytest.mark.parametrize("name", CATALOGUE)
@@ -130,6 +134,7 @@ def test_a_family_acts_with_the_middle_of_its_candidates(motion):
             np.testing.assert_array_equal(family.accel, one.accel)
 
 
+WITHOUT_A_TUMBLE = {"tumble_eccentricity"}
 BLIND = {
     "clock": {
         "gyro_bias_ramp", "gyro_scale_ramp", "gyro_warm_up", "gyro_bias_jump", "gyro_scale_jump",
@@ -154,7 +159,7 @@ BLIND = {
 def test_it_says_why_a_campaign_cannot_show_it(lacking):
     campaign = plans.plan_b(2, **{lacking: False}).campaign()
     told = {name: campaign.blind(effect) for name, effect in CATALOGUE.items()}
-    assert {name for name, why in told.items() if why} == BLIND[lacking]
+    assert {name for name, why in told.items() if why} == BLIND[lacking] | WITHOUT_A_TUMBLE
     assert all(why.endswith(".") for why in told.values() if why)
     blind: list[Effect] = [CATALOGUE[name] for name in BLIND[lacking]]
     for trace in signatures(campaign.motion, *TRIADS, blind):
@@ -174,7 +179,9 @@ def test_vibration_that_is_not_known_everywhere_tells_nothing(motion):
 
 def test_nothing_is_blind_where_all_is_known():
     motion = plans.plan_b(2).campaign().motion
-    assert not any(effect.blind(motion) for effect in CATALOGUE.values())
+    blind = {effect.name for effect in CATALOGUE.values() if effect.blind(motion)}
+    assert blind == WITHOUT_A_TUMBLE
+    assert not CATALOGUE["tumble_eccentricity"].blind(with_a_tumble())
 
 
 def test_a_jump_of_scale_factors_needs_every_axis_both_ways_before_it_and_after_it():

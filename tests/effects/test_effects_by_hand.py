@@ -295,6 +295,20 @@ def test_a_ripple_is_the_change_of_what_the_table_is_ahead(order):
     np.testing.assert_allclose(summed, ahead - ahead[0], atol=3e-6)
 
 
+def test_a_tumble_stands_where_its_circle_does_not_say():
+    """About the north, by exact rotations of gravity and of the earth's rate."""
+    a, b, angles = 1e-5, 2e-5, np.radians([0.0, 50.0, 90.0, 200.0])
+    off = a * np.sin(angles) + b * (np.cos(angles) - 1)
+    shown, true = (Rotation.from_rotvec(np.outer(t, NORTH)).inv() for t in (angles, angles + off))
+    still = stretches(np.arange(4.0), np.ones(4), np.full(4, np.nan))
+    up, north = shown.apply(UP), shown.apply(NORTH)
+    rests = replace(still, up=up, north=north, tumbled=np.outer(angles, NORTH))
+    gyro, accel = acted("tumble_eccentricity", [a, b], rests, SITE)
+    earth = SITE.earth_rate(UP, NORTH)
+    np.testing.assert_allclose(gyro, true.apply(earth) - shown.apply(earth), atol=1e-13)
+    np.testing.assert_allclose(accel, GRAVITY * (true.apply(UP) - up), atol=1e-8)  # δ² g / 2
+
+
 def test_a_whole_turn_is_free_of_a_ripple_and_a_half_turn_is_not():
     for turns, left in ((1.0, 0.0), (0.5, -2e-4)):
         edges = np.linspace(0, turns * 2 * np.pi, 101)  # from block to block
