@@ -57,12 +57,16 @@ SEE_REPORT = _("the report shows the residuals: make report")
 
 @dataclass(frozen=True)
 class NoResult:
-    """What gets no result, or none to rely on, why, and the cure; `sensor`: gyro or accel."""
+    """What gets no result, or none to rely on, why, and the cure; `sensor`: gyro or accel.
+
+    `incomplete`: whether some of its parameters are determined, which stand in the report.
+    """
 
     subject: str
     sentence: str
     action: str
     sensor: str = ""
+    incomplete: bool = False
 
 
 def no_results(derived: Path) -> Iterator[NoResult]:
@@ -120,17 +124,18 @@ def _undetermined(sensors: str, parameters: pd.DataFrame) -> Iterator[NoResult]:
     lacking = min((rows[rows["value"].isna()] for rows in methods), key=len, default=linear)
     if methods and lacking.empty:
         return
+    incomplete = 0 < len(lacking) < len(TWELVE)
     sentence = (
-        _("No parameter is determined.")
-        if len(lacking) in (0, len(TWELVE))
-        else _(
-            "{count} of 12 parameters are not determined: {names}.",
+        _(
+            "{count} of 12 parameters are not determined: {names}. The others are.",
             count=len(lacking),
             names=", ".join(map(sign_of, lacking["parameter"])),
         )
+        if incomplete
+        else _("No parameter is determined.")
     )
     reasons = lacking["reason"].value_counts(sort=False).index[:MAX_REASONS]
-    yield NoResult(sensors, sentence, "; ".join(reasons) + ".")
+    yield NoResult(sensors, sentence, "; ".join(reasons) + ".", incomplete=incomplete)
 
 
 def _split_rests(plan: pd.DataFrame, blocks: pd.DataFrame) -> Iterator[NoResult]:
@@ -401,7 +406,8 @@ def _without(each: NoResult, causes: Sequence[ExplainedFindings]) -> str:
     if spoiling:
         what = _("Set right first what spoils it: {causes}, below.", causes=", ".join(spoiling))
     answers = each.sentence, what
-    title = _wrapped(" · ".join([_("NO RESULT"), each.subject]))
+    heading = _("INCOMPLETE RESULT") if each.incomplete else _("NO RESULT")
+    title = _wrapped(" · ".join([heading, each.subject]))
     return "\n".join([title, *(_wrapped(shortened(text, 600), INDENT) for text in answers)])
 
 
@@ -435,9 +441,13 @@ def _answers(each: ExplainedFindings) -> Iterator[tuple[str, str]]:
 
 def _summary(recording: Recording) -> str:
     sentences = []
-    if recording.without:
-        subjects = ", ".join(each.subject for each in recording.without)
-        sentences.append(_("No result: {subjects}.", subjects=subjects))
+    for template, incomplete in (
+        (_("No result: {subjects}."), False),
+        (_("Incomplete result: {subjects}."), True),
+    ):
+        lacking = [each.subject for each in recording.without if each.incomplete == incomplete]
+        if lacking:
+            sentences.append(template.format(subjects=", ".join(lacking)))
     if recording.causes:
         grades = Counter(_grade(each) for each in recording.causes)
         each = [f"{n} {GRADES[grade][n > 1]}" for grade, n in sorted(grades.items())]

@@ -196,18 +196,18 @@ def without(plan: list[str], tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_a_sensor_that_lacks_a_manoeuvre_has_no_result(
+def test_a_sensor_that_lacks_a_manoeuvre_has_an_incomplete_result(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     rests = [f"{axis}-{way}" for axis in "xyz" for way in ("up", "down")]
     data = without([*rests, "x-forward", "x-backward", "z-forward", "z-backward"], tmp_path)
     assert check(data) == 1
     said = " ".join(capsys.readouterr().out.split())
-    lacking = "3 of 12 parameters are not determined: m_xy, s_y, m_zy."
-    assert f"NO RESULT · gyros {lacking}" in said
+    lacking = "3 of 12 parameters are not determined: m_xy, s_y, m_zy. The others are."
+    assert f"INCOMPLETE RESULT · gyros {lacking}" in said
     assert "add one of 360° about y" in said
-    assert "NO RESULT · accelerometers" not in said
-    assert said.endswith("No result: gyros. 1 cause: 1 is good to know.")
+    assert "RESULT · accelerometers" not in said
+    assert said.endswith("Incomplete result: gyros. 1 cause: 1 is good to know.")
 
 
 def by_hand(recordings: Path, folder: Path, time: str) -> Results:
