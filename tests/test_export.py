@@ -388,6 +388,9 @@ def readings_of(mount: dict[str, Any], sample: dict[str, Any], truth: Any) -> An
             for i, row in enumerate("xyz")
             for j, column in enumerate("xyz")
         }
+        felt = truth[:3] if kind == "accelerometer" else truth[3:]
+        along = np.array(triad["matrix"]["value"], float) @ felt
+        own |= {f"s_{axis}": along[i] for i, axis in enumerate("xyz")}
         values += [value_of(triad["equation"][axis], names | own) for axis in "xyz"]
     return np.array(values)
 

@@ -15,15 +15,16 @@ static const double ALLOWED = 1e-9; /* of the length of the vector */
 static void correct(const struct triad *triad, const double reading[3], const double f[3],
                     const double w[3], double t, double T, double truth[3])
 {
-    double added[3] = {0, 0, 0};
+    double sensed[3], added[3] = {0, 0, 0};
     for (int round = 0; round < ROUNDS; round++) {
+        for (int i = 0; i < 3; i++)
+            sensed[i] = reading[i] - triad->bias[i] - added[i];
         for (int i = 0; i < 3; i++) {
-            truth[i] = 0;
+            truth[i] = added[i] = 0;
             for (int j = 0; j < 3; j++)
-                truth[i] += triad->inverse[i][j] * (reading[j] - triad->bias[j] - added[j]);
+                truth[i] += triad->inverse[i][j] * sensed[j];
         }
-        added[0] = added[1] = added[2] = 0;
-        triad->effects(f, w, t, T, added);
+        triad->effects(f, w, sensed, t, T, added);
     }
 }
 

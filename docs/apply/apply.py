@@ -58,8 +58,11 @@ def correct(triad, reading, symbol, given):
     ]
     more = np.zeros(3)
     for _unused in range(ROUNDS if added else 1):
-        truth = inverse @ (np.array(reading) - bias - more)
-        names = numbers | given | {f"{symbol}_{axis}": truth["xyz".index(axis)] for axis in "xyz"}
+        sensed = np.array(reading) - bias - more
+        truth = inverse @ sensed
+        names = numbers | given
+        for letter, vector in ((symbol, truth), ("s", sensed)):
+            names |= {f"{letter}_{axis}": number for axis, number in zip("xyz", vector, strict=True)}
         more = np.zeros(3)
         for i, equation in added:
             more[i] += value(equation, names)

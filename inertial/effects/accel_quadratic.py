@@ -23,7 +23,8 @@ class AccelQuadratic(OfSensed):
         1e-5 / STANDARD_GRAVITY,
         _("reading of the {axis} accelerometer per square of the force along it"),
     )
-    terms = on_each_axis("accel", "k2_{i}", "f_{i} * f_{i}")
+    own_axis = "accel"
+    terms = on_each_axis("accel", "k2_{i}", "s_{i} * s_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 20, 100, 200, 1000)
 
     def change(self, truth: Truth, values: Array) -> Array:

@@ -23,7 +23,8 @@ class AccelScaleAsymmetry(OfSensed):
         1e-5,
         _("half the difference of the scale factors of the {axis} accelerometer for both senses"),
     )
-    terms = on_each_axis("accel", "a_{i}", "abs(f_{i})")
+    own_axis = "accel"
+    terms = on_each_axis("accel", "a_{i}", "abs(s_{i})")
     sizes = by_grade(1e-6, 10, 50, 100, 500)
 
     def change(self, truth: Truth, values: Array) -> Array:

@@ -13,5 +13,6 @@ class AccelScaleJump(ScaleJump):
     parameters = parameters_by_axis(
         "k", "1", 1e-5, _("jump of the scale factor of the {axis} accelerometer")
     )
-    terms = on_each_axis("accel", "k_{i}", "(t > t0) * f_{i}")
+    own_axis = "accel"
+    terms = on_each_axis("accel", "k_{i}", "(t > t0) * s_{i}")
     sizes = by_grade(1e-6, 50, 200, 500, 1000)

@@ -24,5 +24,6 @@ class AccelScaleTemperature(OfTemperature):
         1e-5,
         _("change of the scale factor of the {axis} accelerometer with temperature"),
     )
-    terms = on_each_axis("accel", "k_{i}", "(T - T0) * f_{i}")
+    own_axis = "accel"
+    terms = on_each_axis("accel", "k_{i}", "(T - T0) * s_{i}")
     sizes = by_grade(1e-6, 5, 20, 50, 200)

@@ -24,7 +24,8 @@ class GyroScaleAsymmetry(OfSensed):
         1e-4,
         _("half the difference of the scale factors of the {axis} gyro for both senses"),
     )
-    terms = on_each_axis("gyro", "a_{i}", "abs(w_{i})")
+    own_axis = "gyro"
+    terms = on_each_axis("gyro", "a_{i}", "abs(s_{i})")
     sizes = by_grade(1e-6, 10, 30, 100, 500)
 
     def change(self, truth: Truth, values: Array) -> Array:

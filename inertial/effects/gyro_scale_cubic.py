@@ -24,7 +24,8 @@ class GyroScaleCubic(OfSensed):
         1e-8 / DEGREE**2,
         _("change of the scale factor of the {axis} gyro per square of its rate"),
     )
-    terms = on_each_axis("gyro", "k_{i}", "w_{i} * w_{i} * w_{i}")
+    own_axis = "gyro"
+    terms = on_each_axis("gyro", "k_{i}", "s_{i} * s_{i} * s_{i}")
     sizes = by_grade(1e-6 / DEGREE**2, 1e-3, 1e-4, 5e-3, 0.05)
 
     def change(self, truth: Truth, values: Array) -> Array:

@@ -23,7 +23,8 @@ class GyroScaleGDependence(OfSensed):
         1e-4 / STANDARD_GRAVITY,
         _("change of the scale factor of the {axis} gyro per force along it"),
     )
-    terms = on_each_axis("gyro", "k_{i}", "w_{i} * f_{i}")
+    own_axis = "gyro"
+    terms = on_each_axis("gyro", "k_{i}", "s_{i} * f_{i}")
     sizes = by_grade(1e-6 / STANDARD_GRAVITY, 2, 30, 100, 500)
 
     def change(self, truth: Truth, values: Array) -> Array:

@@ -13,5 +13,6 @@ class GyroScaleJump(ScaleJump):
     parameters = parameters_by_axis(
         "k", "1", 1e-5, _("jump of the scale factor of the {axis} gyro")
     )
-    terms = on_each_axis("gyro", "k_{i}", "(t > t0) * w_{i}")
+    own_axis = "gyro"
+    terms = on_each_axis("gyro", "k_{i}", "(t > t0) * s_{i}")
     sizes = by_grade(1e-6, 5, 50, 300, 1000)

@@ -25,7 +25,8 @@ class GyroScaleQuadratic(OfSensed):
         1e-6 / DEGREE,
         _("change of the scale factor of the {axis} gyro per magnitude of its rate"),
     )
-    terms = on_each_axis("gyro", "k_{i}", "w_{i} * abs(w_{i})")
+    own_axis = "gyro"
+    terms = on_each_axis("gyro", "k_{i}", "s_{i} * abs(s_{i})")
     sizes = by_grade(1e-6 / DEGREE, 0.1, 0.1, 1, 5)
 
     def change(self, truth: Truth, values: Array) -> Array:

@@ -21,6 +21,7 @@ class GyroScaleRamp(Ramp):
     parameters = parameters_by_axis(
         "k", "1/s", 1e-5 / HOUR, _("drift of the scale factor of the {axis} gyro")
     )
-    terms = on_each_axis("gyro", "k_{i}", "t * w_{i}")
+    own_axis = "gyro"
+    terms = on_each_axis("gyro", "k_{i}", "t * s_{i}")
     sizes = by_grade(1e-6 / HOUR, 5, 20, 100, 500)
     thinkable = 4.0  # 200 ppm/K that warms by 10 K in an hour

@@ -19,5 +19,6 @@ class GyroScaleTemperature(OfTemperature):
     parameters = parameters_by_axis(
         "k", "1/K", 1e-5, _("change of the scale factor of the {axis} gyro with temperature")
     )
-    terms = on_each_axis("gyro", "k_{i}", "(T - T0) * w_{i}")
+    own_axis = "gyro"
+    terms = on_each_axis("gyro", "k_{i}", "(T - T0) * s_{i}")
     sizes = by_grade(1e-6, 5, 10, 50, 200)

@@ -116,8 +116,9 @@ class Term:
     """What a parameter adds to the reading of one channel: parameter × factor.
 
     `factor`: as text that C and Python read alike; f_x, f_y, f_z the specific force, m/s², and
-    w_x, w_y, w_z the angular rate, rad/s, that are sensed; t the time, s; T the temperature, K; and
-    the constants of the effect by their names.
+    w_x, w_y, w_z the angular rate, rad/s, along the axes of the case; s_x, s_y, s_z what the three
+    sensors of the channel sense along their own, M · f or M · w; t the time, s; T the temperature,
+    K; and the constants of the effect by their names.
     """
 
     channel: str
@@ -154,7 +155,8 @@ class Effect(ABC):
     `absorbed_by`: what every calibration estimates or knows that has the same effect on readings,
     so that it is not observable by any plan of these manoeuvres; `blind`: why it is not observable
     in a certain campaign; `of_stillness`: what the sway of a hand at rest would be taken for;
-    `vector`: its parameters are the components of a vector of any direction.
+    `vector`: its parameters are the components of a vector of any direction; `own_axis`: the sensor,
+    gyro or accel, that has it by what each senses along its own axis, M · truth, as `reads` is told.
 
     `scan`: a nonlinear parameter. The effect in the catalogue is then a family whose
     `candidates` for a campaign have one value each, `at`; each is an effect like others.
@@ -179,6 +181,7 @@ class Effect(ABC):
     absorbed_by: str = ""
     of_stillness: bool = False
     vector: bool = False
+    own_axis: str = ""
     scan: Scan | None = None
     terms: tuple[Term, ...] = ()
     stays: str = _("the table, the site or the mounting causes it, and the IMU feels it")

@@ -6,7 +6,7 @@ with the earth's rate and gravity in body axes, and the effects one after anothe
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, sin, tan
 
 import numpy as np
@@ -72,8 +72,23 @@ def predict(
         truth = effect.moves(truth, motion, (values or {})[effect.label])
     reading = sensed(truth, gyro, accelerometer)
     for effect in effects:
-        reading = effect.reads(reading, truth, motion, (values or {})[effect.label])
+        acting = _acting(effect, truth, gyro, accelerometer)
+        reading = effect.reads(reading, acting, motion, (values or {})[effect.label])
     return reading
+
+
+def _acting(effect: Effect, truth: Truth, gyro: Triad, accelerometer: Triad) -> Truth:
+    """The truth by which an effect reads: along the axes of its own sensors, where it says so."""
+    if effect.own_axis == "gyro":
+        return replace(truth, rate=_along_own_axes(truth.rate, gyro))
+    if effect.own_axis == "accel":
+        return replace(truth, force=_along_own_axes(truth.force, accelerometer))
+    return truth
+
+
+def _along_own_axes(truth: Array, triad: Triad) -> Array:
+    """M · truth, (n, 3); of an M that is not determined the unit matrix."""
+    return truth @ np.where(np.isnan(triad.matrix), np.eye(3), triad.matrix).T
 
 
 def signatures(
@@ -94,7 +109,7 @@ def signatures(
     def reading(effect: Effect, values: Array) -> Reading:
         moved = effect.moves(truth, motion, values)
         before = plain if moved is truth else sensed(moved, gyro, accelerometer)
-        return effect.reads(before, moved, motion, values)
+        return effect.reads(before, _acting(effect, moved, gyro, accelerometer), motion, values)
 
     whole: dict[tuple[object, ...], Reading] = {}  # of what sets in, as if before all
 
@@ -175,7 +190,11 @@ def _truth(
     def added(truth: Array) -> Array:
         read = Reading(nothing, nothing)
         return sum(
-            (getattr(e.reads(read, felt(truth), motion, v), sensor) for e, v in effects), nothing
+            (
+                getattr(e.reads(read, _acting(e, felt(truth), triad, triad), motion, v), sensor)
+                for e, v in effects
+            ),
+            nothing,
         )
 
     for _unused in range(MAX_ROUNDS):

@@ -22,10 +22,12 @@ TYPES = """\
 
 /* Three sensors x, y, z: truth = inverse (reading - bias - effects(truth)); m/s^2 or rad/s.
    NAN: not determined, or not to be used. effects adds to `added` what they add to the readings:
-   f specific force, m/s^2; w angular rate, rad/s; t time of the log, s; T temperature, K. */
+   f specific force, m/s^2; w angular rate, rad/s; s what the three sense along their own axes,
+   reading - bias - effects; t time of the log, s; T temperature, K. */
 struct triad {{
     double inverse[3][3], bias[3];
-    void (*effects)(const double f[3], const double w[3], double t, double T, double added[3]);
+    void (*effects)(const double f[3], const double w[3], const double s[3], double t, double T,
+                    double added[3]);
 }};
 
 /* A reading of the campaign and what is to come out of it; f: accelerometers, w: gyros. */
@@ -42,7 +44,9 @@ struct mount {{
 """
 AXIS_NAMES = """\
     const double f_x = f[0], f_y = f[1], f_z = f[2], w_x = w[0], w_y = w[1], w_z = w[2];
-    (void)f_x, (void)f_y, (void)f_z, (void)w_x, (void)w_y, (void)w_z, (void)t, (void)T;"""
+    const double s_x = s[0], s_y = s[1], s_z = s[2];
+    (void)f_x, (void)f_y, (void)f_z, (void)w_x, (void)w_y, (void)w_z, (void)t, (void)T;
+    (void)s_x, (void)s_y, (void)s_z;"""
 
 
 def c_header(content: Row) -> str:
@@ -75,8 +79,8 @@ def _lines(content: Row) -> Iterator[str]:
 def _effects(name: str, triad: Row) -> Iterator[str]:
     """A function that adds what the effects of a triad add to its readings."""
     yield (
-        f"\nstatic void {name}(const double f[3], const double w[3], double t, double T,"
-        " double added[3])\n{"
+        f"\nstatic void {name}(const double f[3], const double w[3], const double s[3], double t,"
+        " double T, double added[3])\n{"
     )
     yield AXIS_NAMES
     inside = [effect for effect in triad["effects"] if effect["in_equation"]]

@@ -29,7 +29,7 @@ from stages.export.examples import Example
 from stages.export.filter_noise import FilterNoise, filter_noise
 
 FORMAT = "turntable calibration"
-VERSION = 4
+VERSION = 5
 SQRT_HZ = {"accel": "(m/s²)/√Hz", "gyro": "(rad/s)/√Hz"}
 EQUATION = {
     "reading": _("reading = M · truth + bias + effects(truth, t, T)"),
@@ -46,7 +46,9 @@ EQUATION = {
         "the count size that the campaign states, or as the condition sets them right."
     ),
     "symbols": _(
-        "f_x, f_y, f_z: specific force, m/s². w_x, w_y, w_z: angular rate, rad/s. t: time of the "
+        "f_x, f_y, f_z: specific force, m/s². w_x, w_y, w_z: angular rate, rad/s. s_x, s_y, s_z: "
+        "what the three sensors sense along their own axes, M · truth, which is the reading less "
+        "bias and effects; s_x is M_xx · w_x + M_xy · w_y + M_xz · w_z. t: time of the "
         "log, s, since time.epoch_gps or, where that is null, since the first sample. T: "
         "temperature of the instrument, K. M_xy, bias_x: elements of matrix and bias. Others: "
         "parameters and constants of effects by their names; an effect with T_min and T_max is "

@@ -201,9 +201,13 @@ def written_out(effect: Effect, motion: Motion, values: np.ndarray) -> np.ndarra
         **{f"w_{axis}": truth.rate[:, i] for i, axis in enumerate("xyz")},
     }
     size = dict(zip([p.name for p in effect.parameters], values, strict=True))
+    along = {"gyro": truth.rate @ plans.GYRO.matrix.T}
+    along["accel"] = truth.force @ plans.ACCELEROMETER.matrix.T
     added = {channel: np.zeros(len(motion.time)) for channel in CHANNELS}
     for term in effect.terms:
-        added[term.channel] += size[term.parameter] * value_of(term.factor, names)
+        sensed = along[term.channel.partition("_")[0]]
+        own = {f"s_{axis}": sensed[:, i] for i, axis in enumerate("xyz")}
+        added[term.channel] += size[term.parameter] * value_of(term.factor, names | own)
     return np.column_stack([added[channel] for channel in CHANNELS])
 
 
@@ -216,7 +220,7 @@ def test_the_terms_say_in_text_what_is_read(name, motion):
     )
     values = np.array([p.typical * (1 + i) for i, p in enumerate(effect.parameters)])
     plain = sensed(truth_of(short, plans.SITE), *TRIADS[1:])
-    read = effect.reads(plain, truth_of(short, plans.SITE), short, values)
+    read = predict(short, *TRIADS, [effect], {effect.label: values})
     change = np.hstack([read.accel - plain.accel, read.gyro - plain.gyro])
     expected = written_out(effect, short, values)
     assert np.abs(change).max() > 0

@@ -12,7 +12,7 @@ from inertial.effects.accel_hysteresis import hysteresis
 from inertial.effects.gyro_bias_sense import last_sense
 from inertial.effects.gyro_hysteresis import course
 from inertial.physics.effect import Reading, Truth
-from inertial.physics.forward import Site, Triad, predict, truth_of
+from inertial.physics.forward import Site, Triad, predict, rate_of, truth_of
 from inertial.physics.motion import Motion, Profile, joined, stretches, turning
 from inertial.physics.site import earth_rate
 
@@ -575,3 +575,18 @@ def test_each_element_acts_on_its_own_axis_as_the_standards_write_it(name):
     expected = [1 + BY_AXIS[name](values, i) for i in range(3)]
     np.testing.assert_allclose(changed[1], expected, rtol=1e-12)
     np.testing.assert_array_equal(other, 1.0)
+
+
+def test_what_is_along_the_axis_of_a_sensor_is_along_that_and_not_along_the_case():
+    """Gyros 20 mrad askew: a turn about the case's z is 20 mrad · ω of the x gyro, of one sign."""
+    askew = Triad(np.array([[1.0, 0.0, 0.02], [0.0, 1.0, 0.0], [-0.02, 0.0, 1.0]]), np.full(3, 1e-3))
+    turns = on_a_turn(np.array([0.0, 1e-3, 2e-3]), np.array([0.0, 0.0, 1.0]))
+    effect, values = CATALOGUE["gyro_scale_asymmetry"], np.array([5e-4, 3e-4, -2e-4])
+    triads = (turns, STILL, askew, EXACT)
+    plain = predict(*triads)
+    read = predict(*triads, [effect], {effect.label: values})
+    np.testing.assert_allclose((read.gyro - plain.gyro)[1], [5e-4 * 0.02, 0, -2e-4], rtol=1e-9)
+    sized, force = [(effect, values)], np.zeros((3, 3))
+    np.testing.assert_allclose(
+        rate_of(read.gyro, askew, sized, turns, force), turns.omega, atol=1e-12
+    )

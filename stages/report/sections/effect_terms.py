@@ -94,7 +94,9 @@ def added_to_readings(effect: str, rows: Sequence[Record]) -> str:
     sums: dict[str, list[str]] = {}
     for each in KNOWN[effect].terms if effect in KNOWN else ():
         if each.parameter in names:
-            sums.setdefault(each.channel[-1], []).append(_term(each.parameter, each.factor))
+            sensor, _unused, axis = each.channel.partition("_")
+            factor = re.sub(r"\bs_", "w_" if sensor == "gyro" else "f_", each.factor)  # of its axis
+            sums.setdefault(axis, []).append(_term(each.parameter, factor))
     by_axis = {axis: _over_axes(terms) for axis, terms in sums.items()}
     alike = {re.sub(rf"_{axis}(?=\b|j)", "_i", text) for axis, text in by_axis.items()}
     if len(by_axis) > 1 and len(alike) == 1:
