@@ -62,7 +62,9 @@ def correct(triad, reading, symbol, given):
         truth = inverse @ sensed
         names = numbers | given
         for letter, vector in ((symbol, truth), ("s", sensed)):
-            names |= {f"{letter}_{axis}": number for axis, number in zip("xyz", vector, strict=True)}
+            names |= {
+                f"{letter}_{axis}": number for axis, number in zip("xyz", vector, strict=True)
+            }
         more = np.zeros(3)
         for i, equation in added:
             more[i] += value(equation, names)

@@ -155,8 +155,8 @@ class Effect(ABC):
     `absorbed_by`: what every calibration estimates or knows that has the same effect on readings,
     so that it is not observable by any plan of these manoeuvres; `blind`: why it is not observable
     in a certain campaign; `of_stillness`: what the sway of a hand at rest would be taken for;
-    `vector`: its parameters are the components of a vector of any direction; `own_axis`: the sensor,
-    gyro or accel, that has it by what each senses along its own axis, M · truth, as `reads` is told.
+    `vector`: its parameters are the components of a vector of any direction; `own_axis`: gyro or
+    accel, where `reads` takes the truth along the axes of these sensors, M · truth.
 
     `scan`: a nonlinear parameter. The effect in the catalogue is then a family whose
     `candidates` for a campaign have one value each, `at`; each is an effect like others.

@@ -579,7 +579,9 @@ def test_each_element_acts_on_its_own_axis_as_the_standards_write_it(name):
 
 def test_what_is_along_the_axis_of_a_sensor_is_along_that_and_not_along_the_case():
     """Gyros 20 mrad askew: a turn about the case's z is 20 mrad · ω of the x gyro, of one sign."""
-    askew = Triad(np.array([[1.0, 0.0, 0.02], [0.0, 1.0, 0.0], [-0.02, 0.0, 1.0]]), np.full(3, 1e-3))
+    askew = Triad(
+        np.array([[1.0, 0.0, 0.02], [0.0, 1.0, 0.0], [-0.02, 0.0, 1.0]]), np.full(3, 1e-3)
+    )
     turns = on_a_turn(np.array([0.0, 1e-3, 2e-3]), np.array([0.0, 0.0, 1.0]))
     effect, values = CATALOGUE["gyro_scale_asymmetry"], np.array([5e-4, 3e-4, -2e-4])
     triads = (turns, STILL, askew, EXACT)
