@@ -95,7 +95,7 @@ def calibration(
         "covariance": [],
         "references": [],
         "verdicts": [verdict()],
-        "inputs": [{"file": "x-up.asc", "size": 9, "sha256": "ab"}],
+        "inputs": [{"file": "x-up.asc", "size": 9, "sha256": facts.get("campaign", "ab")}],
         "made_by": [maker],
     }
 
@@ -121,17 +121,18 @@ def run(
     settings: Row | None = None,
     may_change: Sequence[Row] = (),
     further: Sequence[Row] = (),
+    recorded: str = "",
     **facts: Any,
 ) -> Row:
     """Run the stage on a campaign in `place`, into the archive there; its row of `archived`.
 
     `bias`: by the result that counts, by the joint method half as much; `further`: rows of that
-    result.
+    result; `recorded`: the hash of its log, one of its own where none is given.
     """
     campaign = CAMPAIGN | facts
     derived = place / "derived" / str(campaign["campaign"])
     by = {"settings": {}, "code": code, "inputs": {}}
-    log = {"file": "x-up.asc", "size": 9, "sha256": "ab"}
+    log = {"file": "x-up.asc", "size": 9, "sha256": recorded or str(campaign["campaign"])}
     estimates = [
         parameter("bias_x", bias / 2, 1e-7),
         parameter("bias_y", None, None),
@@ -210,7 +211,7 @@ def test_the_file_holds_the_calibration_and_what_it_was_made_from(tmp_path: Path
     kept = {key: value for key, value in verdict().items() if key != "recorded"}
     assert list(held["verdicts"]) == [kept]
     assert variance["covariance"] == pytest.approx(1e-14)
-    assert [(row["file"], row["sha256"]) for row in held["inputs"]] == [("x-up.asc", "ab")]
+    assert [(row["file"], row["sha256"]) for row in held["inputs"]] == [("x-up.asc", "spring")]
     assert {row["stage"] for row in held["made_by"]} == {
         *("plan", "accelerometer", "gyroscope", "diagnosis")
     }
@@ -260,6 +261,15 @@ def test_the_report_gets_the_earlier_calibrations_of_the_same_imu(tmp_path: Path
         "verdict": "usable",
         "condition": None,
     }
+
+
+def test_the_same_logs_once_more_are_no_earlier_calibration(tmp_path: Path) -> None:
+    """As with a repair confirmed: they would repeat to the last digit."""
+    run(tmp_path, campaign="spring", recorded="one log", date="2026-04-01")
+    run(tmp_path, campaign="accepted", recorded="one log", date="2026-04-01")
+    run(tmp_path, campaign="autumn", date="2026-10-02")
+    assert earlier(tmp_path, "accepted").empty
+    assert len(set(earlier(tmp_path, "autumn")["campaign"])) == 1
 
 
 def test_the_condition_of_an_earlier_result_is_handed_on(tmp_path: Path) -> None:

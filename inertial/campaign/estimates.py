@@ -1,6 +1,6 @@
 """Rows of the tables that every method of estimation writes: parameters, covariance, fit."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -242,14 +242,15 @@ def stops_between_turns(plan: Sequence[Manoeuvre]) -> bool:
 
 
 def reasons(
-    determined: Booleans, recorded: Booleans, sensor: str, cures: dict[str, str]
+    determined: Booleans, recorded: Booleans, sensor: str, cures: Mapping[str, str]
 ) -> dict[str, str]:
     """Why a parameter is not determined, and the manoeuvre that would determine it.
 
     Parameters
     ----------
     determined : (12,); recorded : (3,), which sensors are in the logs
-    cures : the remedies for `bias` and for `matrix`, where {axis} is the axis of the input
+    cures : the remedies for `bias` and for `matrix`, or for `matrix x` and so on, where {axis} is
+        the axis of the input
     """
     result = {}
     for i, name in enumerate(NAMES):
@@ -261,7 +262,8 @@ def reasons(
             )
         elif not determined[i]:
             kind = "bias" if parts.kind == "bias" else "matrix"
-            result[name] = cures[kind].format(axis=parts.input_axis)
+            cure = cures.get(f"{kind} {parts.input_axis}", cures[kind])
+            result[name] = cure.format(axis=parts.input_axis)
     return result
 
 

@@ -399,7 +399,8 @@ class ManoeuvreSwapped(PlanDetector):
             )
         else:
             sentence = _(
-                "In {logs}, {first} and {second} are exchanged.",
+                "In {logs}, {first} and {second} are exchanged: each shows what the plan has of the "
+                "other.",
                 logs=swapped.logs[0],
                 first=first,
                 second=second,
@@ -410,8 +411,8 @@ class ManoeuvreSwapped(PlanDetector):
             sentence += _or_a_sign(recorded, own)
         action = (
             _(
-                "Each is taken for what it holds, on this condition. Correct the names, or the "
-                "plan; or confirm it by accept: [{repair}].",
+                "Each is evaluated by the attitude, or the turn, that its readings show, on this "
+                "condition. Correct the names, or the plan; or confirm it by accept: [{repair}].",
                 repair=swapped.repair,
             )
             if swapped.undone
@@ -457,14 +458,14 @@ def _if_used(recorded: Recorded, own: list[int]) -> str:
     if all(recorded.do[i] == "rest" for i in own):
         gravity = 2 * recorded.given.gravity
         return _(
-            "Used, each mean would be wrong by up to {gravity:.3g} m/s², twice gravity.",
+            "Used as named, each mean would be wrong by up to {gravity:.3g} m/s², twice gravity.",
             gravity=gravity,
         )
     angles = np.degrees(np.abs(recorded.angle[own]))
     if np.isfinite(angles).all():
         wrong = f"{2 * angles.max():.0f}°"
         return _(
-            "Used, each angle would be wrong by up to {wrong}, a scale error of −200 %.",
+            "Used as named, each angle would be wrong by up to {wrong}, a scale error of −200 %.",
             wrong=wrong,
         )
-    return _("Used, each would be evaluated as the other.")
+    return _("Used as named, each would be evaluated as the other.")

@@ -69,8 +69,8 @@ class ZeroBelowThreshold(Detector):
         threshold = max(event.facts for _name, event in events)
         return Description(
             _(
-                "In place of all readings below {threshold} {unit}, {axes} read exactly 0: "
-                "{counted} in {logs}.",
+                "In place of all readings of less than {threshold} {unit}, of either sign, {axes} "
+                "read exactly 0: {counted} in {logs}.",
                 threshold=significant(scale * threshold, 3),
                 unit=unit,
                 axes=names_of_axes(events),
@@ -82,9 +82,9 @@ class ZeroBelowThreshold(Detector):
                 "mean of readings beside the threshold, for noise that falls below it is cut off."
             ),
             _(
-                "Readings below {twice} {unit} are masked, and no mean is used in which there are "
-                "any. Switch off the threshold (dead zone, zero-rate band) of the firmware, and "
-                "record again.",
+                "Readings of less than twice that, {twice} {unit}, are masked, and no mean is used "
+                "in which there are any. Switch off the threshold (dead zone, zero-rate band) of "
+                "the firmware, and record again.",
                 twice=significant(MAX_BESIDE * scale * threshold, 3),
                 unit=unit,
             ),

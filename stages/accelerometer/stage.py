@@ -44,6 +44,8 @@ CURES = {
         "no rests differ enough along {axis}: add one with +{axis} up, one with -{axis} up"
     ),
 }
+ONE_MORE = _("no rests differ enough along {axis}: add one with {sign}{axis} up")
+MIN_UPRIGHT = 0.7  # cosine of an axis to the vertical, which a rest with it up exceeds
 NO_REST = _(
     "there is no rest whose upward direction is known, and turns alone are not enough: record one "
     "with each axis up and one with each axis down"
@@ -55,6 +57,18 @@ WORDS = {
     "scale": _("scale factor of the {row} accelerometer"),
     "cross": _("response of the {row} accelerometer to force along {column}"),
 }
+
+
+def _cures(ups: Array) -> dict[str, str]:
+    """By kind and axis what to record; `ups`: (n, 3), of the rests that there are, body axes."""
+    cures = dict(CURES)
+    for axis, along in zip(AXES, ups.T, strict=True):
+        lacking = [
+            sign for sign, most in (("+", along.max()), ("-", -along.min())) if most < MIN_UPRIGHT
+        ]
+        if len(lacking) == 1:
+            cures[f"matrix {axis}"] = ONE_MORE.format(sign=lacking[0], axis=axis)
+    return cures
 
 
 def accelerometer(
@@ -87,7 +101,8 @@ def accelerometer(
         raised += [_far_off(one, data.mount) for one in off]
         fitted = accelerometers.fit(rests, reference, data.noise.degrees, effect_sigma, drift)
         recorded = np.isfinite(np.array([rest.mean for rest in rests])).any(axis=0)
-        why = reasons(fitted.estimate.determined, recorded, "accelerometer", CURES)
+        ups = np.array([position.up_now for position in positions])
+        why = reasons(fitted.estimate.determined, recorded, "accelerometer", _cures(ups))
         estimates.add_triad("joint", fitted.estimate, why)
         used = [position.part for position in positions] + list(
             dict.fromkeys(part for part, _ in turns)

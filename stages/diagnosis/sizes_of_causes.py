@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from inertial.campaign.competition import ExplainedFindings
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
 from inertial.campaign.hypotheses import MOUNTINGS, PLAN, Findings, Hypothesis
@@ -20,6 +22,9 @@ from stages.diagnosis.sensor_results import SensorResult
 PLACES = ("frequency", "n", "phase")  # parameters of lines: where they are, not how large
 MAX_HARMLESS_MOVE = 0.5  # sigma of a parameter: what a cause may move and be harmless
 MIN_CLEAR_SIGMA = 4.0  # of a parameter: the effect is in its axis
+
+
+SINE_AND_COSINE = ("a", "b")  # of what is periodic in an angle
 
 
 @dataclass(frozen=True)
@@ -98,7 +103,14 @@ def sizes(effects: Iterable[Row]) -> dict[str, Size]:
 
 
 def _size(rows: Sequence[Row]) -> Size:
-    """Of an effect with a parameter for each axis the axis, where only one is clear."""
+    """Of an effect with a parameter for each axis the axis, where only one is clear.
+
+    Of a sine and a cosine it is the amplitude of both together.
+    """
+    if tuple(row["parameter"].rpartition(".")[2] for row in rows) == SINE_AND_COSINE:
+        both, sigmas = (np.array([row[key] for row in rows], float) for key in ("value", "sigma"))
+        amplitude = float(np.linalg.norm(both))
+        return Size(amplitude, float(np.linalg.norm(both * sigmas)) / amplitude, rows[0]["unit"])
     best = max(rows, key=_sigmas)
     clear = [i for i, row in enumerate(rows) if _sigmas(row) > MIN_CLEAR_SIGMA]
     each_axis = len(rows) == len(AXES) and rows[0]["effect"] not in TEMPERATURE_MODELS

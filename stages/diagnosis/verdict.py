@@ -44,7 +44,7 @@ OF_SEVERAL = _("in the model, by the mean over what it may be")  # not all of it
 IF_SET_RIGHT = _("{sensors}: {causes}. Set right; the result is valid on condition: {conditions}.")
 IF_ASSUMED = _("{sensors}: {causes}. The result is valid on condition: {conditions}.")
 # What is known to no better is said of a usable result.
-MAX_SCALE_SIGMA = 0.01  # of a scale factor
+MAX_SCALE_SIGMA = 5e-3  # of a scale factor
 MAX_CROSS_SIGMA = 5e-3  # rad, of a cross term
 MOST_NAMES = 4  # of causes, or parameters, in a sentence
 
@@ -227,8 +227,8 @@ def _why(causes: Sequence[Cause]) -> str:
 
 
 def _lacking(sensors: str, names: Sequence[str], own: Sequence[Cause]) -> str:
-    """First the causes by which manoeuvres are left out, which may have determined them."""
-    lost = [cause for cause in own if cause.cure == LEFT_OUT]
+    """First the causes by which readings are not used, which may have determined them."""
+    lost = [cause for cause in own if cause.cure in (LEFT_OUT, MASKED)]
     causes = _names(lost) + ". " if lost else ""
     if len(names) == len(TWELVE):
         sentence = _(

@@ -53,6 +53,8 @@ def warm_up_rows(
     away = columns[order] - columns[order[-1]]  # (n, 3, p)
     unit = quantity("bias", UNITS[solution.sensor]).laboratory
     for i, axis in enumerate(AXES):
+        if not away[:, i].any():  # no term of the model changes this bias: nothing is known of it
+            continue
         change = away[:, i] @ values
         outside = np.flatnonzero(np.abs(change) > band)
         words = {"axis": axis, "sensor": SINGULAR[solution.sensor]}

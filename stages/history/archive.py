@@ -82,7 +82,8 @@ class Archive:
         Calibrations of compensated logs hold what the first compensation left over, so they are
         not compared with the others. The order of campaigns without a date is unknown, so they
         are included. IMUs without a known serial number may be different ones, so they have no
-        earlier calibrations.
+        earlier calibrations. The same logs once more, as with something confirmed, are the same
+        calibration by another name.
         """
         if calibration["serial"] == "unknown":
             return []
@@ -93,8 +94,11 @@ class Archive:
             for entry in self.current(*campaigns)
             if all(entry.row[key] == calibration[key] for key in COMPARABLE_BY)
             and _is_not_later(entry.row["date"], calibration["date"])
+            and _logs(entry.row) != _logs(calibration)
         ]
-        return sorted(comparable, key=lambda entry: (entry.row["date"], entry.file))
+        comparable = sorted(comparable, key=lambda entry: (entry.row["date"], entry.file))
+        once = {_logs(entry.row) or entry.file: entry for entry in comparable}
+        return list(once.values())
 
     def of_serial(self, folder: str) -> list[Entry]:
         """The current entries of a serial number in the order of their dates; unknown ones first.
@@ -123,6 +127,12 @@ class Archive:
                 raise replace(refusal, cure="move this file out of the archive") from None
             self._read[path] = Entry(path.relative_to(self.root).as_posix(), row)
         return self._read[path]
+
+
+def _logs(calibration: Row) -> frozenset[str]:
+    """The SHA-256 of the logs of a calibration."""
+    inputs = calibration["inputs"]
+    return frozenset(row["sha256"] for row in inputs if row["file"] != "campaign.yaml")
 
 
 def results(entry: Entry) -> list[Row]:

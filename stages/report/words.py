@@ -104,7 +104,9 @@ def plain(parameter: str) -> str:
 # ---- How large a finding or a cause is, in the units of the laboratory.
 
 UNITS_OF_COUNTS = frozenset({"samples", "records", "readings", "days", "manoeuvres", "positions"})
-RUNS = frozenset({"saturation", "gap"})  # of which the size is that of the longest
+RUNS = frozenset(
+    {"saturation", "gap", "zero_below_threshold"}
+)  # of which the size is that of the longest
 RATIO = units.Unit("(ratio)", 1.0)
 # Faults whose size is a factor; other sizes without a dimension are small, in ppm.
 FACTORS = frozenset(

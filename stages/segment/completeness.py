@@ -93,12 +93,17 @@ def with_clipped(done: Performed, clipped: Mapping[str, Booleans]) -> Performed:
         names = ", ".join(channel_name(int(i)) for i in np.flatnonzero(channels))
         sentence += (
             _(
-                " Not used in {phase}, for readings touch the end of the range: {names}.",
+                " Not used in {phase}, for readings are cut off at the end of the range or below a "
+                "threshold: {names}.",
                 phase=phase,
                 names=names,
             )
             if phase not in ("", "rest")
-            else _(" Not used, for readings touch the end of the range: {names}.", names=names)
+            else _(
+                " Not used, for readings are cut off at the end of the range or below a threshold: "
+                "{names}.",
+                names=names,
+            )
         )
     return replace(done, sentence=sentence)
 

@@ -54,7 +54,7 @@ from stages.report.sections.certified_values import (
 )
 from stages.report.sections.comparisons import changed_in_words
 from stages.report.sections.findings import causes, spoils
-from stages.report.sections.verdict import LEVELS, verdict_sentences, worst
+from stages.report.sections.verdict import level, verdict_sentences, worst
 from stages.report.tables import Record, Tables, once
 from stages.report.words import count_in_words, term, with_mount
 
@@ -108,8 +108,7 @@ def title_of(tables: Tables, number: str) -> str:
 
 def parts(tables: Tables) -> Iterator[Part]:
     """What 7.8 asks for: who, what, how, with which standards; then results and statements."""
-    word, tone, meaning = LEVELS[worst(tables)]
-    yield Level(word, tone, meaning)
+    yield Level(*level(tables))
     misfits = (
         f"{capital(result.sensor)}: {result.fit_in_words()[0]}."
         for result in final_results(tables)

@@ -378,10 +378,10 @@ def _insignificant(rows: Sequence[Record], where: str) -> str:
     made = [row for row in rows if row["degrees"]]
     least = min(made, key=lambda row: float(row["p_value"]))
     sentence = _(
-        "{rows} tests for structure in the residuals of the model with the identified "
-        "effects{where}, against {listed}: none is significant, smallest {p_value} after "
-        "correction for the search ({least}, {least_2}).",
-        rows=_count(made),
+        "Tests for structure in the residuals of the model with the identified effects{where}, "
+        "{rows}, against {listed}: none is significant, smallest {p_value} after correction for "
+        "the search ({least}, {least_2}).",
+        rows=len(made),
         where=where,
         listed=listed([test_name(row) for row in made]),
         p_value=numbers.p_is(least["p_value"]),

@@ -171,7 +171,7 @@ def parts(tables: Tables) -> Iterator[Part]:
     rows = causes(tables)
     own = {row["id"]: findings_of(tables, row) for row in rows if in_recording(tables, row)}
     if not own:
-        yield Paragraph(_("None: nothing is wrong in the recording and its segments."), "good")
+        yield Paragraph(_("No fault was detected in the recording and its segments."), "good")
     for row in circumstances(tables.rows("segment_findings")):
         yield Paragraph(f"{row['sentence']} {row['consequence']} {row['action']}")
     shown = evidence(tables, [each for found in own.values() for each in found[:MOST_SHOWN]])

@@ -186,7 +186,9 @@ def _side_by_side(methods: Sequence[Estimate]) -> Table:
             unit = quantity_of(first[name]).shown.name
             lines.append(table_row(symbol(name), *(text for pair in cells for text in pair), unit))
     return Table(
-        _(
+        _("{sensor}: the parameters by method.", sensor=methods[0].sensor)
+        if len(methods) == 1
+        else _(
             "{sensor}: the same parameters by {count} methods.",
             sensor=methods[0].sensor,
             count=len(methods),

@@ -66,6 +66,7 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
         _("All parameters are determined, and no fault was detected."),
     ),
 }
+ONLY_LACKING = _("Parameters are not determined. The sentence of each sensor says which.")
 NOT_TESTABLE = _("not testable with this plan: whether it happened is not known")
 SURE = {
     "found": _("identified: no other cause explains these data as well"),
@@ -95,6 +96,15 @@ def worst(tables: Tables) -> str:
     """The verdict of the campaign: the worst of its sensors that are recorded."""
     given = {row["verdict"] for row in tables.rows("verdict") if row["recorded"]}
     return next((level for level in LEVELS if level in given), "not_usable")
+
+
+@once
+def level(tables: Tables) -> tuple[str, outline.Tone, str]:
+    """The verdict of the campaign in words, with its tone and what it means."""
+    word, tone, meaning = LEVELS[worst(tables)]
+    if worst(tables) == "not_usable" and not any(spoils(tables, row) for row in causes(tables)):
+        meaning = ONLY_LACKING
+    return word, tone, meaning
 
 
 def verdict_sentences(tables: Tables) -> Iterator[str]:
@@ -292,7 +302,7 @@ SECTION = outline.Section(
 
 def as_text(tables: Tables) -> str:
     """The verdict as plain text, 80 letters wide."""
-    word, _tone, meaning = LEVELS[worst(tables)]
+    word, _tone, meaning = level(tables)
     lines = []
     if tables.row("campaign")["simulated"]:
         lines += [*wrapped(SIMULATED, 80), ""]
