@@ -131,7 +131,10 @@ def _next(
             tables.SCORES.read(derived / "criticism/scores.parquet"),
         )
         if not classes:
-            return _("There is no class to be split: what was found is found, or nothing was."), ""
+            return _(
+                "Nothing to add: each effect that was found in this campaign is one alone, or none "
+                "was found. For a smaller sigma state WANT=, such as gyroscope/scale=5e-6."
+            ), ""
         data = next(each for each in mounts if each.mount == classes[0].mount)
         here, own = _at(table, data), session_seconds(data.plan, table.pace)
         visits = possible(

@@ -399,8 +399,8 @@ class ManoeuvreSwapped(PlanDetector):
             )
         else:
             sentence = _(
-                "In {logs}, {first} and {second} are exchanged: each shows what the plan has of the "
-                "other.",
+                "In {logs}, {first} and {second} are exchanged: each shows what the plan has of "
+                "the other.",
                 logs=swapped.logs[0],
                 first=first,
                 second=second,

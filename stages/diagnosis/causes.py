@@ -63,6 +63,7 @@ from stages.diagnosis.sizes_of_causes import (
     turns_of,
 )
 
+MIN_MOVE = 0.01  # sigma: less is nothing
 REPAIRED, MODELLED, CURVE, MASKED = "repaired", "modelled", "curve", "masked"
 INTERPOLATED, LEFT_OUT, NONE = "interpolated", "left_out", "none"
 APPLIED = ("applied", "confirmed")  # states of a repair that the blocks were made with
@@ -212,6 +213,12 @@ class Cause:
     def _one(self, place: str) -> bool:
         return len({getattr(member.cause, place) for member in self.members}) == 1
 
+    @property
+    def _moves_nothing(self) -> bool:
+        """Whether it is an effect of which the result is free, in the model or not."""
+        known = self.main.stage == MODEL and self.moves is not None
+        return known and float(self.moves or 0.0) < MIN_MOVE
+
     def row(self, sizes: Mapping[str, Size], sentences: Mapping[str, str]) -> Row:
         """Its row; `sizes`, `sentences`: of effects, by the finding that names them."""
         main, repair = self.main, self.main.repair
@@ -254,7 +261,7 @@ class Cause:
             "held_out_drop": self.held_out_drop,
             "moves": self.moves,
             "condition": self.condition,
-            "consequence": self.most_moved + main.row["consequence"],
+            "consequence": "" if self._moves_nothing else self.most_moved + main.row["consequence"],
             "done": self.done,
             "action": TURN_AGAIN if self.saturated else main.action,
         }

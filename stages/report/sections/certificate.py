@@ -10,7 +10,7 @@ from inertial.sensors import PLURAL
 from inertial.tables import AXES, BODY
 from inertial.text import numbers
 from inertial.text.cause_names import in_words
-from inertial.text.messages import _, listed
+from inertial.text.messages import _
 from inertial.text.parameters import STAGES
 from inertial.text.statements import (
     IN_FULL_ONLY,
@@ -54,7 +54,7 @@ from stages.report.sections.certified_values import (
 )
 from stages.report.sections.comparisons import changed_in_words
 from stages.report.sections.findings import causes, spoils
-from stages.report.sections.verdict import level, verdict_sentences, worst
+from stages.report.sections.verdict import guesses, level, verdict_sentences
 from stages.report.tables import Record, Tables, once
 from stages.report.words import count_in_words, term, with_mount
 
@@ -75,10 +75,6 @@ ITEMS = {  # of the left and of the right column, each with the items that it jo
     _("Measured with"): ("conditions.measured_with",),
 }
 IF_STATED = {"laboratory.place", "item.axes", "conditions.humidity", "conditions.measured_with"}
-GUESSES = _(
-    "Guessed in the campaign file and not confirmed: {guesses}. The values below are as good as "
-    "these guesses. Correct them there, and delete from `guessed` what is confirmed."
-)
 # Of the errors of the table those on which the results rest, by their sources in the budget.
 TABLE_ERRORS = {"position": "position", "turn_angle": "angle"}
 MIN_UNCORRECTED = 0.1  # σ of a parameter, from which a cause that is not corrected is stated
@@ -115,8 +111,8 @@ def parts(tables: Tables) -> Iterator[Part]:
         if result.misfit
     )
     yield Sentences((*verdict_sentences(tables), *misfits))
-    if guesses := [term(row["part"]) for row in tables.rows("guesses")]:
-        yield Paragraph(GUESSES.format(guesses=listed(guesses)), "fair")
+    if guessed := guesses(tables):
+        yield Paragraph(guessed, "fair")
     yield Facts(tuple(_facts(tables)))
     yield _standards(tables)
     if frame_of(final_results(tables)) == BODY:

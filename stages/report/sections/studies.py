@@ -301,8 +301,8 @@ def _middles(tables: Tables) -> Table:
         _("None: no pair of whole turns forward and backward was recorded."),
         _(
             "By time, σ includes that of the table's rate; the last column includes only noise and "
-            "the remainder of an oscillation, so a difference far beyond it is due to the speed of the "
-            "table, or to the clock of the IMU: by the clock all gyros have it alike."
+            "the remainder of an oscillation, so a difference far beyond it is due to the speed of "
+            "the table or, where all gyros have it alike, to the clock of the IMU."
         ),
     )
 

@@ -6,7 +6,7 @@ from math import degrees
 
 from inertial.campaign.hypotheses import JUMP_NOT_TESTABLE
 from inertial.text.cause_names import in_words
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import (
     fixed,
     p_is,
@@ -28,7 +28,7 @@ from stages.report.sections.findings import (
     title_of,
 )
 from stages.report.tables import Record, Tables, once
-from stages.report.words import how_large
+from stages.report.words import how_large, term
 
 SIMULATED = _(
     "SIMULATED: recorded by the simulated laboratory. No instrument of this serial was calibrated."
@@ -67,6 +67,10 @@ LEVELS: dict[str, tuple[str, outline.Tone, str]] = {
     ),
 }
 ONLY_LACKING = _("Parameters are not determined. The sentence of each sensor says which.")
+GUESSES = _(
+    "Guessed in the campaign file and not confirmed: {guesses}. The values are as good as these "
+    "guesses. Correct them there, and delete from `guessed` what is confirmed."
+)
 NOT_TESTABLE = _("not testable with this plan: whether it happened is not known")
 SURE = {
     "found": _("identified: no other cause explains these data as well"),
@@ -105,6 +109,12 @@ def level(tables: Tables) -> tuple[str, outline.Tone, str]:
     if worst(tables) == "not_usable" and not any(spoils(tables, row) for row in causes(tables)):
         meaning = ONLY_LACKING
     return word, tone, meaning
+
+
+def guesses(tables: Tables) -> str:
+    """What of the campaign file is guessed, as a sentence; empty where nothing is."""
+    guessed = [term(row["part"]) for row in tables.rows("guesses")]
+    return GUESSES.format(guesses=listed(guessed)) if guessed else ""
 
 
 def verdict_sentences(tables: Tables) -> Iterator[str]:
@@ -200,7 +210,7 @@ def _effect_on_result(row: Record) -> str:
     moves = row["moves"]
     if moves is None:
         return str(row["consequence"])
-    return f"{_moves(row['cure'], moves)} {row['consequence']}"
+    return f"{_moves(row['cure'], moves)} {row['consequence']}".rstrip()
 
 
 def _moves(cure: str, moves: float) -> str:
@@ -309,6 +319,7 @@ def as_text(tables: Tables) -> str:
     lines += [_("Verdict: {word}", word=word), *wrapped(meaning, 80), ""]
     for sentence in verdict_sentences(tables):
         lines += wrapped(typeset(sentence), 80, "- ", "  ")
+    lines += ["", *wrapped(typeset(guessed), 80)] if (guessed := guesses(tables)) else []
     for row in causes(tables):
         title = f"{title_of(tables, row)} ({_grade(row)})"
         lines += ["", *wrapped(typeset(title), 80)]
