@@ -250,6 +250,7 @@ def test_the_report_gets_the_earlier_calibrations_of_the_same_imu(tmp_path: Path
     assert row == {
         "campaign": "spring",
         "date": "2026-03-02",
+        "table": "three-axis",
         "file": held["file"],
         "id": "diagnosis/gyroscope/bias_x",
         "mount": "",

@@ -251,9 +251,10 @@ ARCHIVED = table(
 )
 EARLIER = table(
     "earlier",
-    4,
+    5,
     text("campaign", "campaign of another calibration of the same IMU"),
     text("date", "its date, not later than this campaign's, or unknown"),
+    text("table", "name of its table"),
     text("file", "the archive's file that holds it"),
     text("id", "identifier of the parameter in its calibration"),
     MOUNT,

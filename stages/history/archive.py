@@ -141,7 +141,7 @@ def results(entry: Entry) -> list[Row]:
     `shared`: by reference, what of a sigma is its error.
     """
     verdicts = {(row["mount"], row["sensor"]): row for row in entry.row["verdicts"]}
-    origin = {"campaign": entry.row["campaign"], "date": entry.row["date"], "file": entry.file}
+    origin = {key: entry.row[key] for key in ("campaign", "date", "table")} | {"file": entry.file}
     nothing: Row = {"verdict": None, "condition": None}
     shared: dict[tuple[str, str, str], dict[str, float]] = {}
     for row in entry.row[REFERENCES]:

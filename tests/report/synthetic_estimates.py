@@ -355,6 +355,7 @@ def earlier(made: dict[str, Any], generator: np.random.Generator) -> Rows:
                     {
                         "campaign": f"campaign of {date}",
                         "date": date,
+                        "table": "three-axis",
                         "file": f"simulated/NovAtel+SPAN-CPT/SIM-001/{date}.parquet",
                         "id": row.id,
                         "sensor": row.sensor,

@@ -332,6 +332,13 @@ def _statements(tables: Tables, earlier: Mapping[str, Record]) -> Iterator[str]:
             date=before["date"],
             campaign=before["campaign"],
         )
+        if before["table"] != (table := tables.row("campaign")["table"]):
+            yield _(
+                "It was on another table, {before}, and this one on {table}: an error of either "
+                "is in the change.",
+                before=before["table"],
+                table=table,
+            )
     else:
         yield _(
             "No earlier calibration of this item is on file, so no as-found values can be stated."

@@ -378,10 +378,9 @@ def _insignificant(rows: Sequence[Record], where: str) -> str:
     made = [row for row in rows if row["degrees"]]
     least = min(made, key=lambda row: float(row["p_value"]))
     sentence = _(
-        "Tests for structure in the residuals of the model with the identified effects{where}, "
-        "{rows}, against {listed}: none is significant, smallest {p_value} after correction for "
-        "the search ({least}, {least_2}).",
-        rows=len(made),
+        "The residuals of the model with the identified effects{where} were tested for structure "
+        "against {listed}: none is significant, smallest {p_value} after correction for the "
+        "search ({least}, {least_2}).",
         where=where,
         listed=listed([test_name(row) for row in made]),
         p_value=numbers.p_is(least["p_value"]),

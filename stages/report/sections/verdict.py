@@ -305,7 +305,7 @@ SECTION = outline.Section(
     _("What is wrong, and what was done"),
     _("Each cause once, with its consequences: how sure and how large it is, and its cure."),
     "",
-    (*FINDING_TABLES, "campaign", "known", "clocks", "blocks"),
+    (*FINDING_TABLES, "campaign", "guesses", "known", "clocks", "blocks"),
     parts,
 )
 
