@@ -81,6 +81,29 @@ def test_what_follows_in_one_log_and_attitude_shares_its_position(tmp_path):
     }
 
 
+def test_one_name_of_two_azimuths_is_two_positions(tmp_path):
+    """Without a mark; a turn back begins where the one before it ended, not where it began."""
+    of = "do: turn, up: +x, rate_deg_s: 10, accel_deg_s2: 5, position: face, degrees"
+    text = BY_TABLE + "".join(
+        f"  - {{id: {row}}}\n"
+        for row in (
+            "face, do: rest, up: +x, seconds: 60, position: face",
+            f"there, {of}: 86.5",
+            f"back, {of}: -86.5",
+            f"whole, {of}: 720",
+            f"again, {of}: 86.5",
+            "over, do: rest, up: -x, seconds: 60, position: other",
+            f"anew, {of}: 86.5",
+            f"marked, {of}: -86.5, mark: +y",
+        )
+    )
+    rows = manoeuvres_of(planned(tmp_path, text)["manoeuvres"])
+    named = {row.name: row.position for row in rows}
+    assert named["back"] == "face, 86.5° on"
+    alike = ("face", "there", "whole", "again", "anew", "marked")
+    assert {named[name] for name in alike} == {"face"}
+
+
 def test_a_tumble_turns_the_body_under_the_plumb_line(tmp_path):
     tumble = "do: tumble, about: +x, up: +z, step_degrees: 20, steps: 18, and_back: true"
     text = BY_TABLE.split("plan:")[0] + f"plan:\n  - {{id: t, {tumble}, seconds: 20}}\n"

@@ -1,7 +1,8 @@
 """The manoeuvres of a plan, every shorthand expanded: one row each, SI, body axes."""
 
 from collections.abc import Iterator, Mapping
-from math import cos, isclose, pi, radians
+from dataclasses import dataclass
+from math import cos, degrees, isclose, pi, radians
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 DIRECTIONS = np.eye(3)
 MAX_BELOW_RATE = 0.01  # by which a turn may stay below its rate
 
+UPRIGHT = 1 - 1e-9  # cosine of the vertical and an axis along it
 ATTITUDE = tuple(f"{of}_{axis}" for of in ("up", "mark") for axis in tables.AXES)
 _ALWAYS = {
     "id",
@@ -125,6 +127,31 @@ def stays_in_position(before: Row, after: Row) -> bool:
     alike = all(before[name] == after[name] for name in ATTITUDE)
     set_anew = before["tumble"] or after["tumble"] or are_means(after["layout"])
     return comes_back and alike and not set_anew
+
+
+@dataclass
+class StatedPosition:
+    """A position that the campaign names, and how far turns about the vertical took it on, rad."""
+
+    name: str | None = None
+    file: str | None = None
+    turned: float = 0.0
+
+    def of(self, row: Row) -> Row:
+        """The position of the next manoeuvre, where it begins with another azimuth than was set.
+
+        After a turn by no whole revolution without a mark only the plan tells that it does.
+        """
+        if (row["position"], row["file"]) != (self.name, self.file):
+            self.name, self.file, self.turned = row["position"], row["file"], 0.0
+        on = round(degrees(self.turned), 6) % 360
+        up, about = ([row[f"{of}_{axis}"] for axis in tables.AXES] for of in ("up", "about"))
+        if None in up or row["mark_x"] is not None:
+            return {}
+        if None not in about:
+            upright = float(np.dot(up, about))
+            self.turned += (row["angle"] or 0.0) * upright if abs(upright) > UPRIGHT else 0.0
+        return {"position": _("{position}, {on:g}° on", position=self.name, on=on)} if on else {}
 
 
 def _temperature(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:

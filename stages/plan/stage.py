@@ -20,7 +20,7 @@ from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from stages.plan.certificate import Statements, allowed_changes
 from stages.plan.declared import DECLARED
-from stages.plan.manoeuvres import expanded, stays_in_position
+from stages.plan.manoeuvres import StatedPosition, expanded, stays_in_position
 from stages.plan.published import published_values
 from stages.plan.recording import (
     by_log,
@@ -173,7 +173,7 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list
     """The plan with every shorthand expanded, in its order, each with its log."""
     rows: dict[str, Row] = {}
     rate = StatedRate.of(file, listed)
-    cycles, before = 0, None
+    cycles, before, stated = 0, None, StatedPosition()
     for number, item in enumerate(file.content["plan"]):
         cycles += bool(rows and item.get("power_cycle"))  # before the first there is no part
         for row in expanded(file, ["plan", number], item):
@@ -186,8 +186,9 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list
                 )
             where = recording(file, ["plan", number], item, entry, rate)
             for each in one_by_one(row | where):
-                stated = "position" in item
-                if before is not None and not stated and stays_in_position(before, each):
+                if "position" in item:
+                    each |= stated.of(each)
+                elif before is not None and stays_in_position(before, each):
                     each |= {"position": before["position"]}
                 before = each
                 rows[each["manoeuvre"]] = each | {"number": number, "switch_on": cycles}
