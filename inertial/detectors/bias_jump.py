@@ -87,7 +87,11 @@ class BiasJump(Detector):
             significant=significant(abs(event.size) / jumped.noise, 2),
         )
         if i >= 3 and not jumped.jump.agreement.conclusive:
-            sentence += _(" A slow turn about the vertical cannot be distinguished from it.")
+            upright = abs(jumped.upright) > MIN_UPRIGHT_SHARE
+            sentence += _(
+                " A slow turn about {axis} cannot be distinguished from it.",
+                axis=_("the vertical") if upright else axis,
+            )
         return Description(
             sentence,
             _consequence(event, i),

@@ -456,10 +456,10 @@ def _or_a_sign(recorded: Recorded, own: list[int]) -> str:
 
 def _if_used(recorded: Recorded, own: list[int]) -> str:
     if all(recorded.do[i] == "rest" for i in own):
-        gravity = 2 * recorded.given.gravity
+        apart = np.linalg.norm(recorded.up[own][:, None] - recorded.up[own], axis=-1).max()
         return _(
-            "Used as named, each mean would be wrong by up to {gravity:.3g} m/s², twice gravity.",
-            gravity=gravity,
+            "Used as named, each mean would be wrong by up to {wrong:.3g} m/s².",
+            wrong=recorded.given.gravity * (apart if np.isfinite(apart) else 2.0),
         )
     angles = np.degrees(np.abs(recorded.angle[own]))
     if np.isfinite(angles).all():

@@ -329,7 +329,7 @@ def _restated(restated: Rescaled) -> Description:
 # ---- Turns that go farther than planned.
 
 USUAL_ANGLE = 45.0  # °, of whose multiples the angle of a turn usually is
-MAX_OF_USUAL = 0.01  # relative, up to which it is one of these: at 360° they are 0.12 apart
+MAX_OF_USUAL = 0.01  # relative, of no more than a whole turn, up to which it is one of these
 MAX_RATIO_DIFFERENCE = 0.01  # relative, of turns that are off by one factor
 
 
@@ -398,7 +398,8 @@ def _cure(recorded: Recorded, same: Sequence[int]) -> str:
     as_planned = np.abs(rate[same] - 1) <= recorded.tolerance
     moved = np.degrees(recorded.moved[same])
     likely = USUAL_ANGLE * np.round(moved / USUAL_ANGLE)
-    usual = likely.all() and (np.abs(moved / np.where(likely, likely, 1) - 1) < MAX_OF_USUAL).all()
+    within = MAX_OF_USUAL * np.minimum(np.abs(moved), 360)
+    usual = likely.all() and (np.abs(moved - likely) < within).all()
     if not usual or not (as_planned | np.isnan(rate[same])).all():
         return _("State the degrees through which the table turned, or record again.")
     return _(

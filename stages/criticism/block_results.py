@@ -188,7 +188,11 @@ class BlockResults:
             return sentences.action_against_restarts(manoeuvres)
         if cause.effect == "latitude_error":
             known = np.arcsin(self.campaign.solution.site.earth_up / EARTH_RATE)
-            return sentences.action_against_latitude(known + (parameters[0].value or 0.0))
+            latitude = known + (parameters[0].value or 0.0)
+            surveyed = bool(self.campaign.motion.surveyed.any())
+            return sentences.action_against_latitude(latitude, surveyed=surveyed)
+        if cause.effect == "heading_error":
+            return sentences.action_against_heading(parameters[0].value or 0.0)
         timed = not without_clock(self.campaign.motion)
         chosen = cause.effect in self.selection.families
         effect = self.selection.effect(cause.effect, cause.value) if chosen else None

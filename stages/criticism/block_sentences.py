@@ -102,7 +102,11 @@ ACTION_OF_RESTART = _(
 )
 ACTION_OF_LATITUDE = _(
     "By the gyros the table stands at {latitude}°: correct latitude_deg, from which the earth's "
-    "rate and normal gravity follow; or heading_deg, if that is uncertain."
+    "rate and normal gravity follow{or_heading}."
+)
+ACTION_OF_HEADING = _(
+    "By the gyros the table's zero mark is {angle}° further {sense} than stated, seen from above: "
+    "state heading_deg by so much {larger}; or see whether each `mark` is right."
 )
 ACTION_WITHOUT_LAW = _(
     "Look at the residuals against time; record again with the IMU switched on long before."
@@ -283,9 +287,21 @@ def action_against_restarts(manoeuvres: Sequence[str]) -> str:
     return action.format(manoeuvres=listed(manoeuvres))
 
 
-def action_against_latitude(latitude: float) -> str:
-    """What to do where the gyros show another latitude, rad."""
-    return ACTION_OF_LATITUDE.format(latitude=fixed(float(np.degrees(latitude)), 2))
+def action_against_heading(error: float) -> str:
+    """What to do where the gyros show another azimuth; `error`: true less stated, rad."""
+    return ACTION_OF_HEADING.format(
+        angle=significant(abs(float(np.degrees(error))), 3),
+        sense=_("clockwise") if error > 0 else _("counter-clockwise"),
+        larger=_("larger") if error > 0 else _("smaller"),
+    )
+
+
+def action_against_latitude(latitude: float, *, surveyed: bool) -> str:
+    """What to do where the gyros show another latitude, rad; `surveyed`: a heading is stated."""
+    return ACTION_OF_LATITUDE.format(
+        latitude=fixed(float(np.degrees(latitude)), 2),
+        or_heading=_("; or heading_deg, if that is uncertain") if surveyed else "",
+    )
 
 
 def split_sentence(split: Splitting | None) -> str:

@@ -108,4 +108,4 @@ def test_what_is_small_is_masked_and_no_axis_is_dead():
     turning = np.abs(left) > np.radians(1.0)
     assert np.count_nonzero(turning) == np.count_nonzero(np.abs(values[:, 3:]) > np.radians(1.0))
     told = ZeroBelowThreshold().describe_many([("log", event) for event in events]).sentence
-    assert "readings below 0.300 °/s, gyros x, y, z read exactly 0" in told
+    assert "less than 0.300 °/s, of either sign, gyros x, y, z read exactly 0" in told
