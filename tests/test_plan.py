@@ -81,27 +81,30 @@ def test_what_follows_in_one_log_and_attitude_shares_its_position(tmp_path):
     }
 
 
-def test_one_name_of_two_azimuths_is_two_positions(tmp_path):
-    """Without a mark; a turn back begins where the one before it ended, not where it began."""
-    of = "do: turn, up: +x, rate_deg_s: 10, accel_deg_s2: 5, position: face, degrees"
+def test_of_one_position_it_is_known_how_far_each_manoeuvre_begins_further_about_the_vertical(
+    tmp_path,
+):
+    """A turn back begins where the one before it ended; so do the marks say, where they are."""
+    of = "do: turn, up: +x, rate_deg_s: 10, accel_deg_s2: 5, degrees"
     text = BY_TABLE + "".join(
         f"  - {{id: {row}}}\n"
         for row in (
             "face, do: rest, up: +x, seconds: 60, position: face",
-            f"there, {of}: 86.5",
-            f"back, {of}: -86.5",
-            f"whole, {of}: 720",
-            f"again, {of}: 86.5",
+            f"there, position: face, {of}: 86.5",
+            f"back, position: face, {of}: -86.5",
+            f"whole, position: face, {of}: 720",
+            f"again, position: face, {of}: 86.5",
             "over, do: rest, up: -x, seconds: 60, position: other",
-            f"anew, {of}: 86.5",
-            f"marked, {of}: -86.5, mark: +y",
+            f"anew, position: face, {of}: 86.5",
+            f"y-mark, {of}: 90, mark: +y, position: marked",
+            f"z-mark, {of}: -90, mark: -z, position: marked",
         )
     )
     rows = manoeuvres_of(planned(tmp_path, text)["manoeuvres"])
-    named = {row.name: row.position for row in rows}
-    assert named["back"] == "face, 86.5° on"
-    alike = ("face", "there", "whole", "again", "anew", "marked")
-    assert {named[name] for name in alike} == {"face"}
+    on = {row.name: np.degrees(row.turned_on) for row in rows}
+    # A quarter about x, up, takes what was along −z to y: so the mark, which stays, was along y.
+    expected = dict.fromkeys(on, 0.0) | {"back": 86.5, "z-mark": 90.0}
+    assert on == pytest.approx(expected)
 
 
 def test_a_tumble_turns_the_body_under_the_plumb_line(tmp_path):

@@ -29,7 +29,7 @@ from inertial.campaign.static_positions import (
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.noise_model import sigma_of_mean
 from inertial.estimation.random_walk import MeasuredDrift, Stretch
-from inertial.physics.motion import Motion, level_axes, mean_turned
+from inertial.physics.motion import Motion, mean_turned
 from inertial.sensors import SENSORS
 from inertial.tables import ACCEL
 
@@ -175,7 +175,7 @@ def _turning(
     moving, resting, swing = noise
     density = np.where(steady, moving, np.fmax(moving, resting))
     sigmas = sigma_of_mean(density, swing, merged.seconds[:, None])
-    axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes(m.up)]
+    axes = [merged.mean(mean_turned(axis, *turned)) for axis in m.level_axes]
     level = np.stack(axes, axis=1)
     if case is None:
         between = np.concatenate([read[:1], (read[1:] + read[:-1]) / 2, read[-1:]])

@@ -140,6 +140,8 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
         return Position(m.position, np.zeros(3))
     if m.mark is None and m.tumble is not None and m.tumble_axis is not None:
         return Position(m.position, up, horizontal(m.tumble_axis, up), azimuth=m.tumble)
+    if m.mark is None and m.turned_on:
+        return Position(m.position, up, mark=m.level_axes[0], azimuth=m.position)
     if m.mark is None:
         return Position(m.position, up)
     mark = horizontal(m.mark, up)

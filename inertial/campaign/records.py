@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
+from inertial.physics.motion import level_axes, turned
 from inertial.tables import AXES
 from inertial.text.messages import _
 
@@ -43,6 +44,7 @@ class Manoeuvre:
     """One manoeuvre of the plan; vectors (3,) in body axes, SI and radians, None where unknown.
 
     Of a rest of a `tumble`: `tumble_axis` and `tumbled`, the angle since its start along it, (3,).
+    `turned_on`: by how much it begins further about the vertical than the first of its position.
     """
 
     name: str
@@ -71,6 +73,13 @@ class Manoeuvre:
     tumble: str | None = None
     tumble_axis: Array | None = None
     tumbled: Array | None = None
+    turned_on: float = 0.0
+
+    @property
+    def level_axes(self) -> Array:
+        """Two level directions, (2, 3), the same in the laboratory for all of its position."""
+        assert self.up is not None  # else it is by hand
+        return np.array([turned(axis, self.up, self.turned_on) for axis in level_axes(self.up)])
 
     @property
     def selected(self) -> bool:

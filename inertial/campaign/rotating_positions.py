@@ -25,7 +25,7 @@ from inertial.campaign.static_positions import (
 from inertial.estimation.accelerometers import StaticForce
 from inertial.estimation.effect_information import Sensitivities
 from inertial.estimation.noise_model import sigma_of_mean
-from inertial.physics.motion import is_vertical, level_axes, mean_turned
+from inertial.physics.motion import is_vertical, mean_turned
 from inertial.tables import ACCEL, AXES, GYRO, STATIC_PHASES
 
 LEVER_ARM = {f"lever_arm.{axis}": 0.1 for axis in AXES}  # m, sigma: no IMU is mounted farther off
@@ -75,7 +75,7 @@ def _steady(
     for gap in gaps_of(part):
         middle[gap.before :] += gap.shares @ angle
     ups = mean_turned(m.up, m.axis, middle, angle)
-    axes = np.stack([mean_turned(own, m.axis, middle, angle) for own in level_axes(m.up)], axis=1)
+    axes = np.stack([mean_turned(own, m.axis, middle, angle) for own in m.level_axes], axis=1)
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     rate = angle / seconds
     upright = is_vertical(m.up, m.axis)

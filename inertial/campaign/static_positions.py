@@ -145,10 +145,12 @@ class StaticPosition:
 
     @property
     def _level(self) -> Array | None:
-        """The level axes of the start in body axes now, (2, 3), after part of a turn."""
-        if not are_parts_of_turns(np.asarray(self.angle)) or not self.up.any():
+        """The level axes of its position in body axes now, (2, 3), where it has turned since."""
+        since = np.array([self.angle, self.manoeuvre.turned_on])
+        if not are_parts_of_turns(since).any() or not self.up.any():
             return None
-        return np.array([turned(axis, self.about, self.angle) for axis in level_axes(self.up)])
+        axes = self.manoeuvre.level_axes
+        return np.array([turned(axis, self.about, self.angle) for axis in axes])
 
     def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
         """Mean reading over the first `seconds`, and its sigma from the noise."""

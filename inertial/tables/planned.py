@@ -129,7 +129,7 @@ INPUTS = table(
 )
 MANOEUVRES = table(
     "manoeuvres",
-    6,
+    7,
     text("manoeuvre", "identifier, unique in the campaign"),
     text("do", "rest, turn or positions"),
     LOG,
@@ -139,6 +139,11 @@ MANOEUVRES = table(
     *vector("up", "1", "unit vector that points up at the start"),
     *vector("mark", "1", "unit vector to the table's zero mark at the start"),
     *vector("about", "1", "unit vector of the axis of the turn"),
+    number(
+        "turned_on",
+        "rad",
+        "by which it begins further about the vertical than the first manoeuvre of its position",
+    ),
     optional_text("tumble", "the tumble that a rest is one of"),
     *vector("tumble_axis", "1", "unit vector of the axis of that tumble"),
     *vector("tumbled", "rad", "angle since the start of the tumble, about its axis"),

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from math import cos, degrees, isclose, pi, radians
+from math import cos, isclose, pi, radians
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from stages.plan.taken_as_known import ASSUMED_ANGLE, by_hand
 DIRECTIONS = np.eye(3)
 MAX_BELOW_RATE = 0.01  # by which a turn may stay below its rate
 
+MIN_TURNED = 1e-9  # rad, less is rounding
 UPRIGHT = 1 - 1e-9  # cosine of the vertical and an axis along it
 ATTITUDE = tuple(f"{of}_{axis}" for of in ("up", "mark") for axis in tables.AXES)
 _ALWAYS = {
@@ -67,6 +68,7 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
         "rate": None,
         "rate_sigma": None,
         "acceleration": in_si(item.get("accel_deg_s2"), DEGREE),
+        "turned_on": 0.0,
         "tumble": None,
         **_components({"tumble_axis": None, "tumbled": None}),
         **_temperature(file, key, item),
@@ -131,27 +133,38 @@ def stays_in_position(before: Row, after: Row) -> bool:
 
 @dataclass
 class StatedPosition:
-    """A position that the campaign names, and how far turns about the vertical took it on, rad."""
+    """A position that the campaign names, as it is used in one log.
+
+    `mark`: (3,), as the first manoeuvre has it; `turned`: rad, by the turns without a mark so far.
+    """
 
     name: str | None = None
     file: str | None = None
+    mark: Array | None = None
     turned: float = 0.0
 
-    def of(self, row: Row) -> Row:
-        """The position of the next manoeuvre, where it begins with another azimuth than was set.
+    def turned_on(self, row: Row) -> float:
+        """By how much the next manoeuvre begins further about the vertical than the first, rad.
 
-        After a turn by no whole revolution without a mark only the plan tells that it does.
+        The marks tell it; without any the turns of the plan do, if they are no whole revolutions.
         """
+        up, mark, about = (_vector(row, of) for of in ("up", "mark", "about"))
         if (row["position"], row["file"]) != (self.name, self.file):
-            self.name, self.file, self.turned = row["position"], row["file"], 0.0
-        on = round(degrees(self.turned), 6) % 360
-        up, about = ([row[f"{of}_{axis}"] for axis in tables.AXES] for of in ("up", "about"))
-        if None in up or row["mark_x"] is not None:
-            return {}
-        if None not in about:
-            upright = float(np.dot(up, about))
-            self.turned += (row["angle"] or 0.0) * upright if abs(upright) > UPRIGHT else 0.0
-        return {"position": _("{position}, {on:g}° on", position=self.name, on=on)} if on else {}
+            self.name, self.file, self.mark, self.turned = row["position"], row["file"], mark, 0.0
+        if up is None:
+            return 0.0
+        if mark is not None:
+            first = mark if self.mark is None else self.mark
+            return float(np.arctan2(np.cross(mark, first) @ up, mark @ first))
+        on = float(np.arctan2(np.sin(self.turned), np.cos(self.turned)))
+        if about is not None and abs(up @ about) > UPRIGHT:
+            self.turned += (row["angle"] or 0.0) * float(up @ about)
+        return on if abs(on) > MIN_TURNED else 0.0
+
+
+def _vector(row: Row, of: str) -> Array | None:
+    components = [row[f"{of}_{axis}"] for axis in tables.AXES]
+    return None if None in components else np.array(components)
 
 
 def _temperature(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:

@@ -187,7 +187,7 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list
             where = recording(file, ["plan", number], item, entry, rate)
             for each in one_by_one(row | where):
                 if "position" in item:
-                    each |= stated.of(each)
+                    each |= {"turned_on": stated.turned_on(each)}
                 elif before is not None and stays_in_position(before, each):
                     each |= {"position": before["position"]}
                 before = each

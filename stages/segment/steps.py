@@ -294,8 +294,9 @@ def _other_way_up(m: Manoeuvre) -> Manoeuvre:
 
 
 def _turned_back(m: Manoeuvre) -> Manoeuvre:
-    angle = None if m.angle is None else -m.angle
-    return replace(m, angle=angle, rate=None if m.rate is None else -m.rate)
+    angle, rate = (None if value is None else -value for value in (m.angle, m.rate))
+    on = -m.turned_on if m.mark is None else m.turned_on
+    return replace(m, angle=angle, rate=rate, turned_on=on)
 
 
 def _tumbled_back(m: Manoeuvre) -> Manoeuvre:
