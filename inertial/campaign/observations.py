@@ -23,6 +23,7 @@ from inertial.campaign.static_positions import (
     Blocks,
     StaticPosition,
     case_axes,
+    level_axes_of,
     of_faster_waves,
     turn_errors,
 )
@@ -175,7 +176,7 @@ def _turning(
     moving, resting, swing = noise
     density = np.where(steady, moving, np.fmax(moving, resting))
     sigmas = sigma_of_mean(density, swing, merged.seconds[:, None])
-    axes = [merged.mean(mean_turned(axis, *turned)) for axis in m.level_axes]
+    axes = [merged.mean(mean_turned(axis, *turned)) for axis in level_axes_of(m)]
     level = np.stack(axes, axis=1)
     if case is None:
         between = np.concatenate([read[:1], (read[1:] + read[:-1]) / 2, read[-1:]])

@@ -10,7 +10,7 @@ from inertial.campaign.encoder import by_windows
 from inertial.campaign.noise_levels import NoiseLevels
 from inertial.campaign.recorded_turns import Rotation, gaps_of, mean_rate, recorded_turns, sigma_of
 from inertial.campaign.records import Manoeuvre, Part
-from inertial.campaign.static_positions import StaticPosition, stretch_of
+from inertial.campaign.static_positions import StaticPosition, level_axes_of, stretch_of
 from inertial.estimation.gyroscope_observations import (
     Earth,
     Position,
@@ -141,7 +141,7 @@ def position_of(m: Manoeuvre, heading: float | None) -> Position:
     if m.mark is None and m.tumble is not None and m.tumble_axis is not None:
         return Position(m.position, up, horizontal(m.tumble_axis, up), azimuth=m.tumble)
     if m.mark is None and m.turned_on:
-        return Position(m.position, up, mark=m.level_axes[0], azimuth=m.position)
+        return Position(m.position, up, mark=level_axes_of(m)[0], azimuth=m.position)
     if m.mark is None:
         return Position(m.position, up)
     mark = horizontal(m.mark, up)

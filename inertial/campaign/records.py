@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 
 from inertial.arrays import Array
-from inertial.physics.motion import level_axes, turned
 from inertial.tables import AXES
 from inertial.text.messages import _
 
@@ -74,12 +73,6 @@ class Manoeuvre:
     tumble_axis: Array | None = None
     tumbled: Array | None = None
     turned_on: float = 0.0
-
-    @property
-    def level_axes(self) -> Array:
-        """Two level directions, (2, 3), the same in the laboratory for all of its position."""
-        assert self.up is not None  # else it is by hand
-        return np.array([turned(axis, self.up, self.turned_on) for axis in level_axes(self.up)])
 
     @property
     def selected(self) -> bool:

@@ -18,6 +18,7 @@ from inertial.campaign.static_positions import (
     Blocks,
     by_manoeuvre,
     case_axes,
+    level_axes_of,
     of_faster_waves,
     stretch_of,
     turn_errors,
@@ -75,7 +76,7 @@ def _steady(
     for gap in gaps_of(part):
         middle[gap.before :] += gap.shares @ angle
     ups = mean_turned(m.up, m.axis, middle, angle)
-    axes = np.stack([mean_turned(own, m.axis, middle, angle) for own in m.level_axes], axis=1)
+    axes = np.stack([mean_turned(own, m.axis, middle, angle) for own in level_axes_of(m)], axis=1)
     level = np.linalg.norm(m.up - (m.up @ m.axis) * m.axis)
     rate = angle / seconds
     upright = is_vertical(m.up, m.axis)

@@ -149,7 +149,7 @@ class StaticPosition:
         since = np.array([self.angle, self.manoeuvre.turned_on])
         if not are_parts_of_turns(since).any() or not self.up.any():
             return None
-        axes = self.manoeuvre.level_axes
+        axes = level_axes_of(self.manoeuvre)
         return np.array([turned(axis, self.about, self.angle) for axis in axes])
 
     def over(self, seconds: float = np.inf) -> tuple[Array, Array]:
@@ -255,6 +255,12 @@ class StaticPosition:
         recorded = np.isfinite(self.means)
         samples, duration = recorded * self.counts[:, None], recorded * self.seconds[:, None]
         return np.cumsum([samples * np.nan_to_num(self.means), samples, duration], axis=1)
+
+
+def level_axes_of(m: Manoeuvre) -> Array:
+    """Two level directions at its start, (2, 3), that its position keeps in the laboratory."""
+    assert m.up is not None  # else it is by hand
+    return np.array([turned(axis, m.up, m.turned_on) for axis in level_axes(m.up)])
 
 
 def case_axes(up: Array, about: Array) -> Array | None:

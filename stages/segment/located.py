@@ -414,3 +414,25 @@ def level_of(every: Sequence[Binned]) -> tuple[Array, float]:
         if len(whole):
             return rest_level(np.where(recorded, whole, 0.0))
     return np.zeros(3), 0.0
+
+
+def begun_as_recorded(plan: Sequence[Manoeuvre], every: Sequence[Located]) -> list[Manoeuvre]:
+    """The plan, with each manoeuvre without a mark begun where the table had turned the case.
+
+    By the plan that is where the turn before it in its position ended; the log may show that the
+    table went back to where the position was set.
+    """
+    back = set()
+    for located in every:
+        position, first = None, 0
+        found = ((located.place(m), m) for m in located.plan)
+        for place, m in sorted(((k, m) for k, m in found if k is not None), key=lambda one: one[0]):
+            if m.position != position:
+                position, first = m.position, place
+            if not m.turned_on or m.mark is not None or m.up is None:
+                continue
+            turned = [observation.turned for observation in located.observed[first:place]]
+            moved = float(np.nansum(turned, axis=0) @ m.up)
+            if abs(np.sin(moved / 2)) < abs(np.sin((moved - m.turned_on) / 2)):
+                back.add(m.name)
+    return [replace(m, turned_on=0.0) if m.name in back else m for m in plan]

@@ -25,6 +25,7 @@ WRONG_SENSE_SCORE = 0.01  # score of a turn against the planned direction
 # quarter of the turn between two positions; two of them less than that of one turn as planned.
 WHOLE_WRONG_SENSE_SCORE = 0.3
 MAX_WHOLE_DIFFERENCE = 0.1  # of the planned angle, up to which it is by that angle
+OTHER_TIME = 0.05  # share of the score that the time of a turn has: its angle and sense tell more
 MIN_SCALED_TURNS = 2  # turns of a window that show one ratio to their plan, in another unit
 MIN_SCALE_RATIO = 1.5  # a ratio that the score of a turn as it is planned does not allow for
 
@@ -243,7 +244,15 @@ class _Seen:
                 self.moves, 0.0, rest_scores(self.seconds, m.seconds, self.forces, m.up)
             )
         own, planned = self.turn(m)
-        return np.where(self.moves, turn_scores(own / ratio, m.axis, planned), 0.0)
+        scores = turn_scores(own / ratio, m.axis, planned) * self._as_fast(m)
+        return np.where(self.moves, scores, 0.0)
+
+    def _as_fast(self, m: Manoeuvre) -> Array:
+        """By which factor each stretch is rather that turn, of two through one angle, (n,)."""
+        if m.recorded == "steady" or not (m.angle and m.rate):
+            return np.ones(len(self.moves))
+        longer = np.abs(np.log(np.maximum(self.seconds, MIN_SETTLING_S) * abs(m.rate / m.angle)))
+        return np.asarray(1.0 - OTHER_TIME * np.minimum(longer, 1.0))
 
 
 def _by_the_plan(ratios: Array) -> Booleans:

@@ -282,7 +282,7 @@ def plan_as_taken(stated: pd.DataFrame, plan: Sequence[Manoeuvre]) -> pd.DataFra
     """The table of the manoeuvres with what the repairs have changed."""
     table = stated.set_index("manoeuvre").loc[[m.name for m in plan]].reset_index()
     places = ("log", "from_s", "to_s", "from_row", "to_row", "label")
-    for name in (*places, "angle", "rate", "rate_sigma"):
+    for name in (*places, "angle", "rate", "rate_sigma", "turned_on"):
         values = pd.Series([getattr(m, name) for m in plan], dtype=object)
         table[name] = values.where(values.notna(), None)
     for name in ("up", "mark", "about", "tumbled"):

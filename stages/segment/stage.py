@@ -32,7 +32,7 @@ from stages.segment.encoder import (
     with_jumps,
     without_unused,
 )
-from stages.segment.located import Located
+from stages.segment.located import Located, begun_as_recorded
 from stages.segment.matching import Part, between_parts, position_parts, rest_part, turn_parts
 from stages.segment.plan_and_recording import ExaminationOfRests, Recording, compare, recorded_of
 from stages.segment.repair import SetRight, set_right
@@ -144,6 +144,7 @@ def segment(
         places.turns, by_encoder, blocks, block_sums, examined.gaps, made.level, angle_tolerance
     )
     plan = [by_encoder[m.name].manoeuvre if m.name in by_encoder else m for m in made.plan]
+    plan = begun_as_recorded(plan, made.explained.located)
     performed = _performed(plan, places.performed | turned, block_sums, made)
     recorded = recorded_of(
         plan,
