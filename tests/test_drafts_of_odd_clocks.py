@@ -269,3 +269,49 @@ def test_the_stamps_of_the_sensor_are_preferred_to_those_of_arrival(secs, nsecs,
     assert f"{secs}, {nsecs} hold the time in s and ns" in said and "not used: Time" in said
     results = chain.run(folder, tmp_path / "derived", "decode")
     assert np.ptp(np.diff(results["decode/samples"]["time"])) < 1e-9
+
+
+# ---- counters of rows
+
+
+@pytest.mark.parametrize("first", [0, 1])
+@pytest.mark.parametrize("clock", ["Tick[ms]", "time_ms"])
+def test_a_clock_with_a_unit_is_preferred_to_a_counter_before_it(first, clock, tmp_path):
+    """The counter was taken, and the rate asked; one that begins again made warnings of numpy."""
+    log = by_hand_log(39)
+    rows = np.arange(len(log.force))
+    counter = (rows + first) % (2**8 if first == 0 else 2**24)
+    mdps = np.degrees(log.rate) * 1000
+    text = f"Seq#,{clock},F1 (m/s^2),F2 (m/s^2),F3 (m/s^2),R1 (mdps),R2 (mdps),R3 (mdps)\n"
+    text += written([counter, 5000 + 10 * rows, log.force, mdps], digits=9)
+    layout, said = layout_of(text, tmp_path)
+    assert layout["time"] == {"column": clock, "unit": "ms"} and "not used: Seq#" in said
+    assert layout["gyro"]["unit"] == "deg/s" and layout["gyro"]["counts_per_unit"] == 1000
+
+
+@pytest.mark.parametrize(("unit", "parts"), [("mdps", 1000), ("dps", None)])
+def test_a_counter_that_begins_again_is_no_clock_of_its_own_rate(unit, parts, tmp_path):
+    """Of mdps the motion made 100 000 samples a second."""
+    log = by_hand_log(39)
+    counter = np.arange(len(log.force)) % 2**8
+    names = ",".join(f"R{k} ({unit})" for k in (1, 2, 3))
+    rows = written([counter, log.force, np.degrees(log.rate) * (parts or 1)], digits=9)
+    layout, said = layout_of(f"Seq#,F1,F2,F3,{names}\n{rows}", tmp_path)
+    assert layout["time"] == {
+        "column": "Seq#",
+        "unit": "sample",
+        "rate_hz": RATE,
+        "wraps_at": 2**8,
+    }
+    assert layout["gyro"].get("counts_per_unit") == parts and "how many samples" in said
+
+
+def test_a_clock_of_ms_may_go_on_by_one_from_row_to_row(tmp_path):
+    """It was taken for a counter of rows, and 17.6 Hz."""
+    log = by_hand_log(30)
+    every = np.arange(10 * len(log.force))
+    noise = 0.01 * np.random.default_rng(0).standard_normal((len(every), 3))
+    force, rate = (np.repeat(own, 10, axis=0) + noise for own in (log.force, log.rate))
+    layout, said = layout_of(f"t_ms,{NAMES}\n" + written([every, force, rate]), tmp_path)
+    assert layout["time"] == {"column": "t_ms", "unit": "ms"} and "at 1000 Hz" in said
+    assert layout["gyro"]["unit"] == "rad/s"

@@ -210,6 +210,12 @@ PARTS = {  # of a unit in its name, and how many make one
 }
 
 
+def parts_named(names: Sequence[object]) -> float | None:
+    """How many make one of the unit in these names, such as 1000 of mdps; None: they say none."""
+    words = [name for name in names if isinstance(name, str)]
+    return next((count for count, p in PARTS.items() if any(map(p.search, words))), None)
+
+
 @dataclass(frozen=True)
 class Scale:
     """Unit of a sensor, counts in it or none, their zero, (3,), and what says so.
@@ -376,7 +382,7 @@ def gyro_scale(
     values = np.concatenate([own.series.gyro for own in recordings])
     zero = zero_of(values)
     words = [name for name in names if isinstance(name, str)]
-    parts = next((count for count, p in PARTS.items() if any(map(p.search, words))), None)
+    parts = parts_named(names)
     if turns is not None:
         return _by_motion(recordings, turns, values, parts)
     named = next((unit for unit, p in GYRO_UNIT.items() if any(map(p.search, words))), None)

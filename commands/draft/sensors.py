@@ -16,6 +16,7 @@ from commands.draft.scales import (
     accel_scale,
     are_counts,
     gyro_scale,
+    parts_named,
     receiver_of,
     turning,
 )
@@ -141,7 +142,8 @@ def _kind_by_clock(group: Sequence[Sequence[RawLog]], columns: Columns, timing: 
             stated = full_scale.of_gyro(group[0][columns.gyro.file].header)
             gyro = full_scale.gyro_in_range(gyro, stated, own, moved=turned is not None)
         if turned is not None:
-            gyro, timing = _rate_by_motion(gyro, timing, turned, own)
+            own_parts = parts_named(columns.gyro.columns)
+            gyro, timing = _rate_by_motion(gyro, timing, turned, own, own_parts)
     return Kind(columns, timing, accel, gyro, parts, own)
 
 
@@ -303,15 +305,18 @@ def _reads(gyro: Scale, unit: str, power: float) -> bool:
 
 
 def _rate_by_motion(
-    gyro: Scale, timing: Timing, turned: Turning, own: Sequence[Divided]
+    gyro: Scale, timing: Timing, turned: Turning, own: Sequence[Divided], parts: float | None
 ) -> tuple[Scale, Timing]:
-    """Without a clock the motion shows the rate, where the gyros read a unit and no counts."""
+    """Without a clock the motion shows the rate, where the gyros read a unit and no counts.
+
+    `parts`: how many make one of the unit, by their names; None: these are it.
+    """
     values = np.concatenate([each.series.gyro for each in own])
     if not timing.guessed or timing.unit not in (None, "sample") or are_counts(values):
         return gyro, timing
     # The factor is that of the readings times that of the assumed interval.
     rates = {
-        unit: timing.rate * Scale(unit, None, 0, "", False).size / turned.factor
+        unit: timing.rate * Scale(unit, parts, 0, "", False).size / turned.factor
         for unit in ("rad/s", "deg/s")
     }
     unit = min(rates, key=lambda each: abs(np.log(rates[each] / timing.rate)))
@@ -323,7 +328,7 @@ def _rate_by_motion(
         rate=significant(rates[unit]),
         percent=100 * turned.sigma,
     )
-    return replace(gyro, unit=unit, counts=None), timing.with_rate(rate, evidence)
+    return replace(gyro, unit=unit, counts=parts), timing.with_rate(rate, evidence)
 
 
 def _in_si(kind: Kind, others: Sequence[Kind]) -> Kind:

@@ -13,6 +13,7 @@ from inertial.text.numbers import significant, whole
 
 MAX_RESETS = 0.01  # share of steps in which a clock may stand or go back
 MIN_ADVANCING = 0.5  # of the rows, in which a clock of several columns advances
+MIN_COUNTED = 0.95  # of the rows, that a counter of them numbers one by one
 CLOCK_PARTS = 20  # of a log, in each of which a clock advances alike
 TIME = re.compile(
     r"time|stamp|^t$|sample|epoch|clock|^n$|^t[ _(\[]|^ms$|^us$|millis|micros", re.IGNORECASE
@@ -49,7 +50,8 @@ IN_NAME = re.compile(r"(?:[\[(_ ])(ns|us|µs|ms|s|sec|seconds)(?:[\])]|$)", re.I
 def time_of(log: RawLog) -> Name | None:
     """The column that grows steadily, a named one before others; None where none does.
 
-    The messages of a receiver have one, however few they are.
+    One that counts rows is behind those whose names state a unit of time. The messages of a
+    receiver have one, however few they are.
     """
     if log.kind == "rawimus":
         return "time"
@@ -58,11 +60,22 @@ def time_of(log: RawLog) -> Name | None:
         for name, values in log.columns.items()
         if grows(values) and not _numbers_packets(name, values)
     ]
-    named = [name for name in growing if TIME.search(str(name)) or name in log.pairs]
+    named = [name for name in growing if TIME.search(str(name)) or _is_time(log, name)]
+    named.sort(key=lambda name: not _is_time(log, name) and _counts_rows(log.columns[name]))
     # A temperature T that rises stands still from row to row.
     named.sort(key=lambda name: np.mean(np.diff(finite(log.columns[name])) > 0) < MIN_ADVANCING)
     named.sort(key=lambda name: name not in log.pairs and not SENSORS_STAMP.search(str(name)))
     return next(iter(named + growing), None)
+
+
+def _is_time(log: RawLog, name: Name) -> bool:
+    """Whether a column is one of times by the unit in its name, or by how it is written."""
+    return name in log.pairs or name in log.dates or bool(IN_NAME.search(str(name)))
+
+
+def _counts_rows(values: Array) -> bool:
+    """Whether values go on by one from row to row."""
+    return bool(np.mean(np.diff(finite(values)) == 1) > MIN_COUNTED)
 
 
 def _numbers_packets(name: Name, values: Array) -> bool:
@@ -154,7 +167,8 @@ def timing_of(
     counters = [_finite(log.column(column, rows)) for log in logs]
     steps = [np.diff(counter) for counter in counters]
     ticks = float(np.median([_step(counter) for counter in counters]))
-    if ticks == 1 and all(np.mean(own == 1) > 0.95 for own in steps):
+    counted = ticks == 1 and all(np.mean(own == 1) > MIN_COUNTED for own in steps)
+    if counted and not MIN_RATE < _ticks_named(column) <= MAX_RATE:
         timing = _without_time(column, "sample", stated, _("it counts samples"))
         return replace(timing, wraps_at=_wraps_at(counters))
     dated = column in logs[0].dates
@@ -204,6 +218,12 @@ class _Clock:
     doubt: str = ""
 
 
+def _ticks_named(column: Name) -> float:
+    """Ticks in a second by the unit in the name of a column; 0 where it states none."""
+    found = IN_NAME.search(str(column))
+    return UNITS[SPELT.get(found[1].lower(), found[1].lower())] if found else 0.0
+
+
 def unit_of(ticks_per_s: float) -> str:
     """The unit of a clock with so many ticks in a second."""
     return next((unit for unit, own in UNITS.items() if own == ticks_per_s), "tick")
@@ -234,7 +254,7 @@ def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
     agrees = stated is not None and away(by_header, stated) < np.log(MAX_OFF_STATED)
     if agrees:
         likely = by_header
-    if (found := IN_NAME.search(str(column))) is None:
+    if not (named := _ticks_named(column)):
         step = significant(ticks, 6)
         if agrees:
             why = _(
@@ -252,8 +272,7 @@ def _clock(column: Name, ticks: float, stated: float | None) -> _Clock:
             "",
         )
         return _Clock(unit_of(likely), likely, why, guessed=True, doubt=doubt)
-    unit = SPELT.get(found[1].lower(), found[1].lower())
-    named = UNITS[unit]
+    unit = unit_of(named)
     told = _("{column} counts {unit} by its name", column=column, unit=unit.replace("us", "µs"))
     plausible = MIN_RATE <= named / ticks <= MAX_RATE
     if (named == likely) or (plausible and not agrees):
@@ -383,8 +402,11 @@ def _step(values: Array) -> float:
     """Ticks from row to row: of most parts of the log, so that gaps do not count.
 
     Where several rows have one stamp, as of whole seconds, of all stamps that follow by one tick.
+    A step back, where a counter begins again, is taken for a usual step.
     """
     steps = np.diff(values)
+    steps[steps < 0] = max(float(np.median(steps)), 0.0)
+    values = np.concatenate([values[:1], values[0] + np.cumsum(steps)])
     new = np.flatnonzero(steps > 0)
     tick = float(steps[new].min(initial=np.inf))
     if np.median(steps) == 0 and np.mean(steps[new] == tick) > MIN_SINGLE_TICKS:
