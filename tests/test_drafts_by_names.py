@@ -27,6 +27,10 @@ def logged(names: str, *columns: np.ndarray, digits: int = 7) -> str:
         "AccelX,AccelY,AccelZ,RollRate,PitchRate,YawRate",
         "ax,ay,az,rate_roll,rate_pitch,rate_yaw",
         "ax,ay,az,p,q,r",
+        "ax,ay,az,rate_p,rate_q,rate_r",
+        "acc_fwd,acc_right,acc_down,gyr_p,gyr_q,gyr_r",
+        "Forward Accel (g),Right Accel (g),Down Accel (g),p,q,r",
+        "acc_front,acc_left,acc_up,gyro_front,gyro_left,gyro_up",
     ],
 )
 def test_the_axis_stands_before_the_sensor_or_is_a_word(names, tmp_path):
@@ -37,6 +41,28 @@ def test_the_axis_stands_before_the_sensor_or_is_a_word(names, tmp_path):
     assert layout["accelerometer"] == {"columns": names.split(",")[:3], "unit": "m/s2"}
     assert layout["gyro"] == {"columns": names.split(",")[3:], "unit": "deg/s"}
     assert "by their names" in comments(folder)
+
+
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        ("acc_right,acc_fwd,acc_down", "x forward, y right and z down"),
+        ("acc_left,acc_forward,acc_up", "x forward, y left and z up"),
+    ],
+)
+def test_directions_are_axes_and_the_draft_says_which(names, said, tmp_path):
+    """At rest nothing else tells them: the draft said that no accelerometers were recorded."""
+    noise = 0.001 * np.random.default_rng(23).standard_normal((2000, 6))
+    text = logged(f"{names},gyr_p,gyr_q,gyr_r", noise + [0, 9.8, 0, 0, 0, 0])
+    folder = drafted({"log.csv": text}, tmp_path)
+    right, forward, down = names.split(",")
+    layout, told_of = told(folder)["instrument"]["format"], comments(folder)
+    assert layout["accelerometer"] == {"columns": [forward, right, down], "unit": "m/s2"}
+    assert layout["gyro"]["columns"] == ["gyr_p", "gyr_q", "gyr_r"]
+    assert f"{forward}, {right}, {down}: taken for {said} by their names" in told_of
+    assert "none are recorded" not in told_of and "not used" not in told_of
+    assert "gyros: the largest reading is 0.00" in told_of
+    assert [m["up"] for m in told(folder)["plan"]] == ["+x"]
 
 
 @pytest.mark.parametrize("between", [",", "\t"])

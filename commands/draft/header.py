@@ -8,12 +8,13 @@ from itertools import product
 
 import numpy as np
 
+from commands.draft.columns import Columns
 from commands.draft.groups import MIN_SHARED_TIME
 from commands.draft.manoeuvres import Manoeuvre
 from commands.draft.sensors import Kind
 from commands.draft.series import Divided
 from commands.draft.timing import Timing, tick_in_words
-from commands.draft.triads import Triad
+from commands.draft.triads import Triad, directions_named
 from commands.new import comment
 from inertial.arrays import Array
 from inertial.campaign.unknown_attitude import in_words
@@ -119,6 +120,7 @@ def _evidence(kind: Kind) -> Iterator[str]:
         if triad is not None:
             which.append(f"{word} {', '.join(map(str, triad.columns))}")
     yield _("{which}: {why}", which="; ".join(which), why=columns.evidence)
+    yield from _directions(columns)
     for word, scale in ((_("accelerometers"), kind.accel), (_("gyros"), kind.gyro)):
         if scale is not None:
             yield f"{word}: {scale.evidence}"
@@ -130,6 +132,23 @@ def _evidence(kind: Kind) -> Iterator[str]:
             count=whole(log.left_out),
         )
     yield from _not_used(kind)
+
+
+def _directions(columns: Columns) -> Iterator[str]:
+    """Which way the axes of sensors point whose names say directions in place of x, y, z."""
+    for triad in filter(None, (columns.accel, columns.gyro)):
+        names = _columns(triad)
+        if directions := directions_named(triad.columns):
+            yield (
+                _(
+                    "{columns}: taken for x forward, y right and z down by their names",
+                    columns=names,
+                )
+                if "down" in directions
+                else _(
+                    "{columns}: taken for x forward, y left and z up by their names", columns=names
+                )
+            )
 
 
 def _not_used(kind: Kind) -> Iterator[str]:

@@ -361,7 +361,7 @@ def _by_turns(recordings: Sequence[Divided], counts: bool, zero: float) -> Scale
     if counts:
         tried = [("deg/s", each) for each in USUAL_GYRO_COUNTS]
     for whole in (2 * np.pi, np.pi, np.pi / 2):
-        what = _("so that turns are multiples of {degrees:.0f}°", degrees=np.degrees(whole))
+        what = _("by it turns are multiples of {degrees:.0f}°", degrees=np.degrees(whole))
         for unit, own_counts in tried:
             scale = Scale(unit, own_counts, zero, what, True)
             if turn_misfit(recordings, scale.size, whole) < MAX_OFF_WHOLE:
@@ -387,7 +387,7 @@ def gyro_scale(
         return _by_motion(recordings, turns, values, parts)
     named = next((unit for unit, p in GYRO_UNIT.items() if any(map(p.search, words))), None)
     if named is not None:
-        return Scale(named, parts, zero, _("by their names"), False)
+        return Scale(named, parts, zero, _("the unit is that of their names"), False)
     by_turns = _by_turns(recordings, are_counts(values), zero)
     return _by_size(values, zero, accel) if by_turns is None else by_turns
 
@@ -408,7 +408,12 @@ def _by_size(values: Array, zero: float, accel: Scale | None) -> Scale:
         what = _("whole numbers, so counts; their size is a guess")
         return Scale("deg/s", counts, zero, what, True, doubt=doubt)
     unit = "deg/s" if largest > MAX_RAD_S else "rad/s"
-    return Scale(unit, None, zero, _("by their largest reading"), True)
+    what = _(
+        "the largest reading is {reading}, so the unit is taken for {unit}",
+        reading=significant(largest),
+        unit=unit.replace("deg", "°"),
+    )
+    return Scale(unit, None, zero, what, True)
 
 
 def _by_motion(

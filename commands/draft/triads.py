@@ -343,7 +343,7 @@ NAMED = {
     "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|_[af][xyz]\b|specific force"),
     "gyro": re.compile(
         r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|_[gw][xyz]\b|omega|ang.*(vel|rate)|rotation|turn ?rate"
-        r"|(roll|pitch|yaw)[ _.]?(rate|speed|vel)|rate[ _.]?(of )?(roll|pitch|yaw)"
+        r"|(roll|pitch|yaw)[ _.]?(rate|speed|vel)|rate[ _.]?(of )?(roll|pitch|yaw)|rate[ _.]?[pqr]\b|^[pqr][ _.]?rate"
     ),
     "other": re.compile(
         r"mag|compass|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"
@@ -353,9 +353,11 @@ PROCESSED = re.compile(  # by a phone, of its sensors
     r"user|linear|gravity|motion|(?:^|[ _.])(?:lin|free)", re.IGNORECASE
 )
 OF_SENSOR = re.compile(  # parts of a name that tell sensor or axis, and not which IMU
-    r"acc|gyr|omega|ang|vel|rate|rot|lin|force|^(roll|pitch|yaw|raw|cal)|^[afgw]?[xyz]?$|^[pqr]$"
+    r"acc|gyr|omega|ang|vel|rate|rot|lin|force|^(roll|pitch|yaw|raw|cal)|^[afgw]?[xyz]?$|^[pqr]$|^(forward|fwd|front)$"
 )
 AXES_IN_NAMES = (("x", "y", "z"), ("roll", "pitch", "yaw"), ("p", "q", "r"))
+FORWARD = ("forward", "fwd", "front")
+SIDES = (("right", "down"), ("left", "up"))  # y and z beside x forward, right-handed
 RATES = ("p", "q", "r")  # names of aeronautics: the rates about x, y and z
 UNIT = re.compile(r"[_ ](m?g|m[/p_]?s_?2|m?dps|m?(rad|deg)[/p_]?s)$")  # behind a name
 DIGITS = "0123456789"
@@ -378,19 +380,38 @@ def axes_named(three: Sequence[Name]) -> tuple[Name, ...]:
     """Those that are named x, y, z, or by three numbers, of one sensor, in this order; or none.
 
     The names differ in the axis only: gyro_x, x_gyro, pitch rate. Roll, pitch and yaw alone are
-    angles.
+    angles. Of forward, right and down the sensor has to be named.
     """
-    names = [_plain(name) for name in three if isinstance(name, str)]
-    if len(names) < 3:
+    own = _differing(three)
+    if len(own) < 3:
         return ()
-    behind = _without_shared_start([name[::-1] for name in _without_shared_start(names)])
-    own = [name[::-1] for name in behind]
     if all(len(axis) == 1 for axis in own) and "".join(own) in DIGITS:
         return tuple(three)
+    if (directions := _directions(own)) and sensor_of(three) in ("accel", "gyro"):
+        return tuple(three[own.index(axis)] for axis in directions)
     axes = next((axes for axes in AXES_IN_NAMES if sorted(axes) == sorted(own)), None)
     if axes is None or (axes[0] != "x" and sensor_of(three) != "gyro"):
         return ()
     return tuple(three[own.index(axis)] for axis in axes)
+
+
+def _differing(three: Sequence[Name]) -> list[str]:
+    """In what names differ, without what all of them begin or end with; none of numbers."""
+    names = [_plain(name) for name in three if isinstance(name, str)]
+    behind = _without_shared_start([name[::-1] for name in _without_shared_start(names)])
+    return [name[::-1] for name in behind]
+
+
+def _directions(own: Sequence[str]) -> tuple[str, ...]:
+    """Words in the order x, y, z where they are forward, right, down or forward, left, up."""
+    x = next((word for word in own if word in FORWARD), "")
+    return next(((x, *yz) for yz in SIDES if sorted((x, *yz)) == sorted(own)), ())
+
+
+def directions_named(columns: Sequence[Name]) -> tuple[str, ...]:
+    """The directions of x, y, z that the names of three columns say, such as right; or none."""
+    found = _directions(_differing(columns))
+    return ("forward", *found[1:]) if found else ()
 
 
 def _without_shared_start(texts: Sequence[str]) -> list[str]:
