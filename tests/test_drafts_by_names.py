@@ -53,7 +53,7 @@ def test_the_axis_stands_before_the_sensor_or_is_a_word(names, tmp_path):
 def test_directions_are_axes_and_the_draft_says_which(names, said, tmp_path):
     """At rest nothing else tells them: the draft said that no accelerometers were recorded."""
     noise = 0.001 * np.random.default_rng(23).standard_normal((2000, 6))
-    text = logged(f"{names},gyr_p,gyr_q,gyr_r", noise + [0, 9.8, 0, 0, 0, 0])
+    text = logged(f"{names},gyr_p,gyr_q,gyr_r", noise + 9.8 * np.eye(6)[1])
     folder = drafted({"log.csv": text}, tmp_path)
     right, forward, down = names.split(",")
     layout, told_of = told(folder)["instrument"]["format"], comments(folder)

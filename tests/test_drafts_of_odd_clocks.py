@@ -1,5 +1,7 @@
 """`make draft`: clocks of which the unit is not in their name, or another than that."""
 
+from pathlib import Path
+
 import chain
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ from logs_by_hand import by_hand_log
 from moved_by_hand import RATE
 
 from commands.draft.__main__ import draft
+from inertial.tables.yaml_file import YamlFile
 
 NAMES = "ax,ay,az,gx,gy,gz"
 
@@ -183,11 +186,24 @@ def test_dates_of_other_notations_are_a_clock(kind, tmp_path):
     lines = [f"{stamp};{row}" for stamp, row in zip(of_day(kind, time), rows, strict=True)]
     text = "\n".join([f"When;{NAMES.replace(',', ';')}", *lines]) + "\n"
     layout, said = layout_of(text, tmp_path)
+    _check_date(kind, tmp_path / "data/raw/drafted/campaign.yaml", said)
     assert layout["time"]["column"] == "When" and layout["time"]["unit"] == "iso8601"
     assert layout["gyro"]["unit"] == "rad/s" and "at 100.0 Hz" in said
     results = chain.run(tmp_path / "data/raw/drafted", tmp_path / "derived", "decode")
     taken = results["decode/samples"]["time"].to_numpy()
     assert len(taken) == len(time) and np.allclose(np.diff(taken), 0.01, atol=1e-6)
+
+
+def _check_date(kind: str, file: Path, said: str) -> None:
+    """Each draft left the date unknown, and asked when the log was recorded."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    if kind == "of the day":
+        assert "date: unknown" in lines and "when was it recorded?" in said
+    else:
+        assert "date: 2025-03-07  # by the first stamp of log.csv" in lines
+        assert YamlFile(file).content["date"] == "2025-03-07"
+        assert "The date, 2025-03-07, is that of the first stamp of log.csv" in said
+        assert "when was it recorded?" not in said
 
 
 # ---- a log for each sensor

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from commands.draft.header import GRAVITY, GRAVITY_SIGMA, header
+from commands.draft.header import GRAVITY, GRAVITY_SIGMA, header, recorded_on
 from commands.draft.manoeuvres import Manoeuvre, leaning
 from commands.draft.scales import Scale, are_counts
 from commands.draft.sensors import Kind
@@ -36,7 +36,7 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
         VERSION,
         *instrument(kinds, name),
         "serial: unknown",
-        "date: unknown",
+        _date(kinds),
         f"site: {flow(**site)}{guess(anywhere)}",
         *(f"notes: {scalar(text)}" for text in wired_otherwise(kinds)),
         *_table(plan, by_hand),
@@ -58,6 +58,14 @@ def campaign_file(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], name: str) -
     told = _("delete each when it is confirmed")
     lines.insert(lines.index(VERSION) + 1, f"guessed: {in_flow(_guessed(lines))}  # {told}")
     return "\n".join(lines) + "\n"
+
+
+def _date(kinds: Sequence[Kind]) -> str:
+    """The date of the recording, where stamps of a log are dates."""
+    if (found := recorded_on(kinds)) is None:
+        return "date: unknown"
+    day, log = found
+    return f"date: {day}  # " + _("by the first stamp of {log}", log=log.path.name)
 
 
 def _guessed(lines: Sequence[str]) -> list[str]:

@@ -11,9 +11,10 @@ import numpy as np
 from commands.draft.columns import Columns
 from commands.draft.groups import MIN_SHARED_TIME
 from commands.draft.manoeuvres import Manoeuvre
+from commands.draft.raw_log import RawLog
 from commands.draft.sensors import Kind
 from commands.draft.series import Divided
-from commands.draft.timing import Timing, tick_in_words
+from commands.draft.timing import Timing, first_date, tick_in_words
 from commands.draft.triads import Triad, directions_named
 from commands.new import comment
 from inertial.arrays import Array
@@ -294,7 +295,15 @@ GRAVITY, GRAVITY_SIGMA = 9.80665, 0.03  # m/s², anywhere on earth
 
 def questions(kinds: Sequence[Kind], plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
     """A sentence for each."""
-    yield _("instrument, serial, date: which IMU is it, and when was it recorded?")
+    if (found := recorded_on(kinds)) is None:
+        yield _("instrument, serial, date: which IMU is it, and when was it recorded?")
+    else:
+        yield _(
+            "instrument, serial: which IMU is it? The date, {day}, is that of the first stamp of "
+            "{log}; was the clock of the recorder right?",
+            day=found[0],
+            log=found[1].path.name,
+        )
     yield (
         _("table: no turn has the steady rate of a table, so it was moved by hand; is that so?")
         if by_hand
@@ -469,6 +478,11 @@ def _columns(*triads: Triad | None) -> str:
 def without_clock(timing: Timing) -> bool:
     """Whether samples are counted at a rate that nothing states."""
     return timing.guessed and timing.unit in (None, "sample")
+
+
+def recorded_on(kinds: Sequence[Kind]) -> tuple[str, RawLog] | None:
+    """The date of the first stamp of all logs, and its log; None where no stamps are dates."""
+    return first_date([log for kind in kinds for logs in kind.recordings for log in logs])
 
 
 def names_of_logs(kind: Kind) -> str:

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 
 import numpy as np
 
@@ -200,6 +201,20 @@ def timing_of(
         )
     timing = Timing(column, clock.unit, rate, clock.guessed, why, wraps_at, doubt=clock.doubt)
     return replace(timing, ticks_per_s=clock.ticks_per_s) if clock.unit == "tick" else timing
+
+
+def first_date(logs: Sequence[RawLog]) -> tuple[str, RawLog] | None:
+    """The date of the first of all stamps that are dates, ISO 8601, and its log; None: none are."""
+    stamps = [
+        (float(finite(log.columns[name]).min()), number)
+        for number, log in enumerate(logs)
+        for name in log.dates
+    ]
+    dated = [stamp for stamp in stamps if stamp[0] >= DAY]  # less is a time of the day
+    if not dated:
+        return None
+    first, number = min(dated)
+    return datetime.fromtimestamp(first, UTC).date().isoformat(), logs[number]
 
 
 def seconds_of(log: RawLog, column: Name) -> Array:

@@ -343,7 +343,8 @@ NAMED = {
     "accel": re.compile(r"acc|^[af][ _.]?[xyz]\b|^[af]_|_[af][xyz]\b|specific force"),
     "gyro": re.compile(
         r"gyr|^[gw][ _.]?[xyz]\b|^[gw]_|_[gw][xyz]\b|omega|ang.*(vel|rate)|rotation|turn ?rate"
-        r"|(roll|pitch|yaw)[ _.]?(rate|speed|vel)|rate[ _.]?(of )?(roll|pitch|yaw)|rate[ _.]?[pqr]\b|^[pqr][ _.]?rate"
+        r"|(roll|pitch|yaw)[ _.]?(rate|speed|vel)|rate[ _.]?(of )?(roll|pitch|yaw)"
+        r"|rate[ _.]?[pqr]\b|^[pqr][ _.]?rate"
     ),
     "other": re.compile(
         r"mag|compass|^[mqb][ _.]?[xyzw]\b|quat|euler|roll|pitch|yaw|pos|vel|gps|temp"
