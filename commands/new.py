@@ -17,13 +17,13 @@ from inertial.text.numbers import visible
 NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
 
 
-def free_folder(name: str, data: Path) -> Path:
-    """The folder of a campaign that is not there yet.
+def folder_of(name: str, data: Path) -> Path:
+    """The folder of a campaign of this name.
 
     Raises
     ------
     Refusal
-        where the name is none, or is taken
+        where the name is none
     """
     if not NAME.fullmatch(name):
         raise Refusal(
@@ -33,7 +33,18 @@ def free_folder(name: str, data: Path) -> Path:
             _("small letters a-z, digits and hyphens, a letter or digit first"),
             _("name the campaign: NAME=june"),
         )
-    folder = data / "raw" / name
+    return data / "raw" / name
+
+
+def free_folder(name: str, data: Path) -> Path:
+    """The folder of a campaign that is not there yet.
+
+    Raises
+    ------
+    Refusal
+        where the name is none, or is taken
+    """
+    folder = folder_of(name, data)
     if folder.exists() or (data / "simulated" / f"{name}.yaml").exists():
         raise Refusal(
             str(folder),

@@ -368,6 +368,33 @@ def test_what_is_there_is_never_overwritten(tmp_path, capsys):
     assert not any((data / "raw/june").iterdir())
 
 
+def test_a_draft_that_asks_for_the_rate_is_replaced_with_it_unless_edited(tmp_path, capsys):
+    """The advice was refused: its own folder was there."""
+    log, data = by_hand_log(41), tmp_path / "data"
+    path, file = tmp_path / "log.txt", data / "raw/june/campaign.yaml"
+    np.savetxt(path, np.hstack([log.force / 9.80665 * 8192, log.rate * 3752]).round(), "%d")
+    options = ["--name", "june", "--data", str(data)]
+    assert main([str(path), *options]) == 0
+    assert "draft it again with RATE=" in " ".join(capsys.readouterr().out.split())
+    assert "there is a campaign of this name" in refused(capsys, [str(path), *options])
+    with_rate = [*options, "--rate", "200"]
+    other = tmp_path / "other/log.txt"
+    other.parent.mkdir()
+    other.write_text(path.read_text()[:-20])
+    before = file.read_text()
+    assert "there is a campaign of this name" in refused(capsys, [str(other), *with_rate])
+    edited = before.replace("serial: unknown", "serial: 4711")
+    file.write_text(edited)
+    assert "no longer, the draft of these logs without a rate" in refused(
+        capsys, [str(path), *with_rate]
+    )
+    assert file.read_text() == edited
+    file.write_text(before)
+    assert main([str(file.parent / "log.txt"), *with_rate]) == 0
+    assert "rate_hz: 200" in file.read_text() and "how many samples" not in file.read_text()
+    assert (file.parent / "log.txt").read_bytes() == path.read_bytes()
+
+
 @pytest.mark.parametrize(
     ("arguments", "found"),
     [

@@ -445,7 +445,8 @@ def _of_clock(kind: Kind) -> Iterator[str]:
     if without_clock(kind.timing):
         yield _(
             "rate_hz: {log} has no clock; how many samples a second are there? Count sizes of "
-            "gyros go with the rate: draft it again with RATE=, or --rate",
+            "gyros go with the rate: draft it again with RATE=, or --rate, which replaces this "
+            "file while nobody has edited it",
             log=names_of_logs(kind),
         )
     if kind.timing.doubt:

@@ -334,7 +334,8 @@ def _of_two_units(ticks: float, likely: float) -> tuple[str, str] | None:
     step = significant(ticks, 6)
     why = _("a step of {ticks} ticks is {rates} samples a second", ticks=step, rates=rates)
     question = _(
-        "{why}, none of which is usual; how many are there? Draft it again with RATE=, or --rate",
+        "{why}, none of which is usual; how many are there? Draft it again with RATE=, or --rate, "
+        "which replaces this file while nobody has edited it",
         why=why,
     )
     return why, question
