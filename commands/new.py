@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from commands import run
+from inertial.campaign.references import BY_HAND, NOT_NAMED
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _
 from inertial.text.numbers import visible
@@ -104,7 +105,7 @@ def scalar(value: Any) -> str:
         and not (
             (PLAIN.match(value) or re.fullmatch(r"[+-][xyz]", value)) and value.lower() not in WORDS
         )
-        and value not in ("m/s2", "rad/s", "deg/s", "by hand", "not known")
+        and value not in ("m/s2", "rad/s", "deg/s", BY_HAND, NOT_NAMED)
     ):
         return json.dumps(value, ensure_ascii=False)
     return str(value)

@@ -13,6 +13,7 @@ from moved_by_hand import FACES, GRAVITY, RATE
 
 from commands.check import no_results
 from commands.draft.__main__ import draft, main
+from inertial.campaign.references import NOT_NAMED
 from inertial.estimation.triad import linear_names
 from inertial.physics.site import EARTH_RATE
 from inertial.tables.errors import Refusal
@@ -97,7 +98,7 @@ def test_rests_and_turns_of_one_log_come_in_their_order(tmp_path):
     ]
     places = [m["position"] for m in campaign["plan"]]  # else each has a tilt of its own
     assert [places[i] == places[i - 1] for i in range(1, 16)] == [i % 4 > 0 for i in range(1, 16)]
-    assert campaign["table"]["name"] != "by hand"
+    assert campaign["table"]["name"] == NOT_NAMED  # by which no two tables are one
     layout = campaign["instrument"]["format"]
     assert layout["temperature"] == {"column": "temperature", "unit": "degC"}
     # The laboratory's counts are increments: so many in 1 °/s at 100 Hz.

@@ -6,6 +6,7 @@ import pytest
 import yaml
 
 from commands.new import PLANS, main
+from inertial.campaign.references import NAMELESS
 from inertial.estimation.triad import linear_names
 from inertial.tables.campaign_files import logs_of
 
@@ -26,6 +27,11 @@ def planned(plan: str, tmp_path) -> chain.Results:
 def test_a_new_plan_is_a_plan(plan, manoeuvres, tmp_path):
     assert len(planned(plan, tmp_path)["plan/manoeuvres"]) == manoeuvres
     assert plan in PLANS and len(PLANS) == 4
+
+
+@pytest.mark.parametrize("plan", PLANS)
+def test_the_table_of_a_new_plan_has_no_name(plan, tmp_path):
+    assert set(planned(plan, tmp_path)["plan/campaign"]["table"]) <= set(NAMELESS)
 
 
 @pytest.mark.parametrize("plan", ["six-position", "turn-stop"])

@@ -1,6 +1,7 @@
 """Pages of several campaigns: what they compare, by numbers that do not come from the code."""
 
 import re
+from argparse import Namespace
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,13 +12,13 @@ import test_history as archive
 from scipy import stats
 from scipy.spatial.transform import Rotation
 
-from inertial.campaign.references import References
+from inertial.campaign.references import TABLE_RATE, References, references_of
 from inertial.tables.errors import Refusal
 from overviews.compare.page import as_text, comparison_page
 from overviews.compare.pair import READ, pair_of_campaigns
 from overviews.compare.remounted import remounted
 from overviews.compare.shared import Shared
-from overviews.history.page import due_in_words, history_page
+from overviews.history.page import documents, due_in_words, history_page
 from overviews.index.page import Without, index_page
 from overviews.known import kept, pair_of, refuse_reserved, serials, with_result
 from overviews.tables_of import RESULT
@@ -108,6 +109,16 @@ def test_the_history_page_has_the_jump_the_due_date_and_every_value(place, imu):
     for entry in imu.calibrations:
         assert entry.file in html
     assert "<script" not in html and not re.search(r"(src|href)=\"https?:", html)
+
+
+def test_an_unknown_serial_number_has_no_history(tmp_path):
+    """Several IMUs may be of it, and were one page."""
+    archive.run(tmp_path, 1e-5, serial="unknown")
+    given = Namespace(names=["unknown"], settings={"history": {"level": LEVEL}})
+    given.archive, given.derived = tmp_path / "history", tmp_path / "derived"
+    given.reports = tmp_path
+    with pytest.raises(Refusal, match="no calibration of it"):
+        documents(given, "c0de")
 
 
 def test_every_value_of_the_history_has_the_unit_of_its_parameter(tmp_path):
@@ -242,6 +253,16 @@ def test_the_same_logs_are_not_compared_as_independent_ones():
     pair = pair_of_campaigns(("a", "b"), both, LEVEL)
     assert pair.common_logs and pair.compared[0].sigma is None
     assert "not independent" in as_text(pair)
+
+
+@pytest.mark.parametrize("table", ["by hand", "not named", "not known"])
+def test_a_table_without_a_name_is_not_the_same_as_another(table):
+    """The placeholder of a draft was."""
+    campaign = {"table": table, "latitude": None, "height": None}
+    assert references_of(campaign, [], []).table is None
+    assert TABLE_RATE not in references_of(campaign, [], []).sources
+    named = references_of(campaign | {"table": "north"}, [], [])
+    assert named.table == "north" and TABLE_RATE in named.sources
 
 
 def test_other_parameters_share_it_only_where_the_plans_are_the_same():

@@ -14,6 +14,7 @@ from commands.draft.sensors import Kind
 from commands.draft.timing import Timing, timing_of
 from commands.draft.triads import Triad
 from commands.new import GUESS, flow, guess, in_flow, scalar
+from inertial.campaign.references import BY_HAND, NOT_NAMED
 from inertial.text.messages import _
 from inertial.text.numbers import fixed, significant
 
@@ -86,13 +87,13 @@ def _table(plan: Sequence[Manoeuvre], by_hand: bool) -> Iterator[str]:
     if by_hand:
         seen = leaning(plan)
         degrees = 1.0 if seen is None else max(1.0, float(np.ceil(2 * np.degrees(seen)) / 2))
-        keys = {"name": "by hand", "position_sigma_arcsec": round(degrees * HAND_POSITION)}
+        keys = {"name": BY_HAND, "position_sigma_arcsec": round(degrees * HAND_POSITION)}
         yield f"table: {flow(**keys)}" + guess(
             _("a case on its faces stands to within {degrees:g}°", degrees=degrees)
         )
     else:
         keys = {
-            "name": "not known",
+            "name": NOT_NAMED,
             "position_sigma_arcsec": TABLE_SIGMA,
             "angle_sigma_arcsec": TABLE_SIGMA,
             "rate_sigma_ppm": TABLE_RATE,

@@ -18,7 +18,8 @@ from inertial.text.parameters import SCALE
 DIGITS = 9  # of a stated number, by which two are one
 DECIMALS = 6  # of a set direction or angle
 BY_HAND = "by hand"
-NAMELESS = (BY_HAND, "not named")  # of the column table: it may be any
+NOT_NAMED = "not named"  # of a table, as plans, drafts and the stage plan write it
+NAMELESS = (BY_HAND, NOT_NAMED, "not known", "unknown")  # of the column table: it may be any
 POSE = ("do", "mount", "angle", *(f"{of}_{a}" for of in ("up", "mark", "about") for a in "xyz"))
 QUANTITIES = {"gravity": "gravity", "latitude": "earth_rate_up"}  # by source, as in known
 TABLE_RATE = "table_rate"  # the source of the error of all rates of a table

@@ -52,7 +52,9 @@ def documents(given: Namespace, code: str) -> dict[str, str]:
     """
     (serial,) = given.names
     settings = {"tolerance": {}} | given.settings["history"]
-    imus = imus_of(given.archive, serial, given.derived, **settings)
+    imus = []
+    if serial != UNKNOWN:  # those may be different IMUs
+        imus = imus_of(given.archive, serial, given.derived, **settings)
     if not imus:
         raise Refusal(
             str(given.archive),

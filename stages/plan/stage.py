@@ -12,7 +12,7 @@ import pandas as pd
 
 from inertial import tables
 from inertial.campaign.records import Row
-from inertial.campaign.references import BY_HAND
+from inertial.campaign.references import BY_HAND, NOT_NAMED
 from inertial.physics.forward import at_steady_speed, in_free_fall
 from inertial.tables.code import hash_of_file
 from inertial.tables.stage import Stage, Tables
@@ -155,7 +155,7 @@ def _campaign(file: YamlFile, entry: dict[str, Any], manoeuvres: list[Row]) -> R
         "serial": content["serial"],
         "date": content["date"],
         **{key: content.get(key) for key in FACTS},
-        "table": BY_HAND if by_hand(content) else content["table"].get("name", "not named"),
+        "table": BY_HAND if by_hand(content) else content["table"].get("name", NOT_NAMED),
         "rate": entry.get(SAMPLE_RATE, _common_rate(manoeuvres)),
         "latitude": None if site["latitude_deg"] is None else radians(site["latitude_deg"]),
         "height": site.get("height_m"),

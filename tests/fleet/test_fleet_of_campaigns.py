@@ -1,6 +1,7 @@
 """Campaigns of the laboratory pooled: an effect too small for each, and the page that says it."""
 
 import re
+import shutil
 from pathlib import Path
 
 import chain
@@ -12,6 +13,7 @@ from scipy import stats
 
 import laboratory
 from inertial import tables
+from inertial.campaign.references import NAMELESS
 from inertial.model_selection.fleet_evidence import Shared
 from inertial.model_selection.fleet_search import FleetEffect
 from inertial.tables.errors import Refusal
@@ -49,6 +51,10 @@ def derived(tmp_path_factory: pytest.TempPathFactory) -> Path:
             file.parent.mkdir(parents=True, exist_ok=True)
             pq.write_table(arrow, file)
         _with_own_logs(folder / name)
+        budget = folder / name / "compensation/uncertainty_budget.parquet"
+        budget.parent.mkdir()
+        empty = tables.UNCERTAINTY_BUDGET.empty()  # without errors of all rates of a table
+        pq.write_table(tables.UNCERTAINTY_BUDGET.arrow(empty), budget)
     return folder
 
 
@@ -144,6 +150,19 @@ def test_a_second_campaign_of_the_same_logs_is_not_pooled(derived, tmp_path):
 
 
 # ---- Selections.
+
+
+@pytest.mark.parametrize("name", NAMELESS)
+def test_a_placeholder_joins_neither_tables_nor_imus(name, derived, tmp_path):
+    """Tables of drafts, "not known", were one table of that name."""
+    for campaign in CAMPAIGNS:
+        shutil.copytree(derived / campaign, tmp_path / campaign)
+        file = tmp_path / campaign / "plan/campaign.parquet"
+        about = tables.CAMPAIGN.read(file)
+        pq.write_table(tables.CAMPAIGN.arrow(about.assign(table=name, serial="unknown")), file)
+    members = members_of(list(CAMPAIGNS), tmp_path)
+    assert not any(m.references.named for m in members)
+    assert len({m.table for m in members}) == len({m.imu for m in members}) == len(members)
 
 
 def test_a_selection_is_by_key_or_by_name():
