@@ -18,7 +18,7 @@ tables must still differ. Of one IMU, once on each table, nothing tells the two 
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -31,6 +31,7 @@ from inertial.model_selection.fleet_search import MIN_WEIGHT, log_evidence
 
 # Variances of changes between turn-ons that are tried, in median variances of a scale factor.
 CHANGES = np.r_[0.0, np.geomspace(1e-4, 1e10, 120)]
+MIN_TOLD = 1e-6  # of the information on a value that what is free must leave, to test it
 MIN_SEEN = 1e-6  # of the information on a table that free scale factors of the IMUs must leave
 # Of the difference by changes that all axes of an IMU have in common: the tables are named, alone.
 MAX_COMMON_CHANCE, SURELY = 0.05, 0.01
@@ -50,6 +51,7 @@ class ScaleFactors:
     covariance: Array
     imus: tuple[str, ...]
     tables: tuple[str, ...]
+    campaigns: tuple[str, ...]
 
     def some(self, kept: Sequence[int]) -> "ScaleFactors":
         """Some of the campaigns."""
@@ -59,7 +61,15 @@ class ScaleFactors:
             self.covariance[own],
             tuple(self.imus[i] for i in own),
             tuple(self.tables[i] for i in own),
+            tuple(self.campaigns[i] for i in own),
         )
+
+    def without(self, campaign: int, axis: int) -> "ScaleFactors":
+        """Without a single value; a campaign that has no other is left out."""
+        values = self.values.copy()
+        values[campaign, axis] = np.nan
+        shown = np.flatnonzero(np.isfinite(values).any(axis=1))
+        return replace(self, values=values).some(shown.tolist())
 
 
 @dataclass(frozen=True)
@@ -116,6 +126,24 @@ class _Sums:
         )
 
 
+@dataclass(frozen=True)
+class Residuals:
+    """Of each value (c, 3) beside free tables and IMUs, given the variance of changes.
+
+    `shifts`: by how much it is off if the others are right; `sigmas`: of that, infinite where the
+    others do not predict it; `square`: chi-squared of all.
+    """
+
+    shifts: Array
+    sigmas: Array
+    square: float
+
+    @property
+    def drops(self) -> Array:
+        """By how much chi-squared is less without the value."""
+        return np.asarray((self.shifts / self.sigmas) ** 2)
+
+
 class Comparison:
     """The campaigns of tables that IMUs connect, at least two."""
 
@@ -156,9 +184,7 @@ class Comparison:
 
     def sums(self, turn_on: float, common_change: float = 0.0) -> _Sums:
         """With variances of the changes of each axis, and of those that all axes share."""
-        shown = self._shown.astype(float)
-        weight = np.linalg.inv(self._noise + turn_on * np.eye(3))
-        weight = weight * shown[:, :, None] * shown[:, None, :]
+        weight = self._weight(turn_on)
         common = weight.sum(axis=2)
         whole = common.sum(axis=1)
         taken_out = 1 / (whole + (1 / common_change if common_change else np.inf))
@@ -184,6 +210,36 @@ class Comparison:
             float(np.sum(along * self._values) - np.sum(taken**2)),
         )
 
+    def _weight(self, turn_on: float) -> Array:
+        shown = self._shown.astype(float)
+        weight = np.linalg.inv(self._noise + turn_on * np.eye(3))
+        return np.asarray(weight * shown[:, :, None] * shown[:, None, :])
+
+    def residuals(self, turn_on: float, sums: _Sums) -> Residuals:
+        """P y and the diagonal of P, χ² = yᵀ P y; `sums`: with this variance of changes."""
+        weight, values = self._weight(turn_on), self._values
+        common, along = weight.sum(axis=2), np.einsum("cij,cj->ci", weight, values)
+        block, score = np.zeros((len(self.imus), 3, 3)), np.zeros((len(self.imus), 3))
+        across = np.zeros((len(self.imus), len(self.tables), 3))
+        np.add.at(block, self._imu, weight)
+        np.add.at(score, self._imu, along)
+        np.add.at(across, (self._imu, self._table), common)
+        white, _ = whitened(block)
+        of_imu = np.einsum("gpq,gpr->gqr", white, white)[self._imu]
+        seen = np.einsum("cij,cjk->cik", weight, of_imu)
+        tables = -np.einsum("cij,ctj->cit", seen, across[self._imu])
+        tables[np.arange(len(weight)), :, self._table] += common
+        tables = tables[:, :, 1:]
+        inverse = np.linalg.inv(sums.information[1:, 1:])
+        left = along - np.einsum("cij,cj->ci", seen, score[self._imu])
+        left -= tables @ (inverse @ sums.right[1:])
+        diagonal = np.einsum("cii->ci", weight) - np.einsum("cij,cji->ci", seen, weight)
+        diagonal -= np.einsum("cit,tu,ciu->ci", tables, inverse, tables)
+        tells = diagonal > MIN_TOLD * np.einsum("cii->ci", weight)
+        shifts = np.where(tells, left, 0.0) / np.where(tells, diagonal, 1.0)
+        sigmas = np.where(tells, 1 / np.sqrt(np.where(tells, diagonal, 1.0)), np.inf)
+        return Residuals(shifts, sigmas, self._left(sums))
+
     @cached_property
     def possible(self) -> tuple[Array, list[_Sums]]:
         """The probability of each variance between turn-ons, and the sums with it.
@@ -191,7 +247,8 @@ class Comparison:
         What remains beside free tables is chi-squared at the true one.
         """
         tried = [self.sums(self.scale * one) for one in CHANGES]
-        return _chances([self._left(sums) for sums in tried], self.degrees), tried
+        left = np.array([self._left(sums) for sums in tried])
+        return chances_of_changes(left, self.degrees), tried
 
     @cached_property
     def turn_on(self) -> float:
@@ -212,7 +269,8 @@ class Comparison:
             return np.zeros(0), []
         tried = [self.sums(self.turn_on, self.scale * one) for one in CHANGES]
         apart = self._apart.square
-        return _chances([self._left(sums) - apart for sums in tried], degrees), tried
+        left = np.array([self._left(sums) - apart for sums in tried])
+        return chances_of_changes(left, degrees), tried
 
     @cached_property
     def _apart(self) -> _Sums:
@@ -266,7 +324,13 @@ class Comparison:
         return int(np.sum(on[:, table] & on[:, others].any(axis=1)))
 
     def found(self, share: float, already: int) -> list[TableDifference]:
-        """The tables that differ from the others, the clearest first.
+        """The tables that differ from the others, the clearest first; see `searched`."""
+        return self.searched(share, already)[0]
+
+    def searched(
+        self, share: float, already: int
+    ) -> tuple[list[TableDifference], list[TableDifference]]:
+        """The tables that differ from the others, the clearest first, and those that may not.
 
         `share`: the chance that a first finding may have; `already`: how many there are.
         """
@@ -280,10 +344,10 @@ class Comparison:
             best = min(shown, key=lambda i: shown[i].chance)
             limit = share * (already + len(found) + 1)
             if shown[best].chance > limit or not shown[best].of_tables:
-                break
+                return found, list(shown.values())
             off.append(best)
             found.append(shown[best])
-        return found
+        return found, []
 
 
 def comparisons(of: ScaleFactors) -> Iterator[Comparison]:
@@ -301,15 +365,18 @@ def comparisons(of: ScaleFactors) -> Iterator[Comparison]:
             yield compared
 
 
-def _chances(left: Sequence[float], degrees: int) -> Array:
-    """The probability of each of CHANGES, with which so much remains: chi-squared at the true one.
+def chances_of_changes(left: Array, degrees: int) -> Array:
+    """The probability of each of CHANGES (k, …), with which so much remains, (k, …).
 
-    What no change explains is left at zero (Viechtbauer 2007), as in `fleet_components`.
+    What remains is chi-squared at the true one; what no change explains is left at zero
+    (Viechtbauer 2007), as in `fleet_components`.
     """
     up_to = chi2_sf(np.maximum(left, 0.0), degrees)
     up_to[-1] = 1.0
-    between = np.diff(up_to) / 2  # half of it at either end
-    return np.asarray(np.append(up_to[0], between) + np.append(between, 0.0))
+    between = np.diff(up_to, axis=0) / 2  # half of it at either end
+    weights = np.concatenate([up_to[:1], between])
+    weights[:-1] += between
+    return np.asarray(weights)
 
 
 def _law(table: int, off: Sequence[int], weights: Array, tried: Sequence[_Sums]) -> Mixture:

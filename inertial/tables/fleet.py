@@ -98,6 +98,36 @@ FLEET = {
             integer("axes", "axes that show it"),
         ),
         table(
+            "tables_alike",
+            1,
+            SENSOR,
+            sentence("more", "tables on which all axes of all IMUs read more, if they differ"),
+            sentence("less", "tables on which they would read less"),
+            number("value", "1", "by how much, of all scale factors alike; no finding"),
+            number("sigma", "1", "its standard deviation, turn-on to turn-on in it"),
+            number("p_value", "1", "by noise and changes alone, the search accounted for"),
+            truth(
+                "as_well", "whether changes that all axes of an IMU have in common explain it too"
+            ),
+            number("change", "1", "standard deviation of a scale factor from turn-on to turn-on"),
+        ),
+        table(
+            "outlying_changes",
+            1,
+            SENSOR,
+            text("imu", "serial number"),
+            text("axis", "x, y or z"),
+            text("campaign", "in which the scale factor differs"),
+            sentence(
+                "others",
+                "campaigns of the IMU from which it differs; of a single one nothing tells which"
+                " of the two is off",
+            ),
+            number("value", "1", "by how much the scale factor is larger, tables' errors apart"),
+            number("sigma", "1", "its standard deviation"),
+            number("p_value", "1", "of any scale factor of the sensor, by noise and changes"),
+        ),
+        table(
             "population",
             3,
             *PARAMETER,

@@ -252,8 +252,8 @@ def scale_factors_of(members: Sequence[Member], sensor: str) -> ScaleFactors:
         slope *= np.isfinite(found).ravel()
         values[number] = np.where(np.isfinite(np.diag(found)), length - 1, np.nan)
         covariances[number] = slope @ covariance[of_matrix, of_matrix] @ slope.T
-    imus = tuple(m.imu for m in kept)
-    return ScaleFactors(values, covariances, imus, tuple(m.table for m in kept))
+    imus, tables = tuple(m.imu for m in kept), tuple(m.table for m in kept)
+    return ScaleFactors(values, covariances, imus, tables, tuple(m.name for m in kept))
 
 
 # ---- Errors of references: campaigns that take the same as known contain them alike.

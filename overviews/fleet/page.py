@@ -15,6 +15,7 @@ from inertial.text.cause_names import in_words
 from inertial.text.messages import _, listed, plural
 from inertial.text.typography import capital
 from overviews.fleet.declared import READ
+from overviews.fleet.differences import change_sentences, compared, difference_sentences
 from overviews.fleet.members import members_of
 from overviews.fleet.results import results_of
 from overviews.tables_of import made_from
@@ -139,6 +140,7 @@ def _effects(rows: Rows, searched: int, false_discoveries: float) -> outline.Sec
             "fair" if found else "good",
         )
         yield from difference_sentences(rows)
+        yield from change_sentences(rows)
         if found:
             yield _found(rows)
         if rows["sizes"]:
@@ -414,66 +416,3 @@ def _campaigns(rows: Rows) -> outline.Section:
         "",
         parts,
     )
-
-
-# ---- Differences between tables in sentences.
-
-PPM = 1e-6
-MOST_LETTERS = 120
-# Either explanation, by the effect; `size` has its sigma.
-EXPLAINED = {
-    "table_speed_error": _(
-        "All gyros read {size} ppm more on {more} than on {less}, along {axes} and in {imus} "
-        "alike: either the rates of {more} are higher than set by that much, or those of {less} "
-        "lower. Which of them is off the difference does not tell; a third table would, or the "
-        "time that whole turns take. A campaign alone takes it for the scale factors of its gyros."
-    ),
-    "table_angle_scale": _(
-        "All gyros read {size} ppm more on {more} than on {less}, along {axes} and in {imus} "
-        "alike: either the angles of {more} are larger than stated by that much, or those of "
-        "{less} smaller. Which of them is off the difference does not tell; a third table would, "
-        "or an optical polygon. A campaign alone takes it for the scale factors of its gyros."
-    ),
-    "gravity_error": _(
-        "All accelerometers read {size} ppm more on {more} than on {less}, along {axes} and in "
-        "{imus} alike: either gravity at {more} is larger than stated by that much, or at {less} "
-        "smaller, or the clocks of their logs differ. Which of them is off the difference does not "
-        "tell; a third table would, or a gravimeter. A campaign alone takes it for the scale "
-        "factors of its accelerometers."
-    ),
-}
-STATED = {
-    "table_speed_error": _("What is stated of their rates leaves {stated} ppm (1 σ) open."),
-    "table_angle_scale": _("What is stated of their angles leaves {stated} ppm (1 σ) open."),
-    "gravity_error": _("What is stated of gravity leaves {stated} ppm (1 σ) open."),
-}
-
-
-def difference_sentences(rows: Mapping[str, Sequence[Row]]) -> Iterator[outline.Part]:
-    """What each difference may be."""
-    effects = {row["finding"]: row["effect"] for row in rows["findings"]}
-    for row in rows["table_differences"]:
-        effect = effects[row["finding"]]
-        said = EXPLAINED[effect].format(
-            size=numbers.plus_minus(row["value"] / PPM, row["sigma"] / PPM),
-            **_names(row),
-            axes=plural("{count} axis", "{count} axes", row["axes"]),
-            imus=plural("{count} IMU", "{count} IMUs", row["imus"]),
-        )
-        if row["stated"] is not None:
-            stated = numbers.significant(row["stated"] / PPM, 2)
-            said += " " + STATED[effect].format(stated=stated)
-        yield outline.Paragraph(said, "fair")
-
-
-def compared(rows: Mapping[str, Sequence[Row]], finding: str) -> str | None:
-    """The tables of a difference; None where a finding is none."""
-    for row in rows["table_differences"]:
-        if row["finding"] == finding:
-            names = _names(row)
-            return _("{more} against {less}", more=names["more"], less=names["less"])
-    return None
-
-
-def _names(row: Row) -> dict[str, str]:
-    return {key: numbers.shortened(row[key], MOST_LETTERS) for key in ("more", "less")}

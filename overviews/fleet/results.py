@@ -19,6 +19,7 @@ from inertial.model_selection.fleet_search import (
     fleet_law,
     smallest_of,
 )
+from inertial.model_selection.outlying_changes import OutlyingChange, without_outlying
 from inertial.sensors import SENSORS, unit_of
 from inertial.tables.fleet import FLEET
 from inertial.text.messages import listed
@@ -62,7 +63,7 @@ def results_of(
     ]
     pooled = [member for member in members if not member.reason]
     showing = [member for member in pooled if member.score]
-    compared = between_tables(pooled)
+    compared = between_tables(pooled, outliers)
     further, already = sum(search.hypotheses for search in compared), 0
     law = FleetLaw(false_discoveries, smallest_of(further, false_discoveries), further)
     if len(showing) > 1:
@@ -227,11 +228,15 @@ OF_ACCELEROMETERS = ("gravity_error", "clock_scale")
 
 @dataclass(frozen=True)
 class BetweenTables:
-    """The search in one sensor; `effects`: of the catalogue, that scale all its axes alike."""
+    """The search in one sensor; `effects`: of the catalogue, that scale all its axes alike.
+
+    `outlying`: scale factors that changed by more than the others, in no comparison.
+    """
 
     sensor: str
     effects: tuple[str, ...]
     comparison: Comparison
+    outlying: Sequence[OutlyingChange]
 
     @property
     def hypotheses(self) -> int:
@@ -239,13 +244,18 @@ class BetweenTables:
         return len(self.comparison.hypotheses)
 
 
-def between_tables(members: Sequence[Member]) -> list[BetweenTables]:
-    """The tables that can be compared, for IMUs were on several of them."""
-    return [
-        BetweenTables(sensor, _scaled_alike(sensor, members, comparison), comparison)
-        for sensor in SENSORS
-        for comparison in comparisons(scale_factors_of(members, sensor))
-    ]
+def between_tables(members: Sequence[Member], level: float) -> list[BetweenTables]:
+    """The tables that can be compared, for IMUs were on several of them.
+
+    `level`: accepted probability of calling any change of a sensor an outlier.
+    """
+    found = []
+    for sensor in SENSORS:
+        for every in comparisons(scale_factors_of(members, sensor)):
+            kept, outlying = without_outlying(every, level)
+            effects = _scaled_alike(sensor, members, kept)
+            found.append(BetweenTables(sensor, effects, kept, outlying))
+    return found
 
 
 def _scaled_alike(
@@ -262,9 +272,13 @@ def difference_rows(
 ) -> Iterator[tuple[str, Row]]:
     """Rows of the tables by name; `already`: how many effects are found by other searches."""
     for search in searches:
+        yield from _outlying_rows(search)
         if not search.effects:
             continue
-        for one in search.comparison.found(law.share, already):
+        found, others = search.comparison.searched(law.share, already)
+        for one in others:
+            yield "tables_alike", _alike(search, one, law)
+        for one in found:
             already += 1
             identifier = "/".join((search.effects[0], TABLE, *one.more, "-", *one.less))
             yield "findings", _finding(identifier, search, one, law)
@@ -276,16 +290,48 @@ def difference_rows(
                 yield "sharings", row | {"possible": level in one.possible}
             row = {
                 "finding": identifier,
-                "sensor": search.sensor,
-                "more": listed(one.more),
-                "less": listed(one.less),
-                "value": one.value,
-                "sigma": one.sigma,
+                **_between(search, one),
                 "stated": _stated(search, one, members),
                 "imus": one.imus,
                 "axes": one.axes,
             }
             yield "table_differences", row
+
+
+def _between(search: BetweenTables, one: TableDifference) -> Row:
+    return {
+        "sensor": search.sensor,
+        "more": listed(one.more),
+        "less": listed(one.less),
+        "value": one.value,
+        "sigma": one.sigma,
+    }
+
+
+def _alike(search: BetweenTables, one: TableDifference, law: FleetLaw) -> Row:
+    return {
+        **_between(search, one),
+        "p_value": law.of_any(one.chance),
+        "as_well": one.chance <= law.share and not one.of_tables,
+        "change": sqrt(search.comparison.turn_on),
+    }
+
+
+def _outlying_rows(search: BetweenTables) -> Iterator[tuple[str, Row]]:
+    for one in search.outlying:
+        yield (
+            "outlying_changes",
+            {
+                "sensor": search.sensor,
+                "imu": one.imu,
+                "axis": "xyz"[one.axis],
+                "campaign": one.campaign,
+                "others": listed(one.others),
+                "value": one.size,
+                "sigma": one.sigma,
+                "p_value": one.p_value,
+            },
+        )
 
 
 def _finding(identifier: str, search: BetweenTables, one: TableDifference, law: FleetLaw) -> Row:

@@ -1,6 +1,7 @@
 """What one table does to all gyros alike: the same IMU on another table shows it."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -9,6 +10,7 @@ from scipy import stats
 
 from inertial.model_selection.common_scale import Comparison, ScaleFactors, comparisons
 from inertial.model_selection.fleet_search import smallest_of
+from inertial.model_selection.outlying_changes import without_outlying
 from overviews.fleet.members import PARAMETERS, Member, References, scale_factors_of
 from overviews.fleet.page import fleet_page
 from overviews.fleet.results import results_of
@@ -29,7 +31,7 @@ def scale_factors(imus, tables, seed, *, turn_on=0.0, common=0.0, off=(0.0, OFF)
     values += common * random.normal(size=(len(rows), 1))
     covariance = np.tile(sigma**2 * np.eye(3), (len(rows), 1, 1))
     names = tuple(f"imu {i}" for i, _ in rows), tuple(f"table {t}" for _, t in rows)
-    return ScaleFactors(values, covariance, *names)
+    return ScaleFactors(values, covariance, *names, tuple(f"{i} on {t}" for i, t in rows))
 
 
 def found(*args, **more):
@@ -62,7 +64,7 @@ def test_an_axis_that_is_not_known_and_correlations_are_as_in_least_squares_of_a
     covariance = root @ root.transpose(0, 2, 1) + SIGMA**2 * np.eye(3)
     values = of.values.copy()
     values[5, 1] = values[8, 2] = np.nan
-    compared = Comparison(ScaleFactors(values, covariance, of.imus, of.tables))
+    compared = Comparison(ScaleFactors(values, covariance, of.imus, of.tables, of.campaigns))
     shown = np.flatnonzero(np.isfinite(values).ravel())
     design = np.zeros((36, 13))
     for row in range(12):
@@ -129,8 +131,99 @@ def test_one_imu_once_on_each_table_tells_nothing_apart():
 
 def test_tables_without_a_common_imu_are_not_compared():
     of = scale_factors(2, 2, 8)
-    apart = ScaleFactors(of.values, of.covariance, tuple("abcd"), of.tables)
+    apart = ScaleFactors(of.values, of.covariance, tuple("abcd"), of.tables, of.campaigns)
     assert not list(comparisons(apart))
+
+
+# ---- One calibration that drifted.
+
+DRIFT = 400e-6  # of one axis
+
+
+def drifted(imus, tables, seed, *, rows=(0,), axes=(2,), later=False, **more):
+    """One or more scale factors that are off; `later`: of a further campaign of the last IMU."""
+    of = scale_factors(imus, tables, seed, **more)
+    values, covariance = of.values, of.covariance
+    if later:
+        values = np.vstack([values, values[imus - 1] + SIGMA * np.sqrt(2) * np.array([1, -1, 0.5])])
+        covariance = np.concatenate([covariance, covariance[:1]])
+        labels = (own + own[imus - 1 : imus] for own in (of.imus, of.tables))
+        of = ScaleFactors(values, covariance, *labels, (*of.campaigns, "late"))
+        rows = (len(values) - 1,)
+    values[np.ix_(rows, axes)] += DRIFT
+    return of
+
+
+def kept_of(of, level=0.01):
+    (compared,) = comparisons(of)
+    return without_outlying(compared, level)
+
+
+def test_the_drop_without_a_value_is_that_of_a_comparison_without_it():
+    of = scale_factors(4, 3, 3, off=(0.0, 0.0, 90e-6))
+    of.values[5, 1] = np.nan
+    compared = Comparison(of)
+    turn_on = (30e-6) ** 2
+    found = compared.residuals(turn_on, compared.sums(turn_on))
+    for row, axis in ((0, 0), (7, 2), (10, 1)):
+        less = Comparison(of.without(row, axis))
+        left = less.residuals(turn_on, less.sums(turn_on))
+        assert found.square - found.drops[row, axis] == pytest.approx(left.square, rel=1e-6)
+    assert compared.residuals(turn_on, compared.sums(turn_on)).square > 1
+
+
+@pytest.mark.parametrize("how", [{"later": True}, {"axes": (0, 2)}])
+def test_a_table_is_found_beside_one_calibration_that_drifted(how):
+    """Two drifted axes hide each other from a test of one at a time."""
+    found_alone, sizes = 0, []
+    for seed in range(10):
+        of = drifted(3, 2, seed, **how)
+        found_alone += bool(next(comparisons(of)).found(SHARE, 0))
+        compared, outlying = kept_of(of)
+        (one,) = compared.found(SHARE, 0)
+        sizes.append((one.value - OFF) / one.sigma)
+        assert {each.axis for each in outlying} == set(how.get("axes", (2,)))
+        assert all(abs(each.size) == pytest.approx(DRIFT, abs=5 * each.sigma) for each in outlying)
+        assert all(each.campaign == "late" or not how.get("later") for each in outlying)
+        assert all(len(each.others) == 1 + bool(how.get("later")) for each in outlying)
+    assert not found_alone
+    assert abs(np.mean(sizes)) < 3 / np.sqrt(10)
+
+
+def test_of_three_campaigns_the_one_that_is_off_is_named():
+    of = drifted(4, 3, 3, rows=(5,), axes=(1,), off=(0.0, 0.0, OFF))
+    _, (one,) = kept_of(of)
+    assert (one.imu, one.campaign, one.axis) == ("imu 1", "1 on 1", 1)
+    assert set(one.others) == {"1 on 0", "1 on 2"}
+    assert one.size == pytest.approx(DRIFT, abs=4 * one.sigma)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shape", [(2, 2), (3, 2), (4, 3)])
+@pytest.mark.parametrize("turn_on", [0.0, 400e-6])
+def test_changes_of_one_law_have_outliers_as_rarely_as_wanted(shape, turn_on):
+    """And tables are found as rarely as wanted, though outliers are left out before."""
+    count, level = 100, 0.05
+    outliers = differences = 0
+    for seed in range(count):
+        compared, outlying = kept_of(scale_factors(*shape, seed, turn_on=turn_on, off=[0.0] * 3))
+        outliers += bool(outlying)
+        differences += bool(compared.found(level, 0))
+    assert outliers <= stats.binom.isf(1e-3, count, 0.01)
+    assert differences <= stats.binom.isf(1e-3, count, level)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"off": (0.0, np.array([0.0, 0.0, 300e-6]))},
+        {"off": (0.0, np.array([0.0, 300e-6, 300e-6]))},
+    ],
+)
+def test_what_some_axes_of_all_imus_change_by_is_no_outlier(change):
+    for seed in range(10):
+        compared, outlying = kept_of(scale_factors(3, 2, seed, **change))
+        assert not outlying and not compared.found(SHARE, 0)
 
 
 # ---- From campaigns to the page.
@@ -216,6 +309,40 @@ def test_the_page_says_which_tables_differ_and_both_explanations(sensor, turns, 
     text = re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", html))
     assert all(own in text for own in words)
     assert "table 1 against table 0" in text and ("leaves 71 ppm" in text) == (turns == "steady")
+
+
+def test_the_page_names_a_drifted_calibration_and_the_table_error_that_it_hid():
+    every = list(members())
+    place = PARAMETERS.index(("gyro", "scale_z"))
+    later = every[2].values.copy()
+    later[place] += DRIFT
+    logs = frozenset({"late"})
+    rows, _ = results_of(
+        [*every, replace(every[2], campaign="late", values=later, logs=logs)], **BOTH
+    )
+    (row,) = rows["table_differences"]
+    assert row["value"] == pytest.approx(OFF, abs=4 * row["sigma"])
+    (change,) = rows["outlying_changes"]
+    assert (change["imu"], change["axis"], change["campaign"]) == ("imu 2", "z", "late")
+    assert change["others"] == "c-2 and c-5"
+    html = fleet_page(rows, 1, 0.03, "test", [], "c0de", simulated=False)
+    assert "larger in late than in c-2 and c-5" in re.sub(r"\s+", " ", html)
+
+
+def test_the_page_says_how_much_tables_may_differ_where_none_is_found():
+    every = list(members())
+    flat = [replace(m, values=m.values - OFF * _scales() * (n > 2)) for n, m in enumerate(every)]
+    rows, _ = results_of(flat, **BOTH)
+    assert not rows["table_differences"]
+    (row,) = rows["tables_alike"]
+    assert not row["as_well"] and row["value"] < 4 * row["sigma"]
+    html = fleet_page(rows, 1, 0.03, "test", [], "c0de", simulated=False)
+    assert "No difference between tables is found in the gyros" in re.sub(r"\s+", " ", html)
+
+
+def _scales():
+    """1 at the scale factors of the gyros."""
+    return np.array([kind == "gyro" and name.startswith("scale") for kind, name in PARAMETERS])
 
 
 def test_tables_without_a_name_are_not_compared():
