@@ -310,6 +310,9 @@ class Spread:
 class Population:
     """A quantity of a type: the law of its mean, its spreads; `tables`: the part of each table.
 
+    `errors`: covariance of the logarithms of the spreads, NaN in the rows of those at 0, or where
+    it is not known; `campaigns`: how many have a value.
+
     Sigma and degrees of freedom of the mean are those of a Student's t with its 68 % and 95 %
     intervals; degrees are infinite without spreads, NaN where their errors are not known.
     """
@@ -317,6 +320,8 @@ class Population:
     law: Mixture
     spreads: tuple[Spread, ...]
     tables: Array
+    errors: Array
+    campaigns: int
 
     @property
     def mean(self) -> float:
@@ -386,7 +391,8 @@ def population(values: Array, sigma: Array, labels: Mapping[str, Sequence[str]])
     in_units = replace(
         law, centres=float(np.median(values)) + root * law.centres, sigmas=root * law.sigmas
     )
-    return Population(in_units, spreads, root * sharing.solved(with_mean(sizes)).tables[:, 0])
+    tables = root * sharing.solved(with_mean(sizes)).tables[:, 0]
+    return Population(in_units, spreads, tables, errors, len(values))
 
 
 def _law_of_mean(sharing: Sharing, sizes: Mapping[str, float], errors: Array) -> Mixture:

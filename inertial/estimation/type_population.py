@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from inertial.arrays import Array, Booleans
-from inertial.estimation.fleet_components import Population, population
+from inertial.estimation.fleet_components import MIN_DEGREES, Population, population
 from inertial.estimation.probability import norm_sf, t_sf
 
 MIN_IMUS = 4  # for correlations and outliers: of less none could be significant
@@ -106,16 +106,38 @@ def of_new_imu(found: Population) -> tuple[float, float] | None:
     """Sigma of a new IMU of the type about the mean, and its degrees of freedom (Satterthwaite).
 
     In one campaign on one table, beside the sigma of that campaign; None for a single IMU, of
-    which the spread of the type is not known.
+    which the spread of the type is not known. The errors of the variance S of the components and
+    of that of the mean, m², have the same causes, so that they are taken to add up:
+
+        √(2/ν) (S + m²) = √(2/ν_S) S + √(2/ν_m) m²,    ν < number of campaigns
     """
     if not any("imu" in spread.levels for spread in found.spreads):
         return None
     variance = sum(s.value**2 for s in found.spreads)
-    whole = variance + found.mean_sigma**2
-    # The variance of the mean is that of the components over their groups, and no surer.
-    parts = [(s.value**2 * (1 + 1 / s.groups), s.groups - 1) for s in found.spreads if s.value]
-    uncertain = sum(part**2 / degrees for part, degrees in parts)
-    return float(np.sqrt(whole)), float(whole**2 / uncertain) if uncertain else np.inf
+    of_mean = found.mean_sigma**2
+    fewest = min((s.groups - 1 for s in found.spreads if s.value), default=found.campaigns - 1)
+    degrees = found.mean_degrees if np.isfinite(found.mean_degrees) else float(fewest)
+    surely_known = np.isinf(found.mean_degrees)
+    part = variance / np.sqrt(_degrees_of_sum(found, fewest))
+    part += 0.0 if surely_known else of_mean / np.sqrt(degrees)
+    whole = variance + of_mean
+    if not part:
+        return float(np.sqrt(whole)), np.inf
+    return float(np.sqrt(whole)), float(min((whole / part) ** 2, found.campaigns - 1))
+
+
+def _degrees_of_sum(found: Population, fewest: int) -> float:
+    """Of the sum of the components, by the covariance of their estimates: 2 S² / var(S).
+
+    `fewest`: of any component alone, where that covariance is not known.
+    """
+    parts = np.array([s.value**2 for s in found.spreads])
+    shown = np.flatnonzero(parts > 0)
+    errors = 4 * found.errors[np.ix_(shown, shown)]  # of the logarithms of the variances
+    if not len(shown) or not np.isfinite(errors).all():
+        return float(fewest)
+    own = parts[shown]
+    return float(max(2 * own.sum() ** 2 / (own @ errors @ own), MIN_DEGREES))
 
 
 def _imu_means(

@@ -338,6 +338,27 @@ def test_two_imus_that_hardly_differ_have_a_mean_of_one_degree(ratio):
     assert new is not None and np.isfinite(new).all()
 
 
+@pytest.mark.parametrize("tables", [1, 2])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_new_imu_is_known_by_no_more_degrees_than_there_are_campaigns(tables, seed):
+    """Four IMUs twice: of three components of their own degrees there were up to 16."""
+    random = np.random.default_rng(seed)
+    own = labels(imus=4, each=2, tables=tables)
+    imu, table = (np.unique(own[level], return_inverse=True)[1] for level in ("imu", "table"))
+    values = random.normal(size=4)[imu] + random.normal(size=tables)[table]
+    values += random.normal(size=8)
+    new = of_new_imu(population(values, np.full(8, 0.1), own))
+    assert new is not None and 1 <= new[1] <= 7
+
+
+def test_of_imus_once_each_a_new_one_has_the_degrees_of_their_variance():
+    values = 3 * np.random.default_rng(31).normal(size=6)
+    own = labels(imus=6, each=1, tables=1)
+    sigma, degrees = of_new_imu(population(values, np.full(6, 0.01), own))
+    assert sigma == pytest.approx(values.std(ddof=1) * np.sqrt(1 + 1 / 6), rel=2e-3)
+    assert degrees == pytest.approx(5, rel=0.03)
+
+
 def test_one_imu_is_no_population():
     own = labels(imus=1, each=4, tables=1)
     assert of_new_imu(population(np.arange(4.0), np.ones(4), own)) is None
