@@ -223,7 +223,7 @@ def fleet(of: tuple[Path, int], selection: str, name: str) -> int:
     folder, cores = of
     selections, errors = part_of("overviews.fleet.selection"), part_of("inertial.tables.errors")
     try:
-        kept = selections.keep(selection, name, folder / selections.FLEETS)
+        kept = selections.keep(selection, name, campaigns(folder), folder)
     except errors.Refusal as refusal:
         click.echo(f"fleet: {refusal}", err=True)
         return 2

@@ -11,7 +11,7 @@ from pathlib import Path
 from inertial import tables
 from inertial.tables.errors import Refusal
 from inertial.tables.whole_files import write_whole
-from inertial.text.messages import _
+from inertial.text.messages import _, listed
 from inertial.text.numbers import shortened
 from overviews.fleet.declared import READ
 
@@ -19,6 +19,8 @@ FLEETS = Path("data/fleets")
 KEYS = ("serial", "instrument", "table")
 EVERY = "all"
 MAX_NAME = 60  # characters
+MOST_OFFERED = 20  # values that a refusal lists
+SELECT = "SELECT"  # the place of a selection that is given on the command line
 
 
 def parts(text: str) -> tuple[Mapping[str, str], Sequence[str]]:
@@ -45,7 +47,7 @@ def parts(text: str) -> tuple[Mapping[str, str], Sequence[str]]:
 
 def _refused(text: str, found: str) -> Refusal:
     return Refusal(
-        "SELECT",
+        SELECT,
         shortened(text, 80),
         found,
         _("serial=…, instrument=… or table=…, several of them, or names of campaigns, or all"),
@@ -72,7 +74,19 @@ def selected(name: str, known: Sequence[str], derived: Path) -> list[str]:
         raise Refusal(
             str(file), "", _("no such file"), _("a selection"), _("make fleet SELECT=… writes it")
         )
-    conditions, names = parts(file.read_text(encoding="utf-8"))
+    return chosen(file.read_text(encoding="utf-8").strip(), known, derived, str(file))
+
+
+def chosen(text: str, known: Sequence[str], derived: Path, of: str = SELECT) -> list[str]:
+    """The campaigns of a selection; `of`: where it is given.
+
+    Raises
+    ------
+    Refusal
+        where it is none, or is of fewer than two campaigns
+    """
+    conditions, names = parts(text)
+    shown = shortened(text, 80)
     complete = [
         one
         for one in known
@@ -82,38 +96,62 @@ def selected(name: str, known: Sequence[str], derived: Path) -> list[str]:
         unknown = [one for one in names if one not in known]
         if unknown:
             raise Refusal(
-                str(file),
-                "",
+                of,
+                shown,
                 _("the campaign {campaign}, which is not known", campaign=unknown[0]),
                 _("names of folders of data/raw"),
                 _("correct the name, or select by serial=…, instrument=… or table=…"),
             )
-        chosen = list(dict.fromkeys(names))
+        found = list(dict.fromkeys(names))
     else:
-        chosen = [one for one in complete if _meets(conditions, derived / one)]
-    if len(chosen) < 2:
+        about = {one: _about(derived / one) for one in complete}
+        missing = [(k, v) for k, v in conditions.items() if v not in _there(about, k)]
+        if missing:
+            raise Refusal(
+                of,
+                shown,
+                _("no campaign with a result has {condition}", condition="=".join(missing[0])),
+                _("one of these: {there}", there=_offered(about, missing[0][0])),
+                _("correct SELECT; make report CAMPAIGN=… makes a result"),
+            )
+        found = [one for one in complete if conditions.items() <= about[one].items()]
+    if len(found) < 2:
         raise Refusal(
-            str(file),
-            "",
-            _("{count} of {all} campaigns with a result", count=len(chosen), all=len(complete)),
+            of,
+            shown,
+            _("{count} of {all} campaigns with a result", count=len(found), all=len(complete))
+            + (f": {found[0]}" if found else ""),
             _("two or more"),
             _("see reports/index.html for what there is; make report CAMPAIGN=… makes a result"),
         )
-    return chosen
+    return found
 
 
-def _meets(conditions: Mapping[str, str], campaign: Path) -> bool:
+def _about(campaign: Path) -> dict[str, str]:
     row = tables.CAMPAIGN.read(campaign / "plan/campaign.parquet").iloc[0]
-    return all(row[key] == value for key, value in conditions.items())
+    return {key: str(row[key]) for key in KEYS}
 
 
-def keep(selection: str, name: str, fleets: Path = FLEETS) -> str:
-    """Keep a selection, by this name or one made of it; the name.
+def _there(about: Mapping[str, Mapping[str, str]], key: str) -> list[str]:
+    return sorted({row[key] for row in about.values()})
+
+
+def _offered(about: Mapping[str, Mapping[str, str]], key: str) -> str:
+    """The values of a key as they are written in a selection."""
+    every = _there(about, key)
+    words = [shlex.quote(f"{key}={value}") for value in every[:MOST_OFFERED]]
+    return listed(words + ["…"] * (len(every) > MOST_OFFERED), "or") if words else _("none")
+
+
+def keep(selection: str, name: str, known: Sequence[str], folder: Path) -> str:
+    """Keep a selection, by this name or one made of it, if it is one of `known`; the name.
+
+    `known`: campaigns of the folder. A selection that is refused leaves no file.
 
     Raises
     ------
     Refusal
-        where it is no selection, or the name is none
+        where it is no selection, or of fewer than two campaigns, or the name is none
     """
     name = name or name_of(selection)
     parts(selection)
@@ -121,5 +159,6 @@ def keep(selection: str, name: str, fleets: Path = FLEETS) -> str:
         raise Refusal(
             "NAME", name, _("another character"), _("a-z, digits, hyphens"), _("rename it")
         )
-    write_whole({fleets / f"{name}.txt": f"{selection}\n".encode()})
+    chosen(selection, known, folder / "data/derived")
+    write_whole({folder / FLEETS / f"{name}.txt": f"{selection}\n".encode()})
     return name

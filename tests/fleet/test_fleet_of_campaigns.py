@@ -21,7 +21,7 @@ from inertial.text.messages import speak
 from overviews.fleet.members import members_of
 from overviews.fleet.page import WOULD_TELL, fleet_page
 from overviews.fleet.results import as_likeliest, results_of
-from overviews.fleet.selection import name_of, parts, selected
+from overviews.fleet.selection import keep, name_of, parts, selected
 
 pytestmark = pytest.mark.slow
 
@@ -44,7 +44,7 @@ def derived(tmp_path_factory: pytest.TempPathFactory) -> Path:
         document["campaign"]["table"] |= {"name": table}
         document["noise"]["angle_random_walk_deg_sqrt_h"] = 0.3
         made = chain.in_memory(
-            laboratory.perform(laboratory.specify(document)), "diagnosis", chain.BESIDE
+            laboratory.perform(laboratory.specify(document)), "compensation", chain.BESIDE
         )
         for place, arrow in made.arrow.items():
             file = folder / name / f"{place}.parquet"
@@ -191,10 +191,26 @@ def test_the_campaigns_of_a_selection(derived, monkeypatch, tmp_path):
     assert of("serial=A") == ["one", "two"]
     assert of("all") == list(CAMPAIGNS)
     assert of("three one") == ["three", "one"]
-    with pytest.raises(Refusal, match="1 of 3"):
+    with pytest.raises(Refusal, match="1 of 3 campaigns with a result: three"):
         of("serial=B")
     with pytest.raises(Refusal, match="four"):
         of("one four")
+
+
+def test_what_selects_nothing_is_refused_with_what_there_is_and_leaves_no_file(derived, tmp_path):
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data/derived").symlink_to(derived)
+    for text in ("serial=NOPE", "serial=NOPE table=left", "serial=B", "one four"):
+        with pytest.raises(Refusal) as refusal:
+            keep(text, "", list(CAMPAIGNS), tmp_path)
+        said = str(refusal.value)
+        assert said.startswith(f"SELECT, {text}\n") and "data/fleets" not in said
+        if "NOPE" in text:
+            assert "no campaign with a result has serial=NOPE" in said
+            assert "serial=A or serial=B" in said
+    assert not (tmp_path / "data/fleets").exists()
+    assert keep("table=left", "", list(CAMPAIGNS), tmp_path) == "table-left"
+    assert (tmp_path / "data/fleets/table-left.txt").read_text() == "table=left\n"
 
 
 def test_every_pair_of_levels_has_a_campaign_that_would_tell():
