@@ -92,7 +92,30 @@ class FleetSearch:
     def found(self) -> list[FleetEffect]:
         """The effects, each with what shares it."""
         model = self._accepted(self._exchanged(self._forward()))
+        model = self._accepted(self._as_shared(model))
         return [self._finding(place, model) for place in range(len(model))]
+
+    def _as_shared(self, model: list[Shared]) -> list[Shared]:
+        """Each as what shares it in all probability, where it was found as another level.
+
+        The search goes by significance: sizes of their own in each of few groups may exceed their
+        threshold by a little more than the one size that all have.
+        """
+        model = list(model)
+        for place in range(len(model)):
+            found = self._finding(place, model)
+            if found.hypothesis.level not in found.levels:
+                others = model[:place] + model[place + 1 :]
+                level = [
+                    one
+                    for one in self.every
+                    if (one.effect, one.level) == (found.hypothesis.effect, found.levels[0])
+                    and one not in others
+                ]
+                best, p_value, _ = self._best(others, level)
+                if best is not None and p_value <= self.law.share:
+                    model[place] = best
+        return model
 
     def _forward(self) -> list[Shared]:
         model: list[Shared] = []

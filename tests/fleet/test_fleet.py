@@ -9,12 +9,13 @@ from scipy import stats
 from inertial.estimation.fleet_components import Sharing, population, shares
 from inertial.estimation.type_population import Campaigns, of_new_imu, type_population
 from inertial.model_selection.fleet_evidence import EVERY, FleetEvidence, Shared
-from inertial.model_selection.fleet_search import FleetSearch, fleet_law
+from inertial.model_selection.fleet_search import FleetLaw, FleetSearch, fleet_law
 
 EFFECTS = {"drift": [0], "curve": [1, 2], "tilt": [3, 4, 5]}
 ALL = [i for columns in EFFECTS.values() for i in columns]
 LEVEL, RARE = 0.05, 0.01
 IMUS, TABLES = 5, 3
+LAW = FleetLaw(LEVEL, 2e-4, 250)
 
 
 def designs(campaigns, seed):
@@ -166,6 +167,19 @@ def test_an_effect_of_one_campaign_is_not_said_to_belong_to_its_imu():
     (one,) = FleetSearch(evidence, fleet_law(evidence, RARE)).found()
     assert one.hypothesis == Shared(1, "campaign", 4)
     assert one.levels == ("campaign",)
+
+
+def test_a_finding_is_stated_as_what_shares_it():
+    """By significance alone a size of each table may win a little over one of the type."""
+    own = labels(imus=4, each=2, tables=2)
+    beta = sizes(own, "type", "type", EFFECTS["tilt"], 30.0, 40)
+    for seed in range(40):
+        evidence, _, _ = fleet(own, beta, 600 + seed)
+        for one in FleetSearch(evidence, LAW).found():
+            assert one.hypothesis.level in one.levels
+            drops, degrees = evidence.drops(2, one.hypothesis.level, evidence.given(()))
+            assert one.statistic == pytest.approx(drops[one.hypothesis.group])
+            assert one.degrees == degrees[one.hypothesis.group]
 
 
 def test_what_one_table_cannot_tell_is_named_together():
