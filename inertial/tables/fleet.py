@@ -4,6 +4,7 @@ from inertial.tables.table import (
     SENSOR,
     integer,
     number,
+    optional_integer,
     optional_number,
     optional_text,
     sentence,
@@ -33,7 +34,7 @@ FLEET = {
         ),
         table(
             "findings",
-            2,
+            3,
             FINDING,
             text("effect", "name in the catalogue"),
             text("level", "what shares it: type, table, imu or campaign"),
@@ -42,9 +43,18 @@ FLEET = {
                 "the type, table, IMU or campaign; none: each has a size of its own, or tables"
                 " differ, see table_differences",
             ),
-            number("statistic", "1", "reduction of chi-squared beside the others"),
-            integer("degrees", "degrees of freedom of the statistic"),
+            optional_number(
+                "statistic",
+                "1",
+                "reduction of chi-squared beside the others; none: tables differ, and p is averaged"
+                " over the changes between campaigns that are possible",
+            ),
+            optional_integer("degrees", "degrees of freedom of the statistic"),
             number("p_value", "1", "by noise alone, the search accounted for"),
+            optional_integer(
+                "named_by", "campaigns that name the effect by themselves; none: tables differ"
+            ),
+            optional_integer("asked", "campaigns in which it is sought, of those that share it"),
         ),
         table(
             "members",

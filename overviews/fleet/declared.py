@@ -7,6 +7,7 @@ READ = {
     **of_stage("plan", tables.CAMPAIGN, tables.INPUTS, tables.KNOWN, tables.MANOEUVRES),
     "score": From("criticism", tables.SCORE_VECTOR),
     "information": From("criticism", tables.INFORMATION_MATRIX),
+    "scores": From("criticism", tables.SCORES),
     "result": From("diagnosis", tables.PARAMETERS, "result"),
     "covariance": From("diagnosis", tables.COVARIANCE),
     "uncertainty_budget": From("compensation", tables.UNCERTAINTY_BUDGET),

@@ -53,7 +53,7 @@ class Member:
     of PARAMETERS, NaN where not determined, with `covariance`; `gravity`: as the campaign takes it
     as known, m/s², with sigma; `by_table`: (24,), what of the sigmas is the share by which all
     rates of the table are off; `references`: what its scale factors rest on; `reason`: why it is
-    not pooled.
+    not pooled; `named`: effects that the campaign names by itself.
     """
 
     campaign: str
@@ -72,6 +72,7 @@ class Member:
     by_table: Array
     references: References
     reason: str = ""
+    named: frozenset[str] = frozenset()
 
     @property
     def name(self) -> str:
@@ -152,7 +153,12 @@ def _members(name: str, folder: Path) -> Iterator[Member]:
             _gravity(frames["known"]),
             _by_table_of(frames["uncertainty_budget"], mount),
             references,
+            named=_named(frames["scores"], mount),
         )
+
+
+def _named(scores: pd.DataFrame, mount: str) -> frozenset[str]:
+    return frozenset(scores.loc[(scores["mount"] == mount) & scores["named"], "effect"])
 
 
 def _parameters(rows: pd.DataFrame, known: Mapping[tuple[str, str], float]) -> tuple[Array, Array]:

@@ -149,13 +149,14 @@ def _effects(rows: Rows, searched: int, false_discoveries: float) -> outline.Sec
 
     return _section(
         "effects",
-        _("Effects too small for one campaign"),
-        _("Each effect that the campaigns show together, and what it belongs to."),
+        _("Effects that the campaigns show together"),
+        _("Each effect of several campaigns, what it belongs to, and how many name it alone."),
         _(
             "An effect of the table is the same in all IMUs on it, one of an IMU goes with it from "
             "table to table, and one of the type has the same sign and size in all. What the "
             "campaigns do not tell apart is named together, with the campaign that would. p is that"
-            " of any hypothesis by noise alone."
+            " of any hypothesis by noise alone. What campaigns name by themselves their own "
+            "results state already; what none names is too small for one."
         ),
         parts,
     )
@@ -174,8 +175,13 @@ def _found(rows: Rows) -> outline.Table:
                 _with_chances(
                     (LEVEL[s["level"]], s["probability"]) for s in sharings if s["possible"]
                 ),
-                f"{numbers.significant(row['statistic'], 3)} ({row['degrees']})",
+                "—"
+                if row["statistic"] is None
+                else f"{numbers.significant(row['statistic'], 3)} ({row['degrees']})",
                 numbers.probability(row["p_value"]),
+                "—"
+                if row["asked"] is None
+                else _("{count} of {all}", count=row["named_by"], all=row["asked"]),
                 "; ".join(would_tell(possible)) or "—",
                 tone="fair" if len(possible) > 1 or len(members) > 1 else "",
             )
@@ -186,10 +192,15 @@ def _found(rows: Rows) -> outline.Table:
             *outline.columns("text", _("Effect"), _("In"), _("Belongs to")),
             outline.Column(_("χ² (degrees)"), "number"),
             outline.Column("p", "number"),
+            outline.Column(_("Campaigns that name it alone"), "number"),
             outline.Column(_("What would tell"), "note"),
         ),
         lines,
-        note=_("Where several are possible, each has its probability."),
+        note=_(
+            "Where several are possible, each has its probability. Between tables p is averaged "
+            "over the changes from campaign to campaign that the others leave possible, as that "
+            "of Student's t: no χ² goes with it."
+        ),
     )
 
 

@@ -73,6 +73,7 @@ def results_of(
         already = len(found)
         units = {place: unit for member in showing for place, unit in member.units.items()}
         for name, row in _effects(evidence, found, places, units):
+            row |= _named_by(row, evidence, showing) if name == "findings" else {}
             rows[name].append(row)
     for name, row in difference_rows(compared, pooled, law, already):
         rows[name].append(row)
@@ -119,6 +120,17 @@ def _effects(
             yield "shares", row | {"share": share, "sigma": sigma}
     if model:
         yield from _sizes(evidence, ids, model, places, units)
+
+
+def _named_by(row: Row, evidence: FleetEvidence, members: Sequence[Member]) -> Row:
+    own = evidence.levels[row["level"]]
+    asked = [
+        member
+        for member, group in zip(members, own.of, strict=True)
+        if row["group"] in (None, own.labels[group])
+        and any(effect == row["effect"] for effect, _ in member.score)
+    ]
+    return {"named_by": sum(row["effect"] in m.named for m in asked), "asked": len(asked)}
 
 
 def as_likeliest(found: Sequence[FleetEffect]) -> list[Shared]:
@@ -340,9 +352,11 @@ def _finding(identifier: str, search: BetweenTables, one: TableDifference, law: 
         "effect": search.effects[0],
         "level": TABLE,
         "group": None,
-        "statistic": (one.value / one.sigma) ** 2,
-        "degrees": 1,
+        "statistic": None,
+        "degrees": None,
         "p_value": law.of_any(one.chance),
+        "named_by": None,
+        "asked": None,
     }
 
 

@@ -1,4 +1,4 @@
-"""A staircase of rates without marks: turns that are no whole ones, there and back, in one position.
+"""A staircase of rates without marks: turns that are not whole, there and back, in one position.
 
 The table goes back before each turn, through the same angle in another time: that motion was taken
 for the turn, which then began elsewhere than it did, and the gyros had a structure without a name.

@@ -2,6 +2,7 @@
 
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import chain
@@ -44,17 +45,16 @@ def derived(tmp_path_factory: pytest.TempPathFactory) -> Path:
         document["campaign"]["table"] |= {"name": table}
         document["noise"]["angle_random_walk_deg_sqrt_h"] = 0.3
         made = chain.in_memory(
-            laboratory.perform(laboratory.specify(document)), "compensation", chain.BESIDE
+            laboratory.perform(laboratory.specify(document)), "diagnosis", chain.BESIDE
         )
         for place, arrow in made.arrow.items():
             file = folder / name / f"{place}.parquet"
             file.parent.mkdir(parents=True, exist_ok=True)
             pq.write_table(arrow, file)
-        _with_own_logs(folder / name)
         budget = folder / name / "compensation/uncertainty_budget.parquet"
         budget.parent.mkdir()
-        empty = tables.UNCERTAINTY_BUDGET.empty()  # without errors of all rates of a table
-        pq.write_table(tables.UNCERTAINTY_BUDGET.arrow(empty), budget)
+        pq.write_table(tables.UNCERTAINTY_BUDGET.arrow(tables.UNCERTAINTY_BUDGET.frame([])), budget)
+        _with_own_logs(folder / name)
     return folder
 
 
@@ -105,6 +105,7 @@ def test_no_campaign_names_the_effect_and_the_fleet_does(derived, pooled):
     assert searched > 50
     (finding,) = rows["findings"]
     assert finding["effect"] == "gyro_g_sensitivity" and finding["group"] == "NovAtel SPAN-CPT"
+    assert (finding["named_by"], finding["asked"]) == (0, 3)
     possible = [one["level"] for one in rows["sharings"] if one["possible"]]
     assert "type" in possible
     (size,) = [one for one in rows["sizes"] if one["parameter"] == "g_xy"]
@@ -126,6 +127,16 @@ def test_the_population_has_the_truth_of_all_24_parameters(pooled):
         ]
         assert row["mean"] == pytest.approx(truth["bias_m_s2"][place], abs=4 * row["mean_sigma"])
         assert row["imus"] == 2 and row["prior_sigma"] >= row["mean_sigma"]
+
+
+def test_the_page_says_which_findings_campaigns_name_alone(derived):
+    members = members_of(list(CAMPAIGNS), derived)
+    both = [replace(m, named=frozenset({"gyro_g_sensitivity"})) for m in members[:2]]
+    rows, searched = results_of([*both, *members[2:]], **SETTINGS)
+    (finding,) = rows["findings"]
+    assert (finding["named_by"], finding["asked"]) == (2, 3)
+    html = fleet_page(rows, searched, 0.03, "test", [], "c0de", simulated=True)
+    assert "Effects that the campaigns show together" in html and "2 of 3" in html
 
 
 @pytest.mark.parametrize(("language", "words"), [("en", "Effects found"), ("zh", "发现的效应")])
