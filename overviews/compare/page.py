@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from inertial.sensors import PLURAL, SENSORS, SINGULAR
-from inertial.text import cause_names, numbers
+from inertial.text import numbers
 from inertial.text.messages import _, plural
-from inertial.text.parameters import sign_of
 from inertial.text.typography import capital
 from inertial.text.units import DEGREE, ICE_POINT, Unit
 from overviews.compare.pair import READ, Compared, Pair, pair_of_campaigns
@@ -230,12 +229,6 @@ def _figure(pair: Pair) -> outline.Figure:
 # ---- Effects, verdicts, circumstances.
 
 
-def _of_effect(parameter: str) -> str:
-    """gyro_g_sensitivity.g_xx in words: gyro g-sensitivity, g_xx."""
-    effect, _dot, name = parameter.partition(".")
-    return f"{cause_names.in_words(effect)}, {sign_of(name)}"
-
-
 def _effects(pair: Pair) -> outline.Section:
     parts: list[outline.Part] = []
     for sensor in SENSORS:
@@ -244,7 +237,7 @@ def _effects(pair: Pair) -> outline.Section:
             caption = _("Effects in the results of the {sensor}.", sensor=PLURAL[sensor])
             table = _table(pair, rows, caption)
             lines = [
-                outline.Row((_of_effect(one.key[2]), *row.cells[1:]), tone=row.tone)
+                outline.Row((one.effect_in_words, *row.cells[1:]), tone=row.tone)
                 for one, row in zip(rows, table.rows, strict=True)
             ]
             head = outline.Column(_("Effect"))

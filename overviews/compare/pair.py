@@ -10,6 +10,8 @@ from inertial.arrays import Array
 from inertial.campaign.references import READ_AS_SCALE
 from inertial.estimation.consistency import holm_rejections, normal_p_value
 from inertial.estimation.probability import chi2_sf
+from inertial.text.cause_names import in_words
+from inertial.text.parameters import sign_of
 from overviews.compare.shared import Key, Shared, shared_by
 from stages.report.tables import Record, Tables
 
@@ -52,6 +54,12 @@ class Compared:
         row = self.first or self.second
         assert row is not None
         return row
+
+    @property
+    def effect_in_words(self) -> str:
+        """The parameter of an effect: gyro g-sensitivity, g_xx."""
+        effect, _dot, name = self.key[2].partition(".")
+        return f"{in_words(effect)}, {sign_of(name)}"
 
     @property
     def difference(self) -> float | None:
