@@ -243,8 +243,8 @@ def both_ways(
     efficient, and so it gives b_turns the weight σ_b²/σ_turns². Without `scatter`, the scatter
     between manoeuvres in the joint fit (rad/s), this leaves σ² = c² (σ_turns² − σ_b²), after
     Hausman (1978). The scatter is not counted as noise of the turns: it represents unmodelled
-    effects, which are what is tested here. Where σ_b is no smaller than half of the variance of
-    the turns it is not by white noise, as that of a drift: then nothing is taken off.
+    effects, which are what is tested here. A σ_b above σ_turns is by more than white noise, as
+    by a drift: then nothing is taken off.
     """
     scales = [
         (turn.summed - (bias + earth.up * turn.up) * turn.seconds) / turn.angle - 1
@@ -258,7 +258,7 @@ def both_ways(
             noise += turn.clock_sigma**2
     c = forward.seconds / forward.angle - backward.seconds / backward.angle
     of_bias = (c * bias_sigma) ** 2
-    white = of_bias < (noise + offsets) / 2
+    white = of_bias < noise + offsets
     shared = of_bias / (noise + offsets) * noise if white else 0.0
     of_earth = forward.up * forward.seconds / forward.angle
     of_earth -= backward.up * backward.seconds / backward.angle

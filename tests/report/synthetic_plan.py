@@ -115,6 +115,7 @@ def _manoeuvre(name: str, axis: int, sign: float, what: dict[str, Any]) -> dict[
     return {
         "manoeuvre": name,
         "position": name,
+        "turned_on": 0.0,
         "switch_on": 0,
         "log": f"{name}.asc",
         "mount": "as mounted",
