@@ -417,6 +417,14 @@ def test_counts_and_limits_go_with_the_axes_of_their_columns(tmp_path):
     assert axes == {"accel": ["-x", "-y", "-z"], "gyro": ["z", "-x", "y"]}
 
 
+def test_a_count_of_increments_is_one_over_a_sample(tmp_path):
+    counts = COUNTS.replace("unit: rad/s", "unit: rad")
+    ranges = planned(tmp_path, BY_TABLE.replace("span-cpt", counts))["ranges"]
+    ranges = ranges.set_index(["sensor", "axis"])
+    assert ranges["increments"].loc["gyro"].all() and not ranges["increments"].loc["accel"].any()
+    assert ranges["count"].loc["gyro"].to_dict() == {"x": 1 / 2, "y": 1 / 4, "z": 1}
+
+
 def test_a_table_that_counts_clockwise_turns_the_other_way(tmp_path):
     clockwise = BY_TABLE.replace("{name: three-axis", "{name: three-axis, counts: clockwise")
     clockwise += "  - {id: t, do: tumble, about: +x, up: +z, step_degrees: 90, steps: 2}\n"

@@ -17,6 +17,7 @@ DEGREE_PER_SQRT_HOUR = DEGREE / 60  # rad/√s
 METRE_PER_SECOND_PER_SQRT_HOUR = 1 / 60  # m/s/√s
 PER_ROOT_HOUR = 1 / 60  # a random walk per √h, per √s
 CHANNEL_UNITS = {"m/s2": 1.0, "g": STANDARD_GRAVITY, "rad/s": 1.0, "deg/s": DEGREE}  # of a reading
+INCREMENT_UNITS = {"m/s": 1.0, "rad": 1.0, "deg": DEGREE}  # of what a sample adds to the one before
 
 
 _SYSTEM = ContextVar("_SYSTEM", default="laboratory")

@@ -19,7 +19,7 @@ from inertial.tables import AXES
 from inertial.tables.errors import Refusal
 from inertial.text.messages import _, listed
 from inertial.text.numbers import significant
-from inertial.text.units import CHANNEL_UNITS, ICE_POINT, STANDARD_GRAVITY
+from inertial.text.units import CHANNEL_UNITS, ICE_POINT, INCREMENT_UNITS, STANDARD_GRAVITY
 from stages.decode.decoded import ANGLE_UNITS, Continuous, Decoded, first_of, interval_of, on_axis
 
 # What a degree of a unit is in K, and its zero.
@@ -88,12 +88,6 @@ def arrival_times(
     stamped = Stamped.joined(stamps())
     clock = regular_clock((stamped.ticks[~stamped.repeated] - stamped.ticks[0]) / ticks)
     return None if clock is None else ArrivalTimes(stamped, clock, ticks)
-
-
-def _count_size(triad: Mapping[str, Any]) -> Array:
-    """What 1 in a column of a sensor is, SI, one number or (3,)."""
-    size = CHANNEL_UNITS[triad["unit"]] / np.asarray(triad.get("counts_per_unit", 1.0))
-    return np.asarray(size, np.float64)
 
 
 class ColumnLog:
@@ -189,16 +183,31 @@ class ColumnLog:
         triad = self._layout.get(key)
         if triad is None:
             return {}
-        size = _count_size(triad)
+        size = self._count_size(key, triad)
         if bits := triad.get("signed_bits"):
             values = signed(values, bits)
         in_units = (values - np.asarray(triad.get("zero_counts", 0.0))) * size
         return dict(on_axis(sensor, axis, in_units[:, i]) for i, axis in self._axes(sensor))
 
+    def _count_size(self, sensor: str, triad: Mapping[str, Any]) -> Array:
+        """What 1 in a column of a sensor is, SI, one number or (3,), also of increments."""
+        counts = np.asarray(triad.get("counts_per_unit", 1.0), np.float64)
+        if triad["unit"] in CHANNEL_UNITS:
+            return np.asarray(CHANNEL_UNITS[triad["unit"]] / counts)
+        if self.interval is None:
+            raise Refusal(
+                self.path.name,
+                sensor,
+                _("increments without a time"),
+                _("the time of each sample, or how many there are in a second"),
+                _("state time, or rate_hz, in its format"),
+            )
+        return np.asarray(INCREMENT_UNITS[triad["unit"]] / counts / self.interval)
+
     def _sigmas(self, sensor: str, key: str, values: Array | None) -> dict[str, Array]:
         if values is None:
             return {}
-        size = np.broadcast_to(_count_size(self._layout[key]), 3)
+        size = np.broadcast_to(self._count_size(key, self._layout[key]), 3)
         return {f"{sensor}_{axis[-1]}": values[:, i] * size[i] for i, axis in self._axes(sensor)}
 
     def _axes(self, sensor: str) -> Iterator[tuple[int, str]]:
@@ -274,6 +283,8 @@ def refuse_unsigned(file: str, sensor: str, triad: Mapping[str, Any], values: Ar
 def _fits(sensor: str, triad: Mapping[str, Any], usual: Array, zero: int) -> bool:
     """Whether the usual readings, (3,), make more sense from this zero than from 0."""
     if sensor != "accelerometer" or "counts_per_unit" not in triad:
+        return True
+    if triad["unit"] in INCREMENT_UNITS:
         return True
     size = CHANNEL_UNITS[triad["unit"]] / np.array(triad["counts_per_unit"]) / STANDARD_GRAVITY
     with_zero, without = (np.linalg.norm((usual - z) * size) for z in (zero, 0))

@@ -18,13 +18,22 @@ from inertial.text.units import (
     CHANNEL_UNITS,
     DEGREE,
     DEGREE_PER_HOUR,
+    INCREMENT_UNITS,
     PER_ROOT_HOUR,
     STANDARD_GRAVITY,
     in_si,
 )
-from stages.plan.sampling import MeanSigmas, StatedRate, each, refuse_without_time, with_rate
+from stages.plan.sampling import (
+    MeanSigmas,
+    StatedRate,
+    are_means,
+    each,
+    refuse_without_time,
+    with_rate,
+)
 
 KEY = "encoder"
+SIZES = CHANNEL_UNITS | INCREMENT_UNITS
 MICRO_G = 1e-6 * STANDARD_GRAVITY
 # Of the Allan deviation of a bias instability of 1: data sheets state the lowest point.
 LOWEST = float(np.sqrt(FLOOR_VARIANCE))
@@ -147,10 +156,11 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
             own = layout["gyro_log"]["layout"] if key == "gyro" and "gyro_log" in layout else layout
             triad, full = own.get(key) or {}, scales[sensor]
             count, limit = entry.get(key, {}).get(increment) if increments else None, None
+            adding = increments or triad.get("unit") in INCREMENT_UNITS
             if "counts_per_unit" in triad:
-                count = CHANNEL_UNITS[triad["unit"]] / each(triad["counts_per_unit"])[place]
+                count = SIZES[triad["unit"]] / each(triad["counts_per_unit"])[place]
                 zero = each(triad.get("zero_counts", 0))[place]
-                if "limit_counts" in triad:
+                if "limit_counts" in triad and not adding:
                     # Of unsigned counts the farther end: nothing within the range is cut off.
                     limit = max(triad["limit_counts"] - zero, zero) * count
             yield {
@@ -158,7 +168,7 @@ def ranges(manoeuvres: list[Row], entry: dict[str, Any]) -> Iterator[Row]:
                 "sensor": sensor,
                 "axis": axis,
                 "count": count,
-                "increments": increments,
+                "increments": adding,
                 "limit": full if limit is None else limit,
                 "sigma": sigmas.of(own, sensor, key, place),
             }
@@ -349,7 +359,10 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
         raise file.refuse_text(
             key, _("neither gyro nor accelerometer"), _("at least one of them"), "add its columns"
         )
-    for sensor, units in (("gyro", ("rad/s", "deg/s")), ("accelerometer", ("m/s2", "g"))):
+    for sensor, units in (
+        ("gyro", ("rad/s", "deg/s", "rad", "deg")),
+        ("accelerometer", ("m/s2", "g", "m/s")),
+    ):
         if sensor in layout and layout[sensor]["unit"] not in units:
             raise file.refuse(
                 [*key, sensor, "unit"],
@@ -358,6 +371,13 @@ def _check_layout(file: YamlFile, key: Key, layout: dict[str, Any], entry: dict[
                 "correct the unit",
             )
         triad = layout.get(sensor, {})
+        if triad.get("unit") in INCREMENT_UNITS and are_means(layout):
+            raise file.refuse(
+                [*key, sensor, "unit"],
+                triad["unit"],
+                _("a unit of rates or forces, for rows are means"),
+                _("divide the increments by their time"),
+            )
         zeros = each(triad.get("zero_counts", 0))
         if max(zeros) > triad.get("limit_counts", np.inf):
             raise file.refuse(

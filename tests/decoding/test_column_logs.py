@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from decoded_logs import DEGREE, G, channels, decoded, one
 
+from inertial.tables.errors import Refusal
+
 
 def test_units_and_counts_become_si(tmp_path):
     path = tmp_path / "log.txt"
@@ -37,6 +39,25 @@ def test_units_and_counts_become_si(tmp_path):
     samples = one(path, layout)["samples"]
     assert samples["temperature"][1] == 298.15
     assert samples["gyro_y"][1] == 180
+
+
+def test_increments_become_rates_by_the_interval_of_their_samples(tmp_path):
+    """As a ring-laser gyro counts them: 1 count of 0.5″ in 10 ms is a rate of 50″/s."""
+    path = tmp_path / "log.txt"
+    path.write_text("".join(f"{0.01 * i:.2f} {i} 2 -1 4900 2 0\n" for i in range(50)))
+    layout = {
+        "kind": "columns",
+        "time": {"column": 1, "unit": "s"},
+        "gyro": {"columns": [2, 3, 4], "unit": "deg", "counts_per_unit": 7200},
+        "accelerometer": {"columns": [5, 6, 7], "unit": "m/s", "counts_per_unit": 50000},
+    }
+    samples = one(path, layout)["samples"]
+    assert channels(samples, 3) == pytest.approx(
+        [9.8, 4e-3, 0, *np.radians(np.array([150, 100, -50]) / 3600)]
+    )
+    del layout["time"]
+    with pytest.raises(Refusal, match="increments without a time"):
+        one(path, layout)
 
 
 @pytest.mark.parametrize("delimiter", [",", ";"])
