@@ -27,7 +27,10 @@ SLOW = pytest.mark.slow
             marks=SLOW,
         ),
         # The unknown heading takes up its mean: it was a structure without a name.
-        ("positions", "z-up", "z-up", "gyro_y", (12_000, 30_000), 2e-4),
+        pytest.param(
+            *("positions", "z-up", "z-up", "gyro_y", (12_000, 30_000), 2e-4),
+            marks=SLOW,
+        ),
     ],
 )
 def test_it_is_named_once_and_moves_no_parameter(plan, rest, log, channel, lines, size):
