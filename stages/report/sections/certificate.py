@@ -104,7 +104,7 @@ def title_of(tables: Tables, number: str) -> str:
 
 def parts(tables: Tables) -> Iterator[Part]:
     """What 7.8 asks for: who, what, how, with which standards; then results and statements."""
-    yield Level(*level(tables))
+    yield Level(*verdict_in_words(tables))
     misfits = (
         f"{capital(result.sensor)}: {result.fit_in_words()[0]}."
         for result in final_results(tables)

@@ -103,7 +103,7 @@ def worst(tables: Tables) -> str:
 
 
 @once
-def level(tables: Tables) -> tuple[str, outline.Tone, str]:
+def verdict_in_words(tables: Tables) -> tuple[str, outline.Tone, str]:
     """The verdict of the campaign in words, with its tone and what it means."""
     word, tone, meaning = LEVELS[worst(tables)]
     if worst(tables) == "not_usable" and not any(spoils(tables, row) for row in causes(tables)):
@@ -312,7 +312,7 @@ SECTION = outline.Section(
 
 def as_text(tables: Tables) -> str:
     """The verdict as plain text, 80 letters wide."""
-    word, _tone, meaning = level(tables)
+    word, _tone, meaning = verdict_in_words(tables)
     lines = []
     if tables.row("campaign")["simulated"]:
         lines += [*wrapped(SIMULATED, 80), ""]
