@@ -126,6 +126,16 @@ def test_the_sigma_of_forward_against_backward_counts_the_shared_data_once(secon
     assert np.std(pulls) == pytest.approx(1, abs=4 / np.sqrt(2 * 2000))
 
 
+def test_a_bias_that_drifts_is_not_taken_for_a_part_of_the_noise_of_the_turns():
+    """Its sigma is as large as that by the turns alone: the difference is no surer for it."""
+    arw, t, alpha, angle = random_walk(0.012), 38.0, 2 * np.pi, 1e-5
+    turns = [WholeTurn(s, s, angle, t, 1, arw) for s in (alpha, -alpha)]
+    of_turns = float(np.sqrt((arw**2 * t + angle**2) / (2 * t**2)))
+    of_noise = both_ways(*turns, 0.0, 0.0, WUHAN).sigma
+    drifting = both_ways(*turns, 0.0, 1.01 * of_turns, WUHAN).sigma
+    assert drifting == pytest.approx(of_noise * np.sqrt(1 + 1.01**2), rel=1e-2)
+
+
 def test_a_family_of_comparisons_is_judged_together():
     # Holm (1979); the smallest of four is held against 0.05/4, the next against 0.05/3.
     np.testing.assert_array_equal(

@@ -116,10 +116,8 @@ def of_new_imu(found: Population) -> tuple[float, float] | None:
     variance = sum(s.value**2 for s in found.spreads)
     of_mean = found.mean_sigma**2
     fewest = min((s.groups - 1 for s in found.spreads if s.value), default=found.campaigns - 1)
-    degrees = found.mean_degrees if np.isfinite(found.mean_degrees) else float(fewest)
-    surely_known = np.isinf(found.mean_degrees)
-    part = variance / np.sqrt(_degrees_of_sum(found, fewest))
-    part += 0.0 if surely_known else of_mean / np.sqrt(degrees)
+    degrees = fewest if np.isnan(found.mean_degrees) else found.mean_degrees
+    part = variance / np.sqrt(_degrees_of_sum(found, fewest)) + of_mean / np.sqrt(degrees)
     whole = variance + of_mean
     if not part:
         return float(np.sqrt(whole)), np.inf

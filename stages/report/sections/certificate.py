@@ -54,7 +54,7 @@ from stages.report.sections.certified_values import (
 )
 from stages.report.sections.comparisons import changed_in_words
 from stages.report.sections.findings import causes, spoils
-from stages.report.sections.verdict import guesses, level, verdict_sentences
+from stages.report.sections.verdict import guesses, verdict_in_words, verdict_sentences
 from stages.report.tables import Record, Tables, once
 from stages.report.words import count_in_words, term, with_mount
 
