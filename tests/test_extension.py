@@ -138,8 +138,12 @@ def test_each_member_of_the_class_is_a_candidate(quadratic):
     by_effect = {name: quadratic.parameters("extension", m) for m, name in effects.items()}
     k2 = by_effect["accel_quadratic"].loc["accel_quadratic.k2_y"]
     a = by_effect["accel_scale_asymmetry"].loc["accel_scale_asymmetry.a_y"]
-    scale = by_effect["accel_quadratic"].loc["scale_y", "value"]  # both go with M · f
-    assert a["value"] == pytest.approx(k2["value"] * GRAVITY * (1 + scale), rel=1e-3)
+    # Both go with M · f: at ±g along y as M_yy g, in level rests |f| still has a share of the rest.
+    linear = by_effect["accel_quadratic"]["value"]
+    level = np.abs(linear[["cross_yx", "cross_yz"]]).mean()
+    upright = 1 + linear["scale_y"]
+    expected = k2["value"] * GRAVITY * upright**2 / (upright - level)
+    assert a["value"] == pytest.approx(expected, rel=1e-3)
     assert a["sigma"] == pytest.approx(k2["sigma"] * GRAVITY, rel=1e-2)
 
 
