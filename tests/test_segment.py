@@ -1,6 +1,6 @@
 """Where the manoeuvres are: in the demo, in one long log, and where plan and log disagree."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 from math import degrees
 
 import chain
@@ -13,7 +13,7 @@ from inertial.campaign.masked_samples import Batch, Masks
 from inertial.campaign.records import Clock, Manoeuvre
 from inertial.signal.rests_and_motions import BinStretch, slow_motion, steady_part
 from stages.segment import windows
-from stages.segment.located import divide, locate
+from stages.segment.located import begun_as_recorded, divide, locate
 from stages.segment.matching import Observation, match, rest_part, turn_parts
 from stages.segment.recording_explanations import explained_of
 
@@ -720,3 +720,13 @@ def test_what_a_masked_gyro_is_taken_to_read_is_no_reading():
     )  # fmt: skip
     assert np.isnan(one.read_rates[:5, 1]).all()
     assert np.isfinite(one.read_rates[:, [0, 2]]).all()
+
+
+def test_a_mark_that_is_set_right_says_how_far_its_manoeuvre_begins_turned_on():
+    """About z up the mark goes from x to −y while the case turns by 90°; it was stated as x."""
+    up, x, y = np.array([0.0, 0, 1]), np.array([1.0, 0, 0]), np.array([0.0, 1, 0])
+    first = Manoeuvre("there", "turn", "log", "face", "as mounted", up, x, up)
+    stated = replace(first, name="back", mark=-y, turned_on=0.0)
+    beside = replace(first, name="over", up=-up, mark=y)
+    made = begun_as_recorded([first, stated, beside], [])
+    assert [m.turned_on for m in made] == pytest.approx([0.0, np.pi / 2, 0.0])

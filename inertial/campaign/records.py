@@ -114,11 +114,11 @@ def manoeuvres_of(table: pd.DataFrame) -> list[Manoeuvre]:
 
 
 def _manoeuvre(row: Row) -> Manoeuvre:
-    own: Row = {key: _vector(row, key) if key in VECTORS else row[key] for key in STATED}
+    own: Row = {key: vector_of(row, key) if key in VECTORS else row[key] for key in STATED}
     return Manoeuvre(row["manoeuvre"], **own)
 
 
-def _vector(row: Row, stem: str) -> Array | None:
+def vector_of(row: Row, stem: str) -> Array | None:
     components = [row[f"{stem}_{axis}"] for axis in AXES]
     return None if None in components else np.array(components, dtype=np.float64)
 

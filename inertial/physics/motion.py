@@ -63,6 +63,14 @@ def north_of(up: Array, mark: Array, azimuth: float) -> Array:
     return np.asarray(np.cos(azimuth) * mark + np.sin(azimuth) * cross(up, mark))
 
 
+def turned_between(up: Array, before: Array, after: Array) -> float:
+    """The angle, rad, through which a case has turned about the vertical, in body axes, (3,).
+
+    `before`, `after`: a direction that stays in the laboratory, such as a mark.
+    """
+    return float(np.arctan2(cross(after, before) @ up, after @ before))
+
+
 def without_leans(up: Array) -> Array:
     """Upward directions (n, 3) with 0 for components that are but the lean of a set position.
 

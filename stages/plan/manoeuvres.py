@@ -9,8 +9,8 @@ import numpy as np
 
 from inertial import tables
 from inertial.arrays import Array
-from inertial.campaign.records import Row
-from inertial.physics.motion import Profile, turned
+from inertial.campaign.records import Row, vector_of
+from inertial.physics.motion import Profile, is_vertical, turned, turned_between
 from inertial.tables.yaml_file import Key, YamlFile
 from inertial.text.messages import _
 from inertial.text.units import ARC_SECOND, DEGREE, ICE_POINT, in_si
@@ -21,7 +21,6 @@ DIRECTIONS = np.eye(3)
 MAX_BELOW_RATE = 0.01  # by which a turn may stay below its rate
 
 MIN_TURNED = 1e-9  # rad, less is rounding
-UPRIGHT = 1 - 1e-9  # cosine of the vertical and an axis along it
 ATTITUDE = tuple(f"{of}_{axis}" for of in ("up", "mark") for axis in tables.AXES)
 _ALWAYS = {
     "id",
@@ -135,12 +134,10 @@ def stays_in_position(before: Row, after: Row) -> bool:
 class StatedPosition:
     """A position that the campaign names, as it is used in one log.
 
-    `mark`: (3,), as the first manoeuvre has it; `turned`: rad, by the turns without a mark so far.
+    `first`: its first manoeuvre; `turned`: rad, by the turns without a mark so far.
     """
 
-    name: str | None = None
-    file: str | None = None
-    mark: Array | None = None
+    first: Row | None = None
     turned: float = 0.0
 
     def turned_on(self, row: Row) -> float:
@@ -148,23 +145,20 @@ class StatedPosition:
 
         The marks tell it; without any the turns of the plan do, if they are no whole revolutions.
         """
-        up, mark, about = (_vector(row, of) for of in ("up", "mark", "about"))
-        if (row["position"], row["file"]) != (self.name, self.file):
-            self.name, self.file, self.mark, self.turned = row["position"], row["file"], mark, 0.0
+        place = ("position", "file", "up_x", "up_y", "up_z")
+        if self.first is None or any(row[key] != self.first[key] for key in place):
+            self.first, self.turned = row, 0.0
+        up, mark, about = (vector_of(row, of) for of in ("up", "mark", "about"))
+        before = vector_of(self.first, "mark")
         if up is None:
             return 0.0
         if mark is not None:
-            first = mark if self.mark is None else self.mark
-            return float(np.arctan2(np.cross(mark, first) @ up, mark @ first))
-        on = float(np.arctan2(np.sin(self.turned), np.cos(self.turned)))
-        if about is not None and abs(up @ about) > UPRIGHT:
-            self.turned += (row["angle"] or 0.0) * float(up @ about)
+            on = 0.0 if before is None else turned_between(up, before, mark)
+        else:
+            on = float(np.arctan2(np.sin(self.turned), np.cos(self.turned)))
+            if about is not None and is_vertical(up, about):
+                self.turned += (row["angle"] or 0.0) * float(up @ about)
         return on if abs(on) > MIN_TURNED else 0.0
-
-
-def _vector(row: Row, of: str) -> Array | None:
-    components = [row[f"{of}_{axis}"] for axis in tables.AXES]
-    return None if None in components else np.array(components)
 
 
 def _temperature(file: YamlFile, key: Key, item: dict[str, Any]) -> Row:

@@ -10,6 +10,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.campaign.records import Manoeuvre
+from inertial.physics.motion import turned_between
 from inertial.signal.axis_permutations import AS_NAMED, Permutation
 from inertial.signal.rests_and_motions import (
     BinStretch,
@@ -417,10 +418,10 @@ def level_of(every: Sequence[Binned]) -> tuple[Array, float]:
 
 
 def begun_as_recorded(plan: Sequence[Manoeuvre], every: Sequence[Located]) -> list[Manoeuvre]:
-    """The plan, with each manoeuvre without a mark begun where the table had turned the case.
+    """The plan, with each manoeuvre of a position begun where the table had turned the case.
 
-    By the plan that is where the turn before it in its position ended; the log may show that the
-    table went back to where the position was set.
+    Its mark says where that is, as repairs have set it right. Without one it is by the plan where
+    the turn before it ended; the log may show that the table went back to where it was set.
     """
     back = set()
     for located in every:
@@ -435,4 +436,23 @@ def begun_as_recorded(plan: Sequence[Manoeuvre], every: Sequence[Located]) -> li
             moved = float(np.nansum(turned, axis=0) @ m.up)
             if abs(np.sin(moved / 2)) < abs(np.sin((moved - m.turned_on) / 2)):
                 back.add(m.name)
-    return [replace(m, turned_on=0.0) if m.name in back else m for m in plan]
+    return _by_marks([replace(m, turned_on=0.0) if m.name in back else m for m in plan])
+
+
+def _by_marks(plan: Sequence[Manoeuvre]) -> list[Manoeuvre]:
+    """The plan, with each manoeuvre begun where the marks of its position say, if it has any."""
+    made: list[Manoeuvre] = []
+    first: Manoeuvre | None = None
+    for m in plan:
+        if first is None or not _of_one_setting(first, m):
+            first = m
+        if m.up is not None and m.mark is not None and first.mark is not None:
+            m = replace(m, turned_on=turned_between(m.up, first.mark, m.mark))
+        made.append(m)
+    return made
+
+
+def _of_one_setting(one: Manoeuvre, other: Manoeuvre) -> bool:
+    """Whether two manoeuvres are of one position with the same direction up, in one log."""
+    alike = (one.position, one.log) == (other.position, other.log)
+    return alike and one.up is not None and other.up is not None and np.allclose(one.up, other.up)
