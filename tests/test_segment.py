@@ -168,6 +168,16 @@ def test_a_whole_turn_the_other_way_is_the_turn_and_a_small_motion_is_not(planne
     assert tuple(found.values()) == places
 
 
+def test_of_two_motions_through_one_angle_the_turn_is_that_in_its_time():
+    """The table went back by the planned angle in 10 s, and then turned so at 5°/s, in 17 s."""
+    (turn,) = planned_turns(-86.5)
+    *_, back, rest = rotated(-86.5)
+    slow = replace(back, seconds=17.3, rate=back.rate / 1.73)
+    planned = replace(turn, rate=-np.radians(5))
+    assert match([planned], [rest, back, rest, slow, rest]) == {"0": 3}
+    assert match([planned], [rest, slow, rest, back, rest]) == {"0": 1}
+
+
 @pytest.mark.parametrize("unit", [180 / np.pi, np.pi / 180, 1000.0, 0.25])
 def test_turns_in_another_unit_are_not_the_changes_of_position(unit):
     """A change by 90° before each turn is, in the wrong unit, as near to its plan or nearer."""
