@@ -150,6 +150,7 @@ def test_a_clean_tumble_whose_heading_nobody_states_shows_no_fault(seed: int) ->
         assert abs(found.at[name, "value"] - true) < 4 * found.at[name, "sigma"]
 
 
+@pytest.mark.slow
 def test_a_table_that_counts_the_other_way_does_so_in_its_tumbles() -> None:
     """Their rests were sought in mirrored attitudes: half were missing, two seemed exchanged."""
     document = PLANS["rates"](seed=3)

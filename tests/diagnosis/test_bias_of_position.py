@@ -58,6 +58,7 @@ def test_it_is_named_with_its_place_and_its_size_and_moves_nothing():
     assert pulls(results, document, "gyro").max() < 3.5
 
 
+@pytest.mark.slow
 def test_exchanged_axes_that_are_both_level_are_of_that_position():
     """It was a polynomial of the force along y, in the model, and a parameter 78 sigma off."""
     swap = {"log": "y-up.asc", "sensor": "accelerometer", "axes": ["x", "z"]}
@@ -78,7 +79,7 @@ CLASS = {"accel_quadratic", "accel_scale_asymmetry", "accel_bias_of_position"}
     "effects",
     [
         {},
-        {"accel_quadratic": {"k2_micro_g_g2": [0, 76, 0]}},
+        pytest.param({"accel_quadratic": {"k2_micro_g_g2": [0, 76, 0]}}, marks=pytest.mark.slow),
         pytest.param(
             {"accel_scale_asymmetry": {"asymmetry_micro_g_g": [0, 76, 0]}}, marks=pytest.mark.slow
         ),

@@ -13,7 +13,10 @@ SLOW = pytest.mark.slow
     ("plan", "rest", "log", "channel", "lines", "size"),
     [
         # Too small beside the noise of a reading to be seen in it: a law with two levels.
-        ("positions", "x-down", "x-down", "gyro_z", (14_000, 30_000), 1.9e-5),
+        pytest.param(
+            *("positions", "x-down", "x-down", "gyro_z", (14_000, 30_000), 1.9e-5),
+            marks=SLOW,
+        ),
         # It was beside a law of no effect, whose cause was to be looked for.
         pytest.param(
             *("positions", "x-down", "x-down", "accel_y", (9_000, 20_000), 2e-3),

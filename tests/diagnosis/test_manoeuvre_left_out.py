@@ -23,6 +23,7 @@ def scale_z_off(rows, truth):
     return row["value"] - (truth["gyro"]["matrix"][2][2] - 1), row["sigma"]
 
 
+@pytest.mark.slow
 def test_a_turn_that_alone_sways_is_left_out_on_condition():
     results, truth = diagnosed(**swaying(3e-4))
     verdict = results["diagnosis/verdict"].set_index("sensor").loc["gyro"]
