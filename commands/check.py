@@ -24,7 +24,7 @@ import pandas as pd
 from commands import run
 from inertial import tables
 from inertial.campaign.competition import ExplainedFindings, circumstances, compete
-from inertial.campaign.hypotheses import MODEL, UNKNOWN_STRUCTURE, Findings, hypotheses
+from inertial.campaign.hypotheses import UNKNOWN_STRUCTURE, Findings, hypotheses
 from inertial.campaign.noise_levels import only_noise
 from inertial.campaign.records import Performed, Row, performed_of, rows_of
 from inertial.estimation.triad import linear_names
@@ -324,9 +324,9 @@ def _as_diagnosed(
     if severity is None or (severity == WEAKENING and row["severity"] < SPOILING):
         severity = row["severity"]
     as_diagnosed = {**row, "severity": severity, "condition": conditions.get(kind)}
-    if each.cause.stage == MODEL:
-        own = diagnosed.get(f"diagnosis/{row['id']}", row)
-        as_diagnosed |= {name: own[name] for name in ("sentence", "consequence")}
+    own = diagnosed.get(f"diagnosis/{row['id']}", row)
+    if own["count"] == row["count"]:  # of more than one the row of the diagnosis is of all
+        as_diagnosed |= {name: own[name] for name in ("sentence", "consequence", "action")}
     return replace(each, cause=replace(each.cause, row=as_diagnosed))
 
 

@@ -7,6 +7,7 @@ from inertial.campaign.hypotheses import (
     FOUND,
     MOUNTINGS,
     OF_ATTITUDES,
+    PLAN,
     TABLE_MOVING,
     Hypothesis,
 )
@@ -39,6 +40,16 @@ def as_large(cause: Hypothesis, other: Hypothesis) -> bool:
     """In the whole campaign, where a time is off by as much as the other finding shows it."""
     shown, own = _share_of_time(other), _share_of_time(cause)
     return not own or shown <= MAX_RATIO_OF_TIMES * own
+
+
+def shows_wrong_stamps(clock: Hypothesis, turns: Hypothesis) -> bool:
+    """Whether turns at the table's rates are off in the time of stamps by what these are off.
+
+    Two clocks, that of the samples and that of the table, then agree against the stamps.
+    """
+    if clock.cause != CLOCK or (turns.cause, turns.stage) != ("rate_off", PLAN):
+        return False
+    return bool(abs(1e-6 * clock.row["size"] / (turns.row["size"] - 1) - 1) < MAX_SHARE_OFF)
 
 
 def _share_of_time(finding: Hypothesis) -> float:

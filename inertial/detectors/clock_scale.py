@@ -299,8 +299,7 @@ def _jump(series: Array, part: _Part, reference: float) -> bool:
 def _evidence_in_words(facts: _Facts) -> str:
     evidence = facts.evidence
     if evidence.stamps is None:
-        what = "readings" if facts.increments else "rates"
-        return _("The {what} do not show whether the stamps or the sampling is off.", what=what)
+        return _("Readings alone do not show whether the stamps or the sampling is off.")
     change = f"{significant(evidence.change * 1e6, 2)} ± {significant(evidence.sigma * 1e6, 2)} ppm"
     off = _("the stamps are off, not the sampling")
     if not facts.part:

@@ -30,6 +30,14 @@ NO_ATTITUDE = _(
     "attitudes, which the cross-axis terms of the gyros would contain."
 )
 STAMPS_RIGHT = _("The stamps are right, and the samples are not taken at the stated rate.")
+STAMPS_WRONG = _(
+    "The turns show which it is: at rates that the table keeps they are off by as much. So the "
+    "samples are taken at the stated rate, and the stamps are wrong."
+)
+WITHOUT_STAMPS = _(
+    "Nothing is changed. Correct the clock of the logger; of this recording, leave time out of the "
+    "format, so that rate_hz counts the samples."
+)
 OF_EACH_MANOEUVRE = _(
     "The {sensors} differ from manoeuvre to manoeuvre by more than noise. {effects} would explain "
     "it, but together they have a term for nearly every manoeuvre and would explain anything: the "

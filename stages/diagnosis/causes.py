@@ -25,6 +25,7 @@ from inertial.campaign.hypotheses import (
 )
 from inertial.campaign.records import Performed, Row
 from inertial.campaign.unknown_attitude import MOVED
+from inertial.campaign.where_causes_act import shows_wrong_stamps
 from inertial.effects import LAWS
 from inertial.sensors import PLURAL
 from inertial.text.cause_names import in_words
@@ -44,8 +45,10 @@ from stages.diagnosis.cause_sentences import (
     ONLY_MODELLED,
     OWN_ERROR,
     STAMPS_RIGHT,
+    STAMPS_WRONG,
     TURN_AGAIN,
     WITH_AND_WITHOUT,
+    WITHOUT_STAMPS,
 )
 from stages.diagnosis.decision import MAX_MOVE, UNEXPLAINED
 from stages.diagnosis.gravity_by_latitude import Gravity
@@ -169,7 +172,8 @@ class Cause:
             return NO_JUMP.format(sensors=PLURAL[self.sensors[0]])
         if self._once_or_in_each_run:
             return ONE_CHANGE.format(sensors=PLURAL[self.sensors[0]])
-        if self.main.cause == CLOCK and self.main.sensor == "gyro" and (self.moves or 0) > MAX_MOVE:
+        of_gyros = (self.main.cause, self.main.sensor) == (CLOCK, "gyro")
+        if of_gyros and (self.moves or 0) > MAX_MOVE and not self._stamps_wrong:
             return STAMPS_RIGHT
         repair = self.main.repair
         return repair["condition"] if repair is not None and repair["state"] == "applied" else None
@@ -179,6 +183,11 @@ class Cause:
         """Whether the model has a bias that changes once, which may as well do so in each run."""
         each = any(name in self.main.causes for name in PER_RUN)
         return self.cure == MODELLED and each and self.main.cause not in PER_RUN
+
+    @property
+    def _stamps_wrong(self) -> bool:
+        """Whether turns show that it is the stamps that are off, and not the rate of samples."""
+        return any(shows_wrong_stamps(m.cause, o) for m in self.members for o in m.consequences)
 
     @property
     def spoils(self) -> bool:
@@ -216,8 +225,7 @@ class Cause:
     @property
     def _moves_nothing(self) -> bool:
         """Whether it is an effect of which the result is free, in the model or not."""
-        known = self.main.stage == MODEL and self.moves is not None
-        return known and float(self.moves or 0.0) < MIN_MOVE
+        return self.main.stage == MODEL and self.moves is not None and self.moves < MIN_MOVE
 
     def row(self, sizes: Mapping[str, Size], sentences: Mapping[str, str]) -> Row:
         """Its row; `sizes`, `sentences`: of effects, by the finding that names them."""
@@ -238,6 +246,7 @@ class Cause:
                 "There are {count} of them; the largest is described.",
                 count,
             )
+        stamps = self._stamps_wrong
         return {
             "id": self.id,
             "cause": UNKNOWN_STRUCTURE if self.saturated else main.cause,
@@ -248,7 +257,7 @@ class Cause:
             "log": main.row["log"] if len(self.members) == 1 else None,
             "manoeuvre": self.manoeuvre if self._one("manoeuvre") else None,
             "count": count,
-            "sentence": sentence,
+            "sentence": f"{sentence} {STAMPS_WRONG}" if stamps else sentence,
             "size": size.value,
             "sigma": size.sigma,
             "unit": size.unit,
@@ -263,7 +272,7 @@ class Cause:
             "condition": self.condition,
             "consequence": "" if self._moves_nothing else self.most_moved + main.row["consequence"],
             "done": self.done,
-            "action": TURN_AGAIN if self.saturated else main.action,
+            "action": TURN_AGAIN if self.saturated else WITHOUT_STAMPS if stamps else main.action,
         }
 
 

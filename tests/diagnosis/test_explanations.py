@@ -9,6 +9,7 @@ import pytest
 
 from inertial.campaign.competition import ExplainedFindings, compete
 from inertial.campaign.hypotheses import Hypothesis
+from inertial.campaign.where_causes_act import shows_wrong_stamps
 from stages.diagnosis.causes import Cause, Evidence, _may_be_shift
 
 APPLIED = {"state": "applied", "axis": None}
@@ -256,6 +257,17 @@ def test_a_clock_explains_what_is_off_by_no_more_than_it_is(ratio, explained):
     clock = replace(clock, row=clock.row | {"size": 350.0})  # ppm
     turns = replace(turns, row=turns.row | {"size": ratio})
     assert ("rate_off" not in causes(clock, turns)) == explained
+
+
+@pytest.mark.parametrize(
+    ("ppm", "ratio", "wrong"),
+    [(200.0, 1.0002, True), (-200.0, 0.9998, True), (200.0, 0.9998, False), (200.0, 1.0004, False)],
+)
+def test_turns_that_are_off_by_as_much_as_the_stamps_show_that_these_are_wrong(ppm, ratio, wrong):
+    clock, turns = finding("quality", "clock_scale", "gyro"), finding("segment", "rate_off")
+    clock = replace(clock, row=clock.row | {"size": ppm})
+    turns = replace(turns, row=turns.row | {"size": ratio})
+    assert shows_wrong_stamps(clock, turns) == wrong
 
 
 @pytest.mark.parametrize(("amplitude", "explained"), [(3e-5, True), (3e-3, False)])

@@ -47,3 +47,18 @@ def test_a_clean_one_has_no_cause_and_its_biases_are_right(seed):
     for axis in "xyz":
         own = result.loc["gyro", f"bias_{axis}"]
         assert abs(own["value"] - true[f"bias_{axis}"]) < 4 * own["sigma"]
+
+
+def test_stamps_that_the_table_contradicts_are_wrong_and_the_rate_of_samples_is_right():
+    """Two clocks, of the samples and of the table, agree against the third."""
+    document = stairs(3)
+    log = document["campaign"]["log"]
+    document["campaign"]["table"]["rate_sigma_ppm"] = 20
+    document["faults"] = [{"drift": {"log": log, "ppm": 300}}]
+    results = chain.in_memory_of(document, "diagnosis", chain.BESIDE)
+    (cause,) = results["diagnosis/causes"].to_dict("records")
+    assert (cause["cause"], cause["sensor"]) == ("clock_scale", "gyro")
+    assert cause["size"] == pytest.approx(300, rel=0.01)
+    assert cause["sentence"].endswith("at the stated rate, and the stamps are wrong.")
+    verdicts = results["diagnosis/verdict"].set_index("sensor")["verdict"]
+    assert verdicts.to_dict() == {"gyro": "not_usable", "accel": "usable"}
