@@ -11,6 +11,7 @@ from inertial.campaign.hypotheses import (
     MIN_SPOILING,
     MODEL,
     MOUNTINGS,
+    ONE_OF_CLASS,
     POSITIONS,
     RECORDING,
     STEP_IN_TURN,
@@ -310,10 +311,13 @@ def _explains_event(cause: Hypothesis, other: Hypothesis) -> bool:
 
 def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
     """The same of an effect that was named."""
-    if not cause.unresolved or not same_sensor(cause, other):
+    if not same_sensor(cause, other):
         return False
-    if cause.cause == "quantisation":  # a slow rate in coarse counts goes in regular steps
-        return other.cause == "oscillation" and other.size < cause.size
+    if cause.cause == "quantisation":  # a steady rate in coarse counts goes in regular steps
+        beats = other.cause == "oscillation" and other.size < cause.size
+        return beats and (cause.unresolved or other.verdict == ONE_OF_CLASS)
+    if not cause.unresolved:
+        return False
     if cause.cause == "bias_removed":  # at rest, and with it the earth's rate
         return "earth_rate_omitted" in other.causes
     if cause.cause == "encoder_angles":

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 
 from inertial import tables
 from inertial.arrays import Array, Booleans
@@ -72,6 +73,32 @@ def rounding_levels(
                 for key, one, size in zip(own.keys, off, level.tolist(), strict=True)
                 if one > MIN_ROUNDED_MEAN
             }
+    return found
+
+
+def carried_rounding(
+    spectra: Mapping[tuple[str, str], Spectra], counts: Array, noise: pd.DataFrame
+) -> dict[str, float]:
+    """The quantisation of channels whose coarse counts carry over what they leave, rad or m/s.
+
+    A sum of increments is then off by what is left over at either edge, up to one count, whatever
+    the sum is. Of counts that are finer than the noise of a sample the fit of the terms shows it;
+    of coarser ones at rest it goes in steps, of which no spectrum is that of the term.
+
+    counts : (6,), the size of a count of each channel
+    noise : table of stage noise
+    """
+    found: dict[str, float] = {}
+    white = noise.groupby("channel")["white_noise"].median()
+    for channel, count in zip(tables.CHANNELS, counts.tolist(), strict=True):
+        sensor = channel.split("_")[0]
+        own = [one for one in spectra.values() if sensor in one.carried and sensor in one.samples]
+        if not own or channel not in white or not np.isfinite(count):
+            continue
+        interval = sum(sum(one.seconds[sensor]) for one in own)
+        interval /= sum(one.samples[sensor] for one in own)
+        if count > white[channel] / np.sqrt(interval):
+            found[channel] = count * interval / np.sqrt(12)
     return found
 
 

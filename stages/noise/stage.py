@@ -22,7 +22,7 @@ from inertial.text.messages import _
 from inertial.text.numbers import significant
 from inertial.text.units import quantity
 from stages.noise.declared import DECLARED
-from stages.noise.rounding import Level, count_sizes, rounding_levels
+from stages.noise.rounding import Level, carried_rounding, count_sizes, rounding_levels
 from stages.noise.spectra import Spectra, shapes_of
 from stages.noise.static_stretches import Filtered, SensorNoise, StaticStretches
 
@@ -167,6 +167,8 @@ def noise(
     filtered = {channel: own for each in noises for channel, own in each.filtered.items()}
     measured = pd.DataFrame(before_filters(rows, filtered)) if rows else tables.NOISE.empty()
     drifts = dict(chain.from_iterable(n.drifts(sheet) for n in noises))
+    for channel, quantisation in carried_rounding(spectra, counts, measured).items():
+        drifts[channel] = {"quantisation": quantisation, **drifts.get(channel, {})}
     levels = effective_levels(measured, drifts, rounding_levels(spectra, counts))
     if of_means:
         own = pd.DataFrame(of_means, columns=levels.columns)

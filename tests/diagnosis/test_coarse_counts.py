@@ -4,13 +4,15 @@ from itertools import product
 
 import chain
 import numpy as np
+import pandas as pd
 import pytest
 from judge import parameters_of
 from scipy.stats import norm
 
+from inertial.estimation.noise_model import sigma_of_mean
 from inertial.sensors import CHANNELS
 from inertial.signal.scatter import noise_before_rounding, rounded_mean
-from stages.noise.rounding import rounding_levels
+from stages.noise.rounding import carried_rounding, rounding_levels
 from stages.noise.spectra import Spectra
 
 SEEDS = (1801, 1802, 1803)
@@ -82,6 +84,53 @@ def test_counts_that_carry_lose_nothing():
     """A receiver of increments says so; what it rounds is in the next count."""
     levels = chain.in_memory_of(chain.short(), "noise")["noise/levels"]
     assert levels["rounding"].isna().all()
+
+
+def test_a_sum_of_counts_that_carry_is_off_by_what_is_left_at_its_edges():
+    """A ring-laser gyro of 0.6″ and 0.002 °/√h: the rounding of an angle is no noise of a rate."""
+    random, interval, count = np.random.default_rng(9), 0.01, 3e-6
+    angle = np.cumsum(random.uniform(1e-4, 2e-3, 400)[:, None] * np.ones(3000), axis=1)
+    noise = np.cumsum(random.normal(0, 6e-8, angle.shape), axis=1)
+    readings = np.diff(np.floor((angle + noise) / count), axis=1) * count / interval
+    off = readings.sum(axis=1) * interval - (angle[:, -1] - angle[:, 0])
+    spectra = {}
+    for number, own in enumerate(readings[:8]):
+        spectra[f"m{number}", "rest"] = Spectra()
+        spectra[f"m{number}", "rest"].add(np.repeat(own[:, None], 6, 1), 100.0, (0.5, 5.0))
+        spectra[f"m{number}", "rest"].carried = {"gyro"}
+    white = pd.DataFrame({"channel": CHANNELS, "white_noise": 6e-7})
+    found = carried_rounding(spectra, np.full(6, count / interval), white)
+    assert set(found) == {"gyro_x", "gyro_y", "gyro_z"}
+    sigma = sigma_of_mean(6e-7, found["gyro_x"], 30.0) * 30.0
+    assert np.std(off) == pytest.approx(sigma, rel=0.1)
+    noisy = white.assign(white_noise=6e-5)
+    assert not carried_rounding(spectra, np.full(6, count / interval), noisy)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [12, 13])
+def test_a_ring_laser_gyro_is_calibrated_within_its_sigmas(seed):
+    """It was "4.6 times as large as noise", and not usable."""
+    document = chain.demo(seed=seed, effects={})
+    document["noise"] |= {"angle_random_walk_deg_sqrt_h": 0.002}
+    receiver = document["receiver"]
+    receiver["gyro_count_rad"] = 3e-6
+    document["campaign"]["instrument"] = {
+        "name": "made up",
+        "rate_hz": 100,
+        "axes": ["z", "-y", "x"],
+        "format": {"kind": "rawimus"},
+        "gyro": {"count_rad": 3e-6},
+        "accelerometer": {"count_m_s": receiver["accelerometer_count_m_s"]},
+    }
+    results = chain.in_memory_of(document, "diagnosis", chain.BESIDE)
+    # Beats of the counts look like ripples of 0.02″, which move nothing.
+    assert set(results["diagnosis/causes"]["cause"]) <= {"quantisation", "table_ripple"}
+    assert set(results["diagnosis/verdict"]["verdict"]) <= {"usable", "usable_within_limits"}
+    own = results["diagnosis/result"].set_index(["sensor", "parameter"]).loc["gyro"]
+    true = parameters_of(document)["gyro"]
+    pulls = (own.loc[list(true), "value"] - list(true.values())) / own.loc[list(true), "sigma"]
+    assert np.abs(pulls).max() < 3.5
 
 
 @pytest.mark.slow
