@@ -20,11 +20,15 @@ MAX_RATE_CHANGE = 0.05  # of the rate, across a gap in a steady part
 
 @dataclass(frozen=True)
 class Lost:
-    """What a gap lacks: seconds; rate before and after it, rad/s, NaN without gyros."""
+    """What a gap lacks: seconds; rate before and after it, rad/s, NaN without gyros.
+
+    unread: lines of the log in place of the samples, which hold none that can be read.
+    """
 
     seconds: float
     before: float
     after: float
+    unread: int = 0
 
     @property
     def turning(self) -> bool:
@@ -56,6 +60,7 @@ class Gap(Detector):
         for disorder in disorders(stamps.time, piece.reached, log.interval):
             ordered[disorder.start : disorder.end] = False
         place, time = np.flatnonzero(ordered), stamps.time[ordered]
+        usual = int(np.median(np.diff(piece.line[stamps.place]))) if len(stamps) > 1 else 0
         for k in np.flatnonzero(np.diff(time) > MIN_GAP_INTERVALS * log.interval):
             later = time[k + 1 : k + 1 + SIDE_STAMPS]
             earlier = time[max(k + 1 - SIDE_STAMPS, 0) : k + 1][::-1]
@@ -64,7 +69,8 @@ class Gap(Detector):
             surely -= (earlier + log.interval * np.arange(len(earlier))).max()
             missing = round((time[k + 1] - time[k]) / log.interval) - (place[k + 1] - place[k])
             if missing > 0 and surely > MIN_GAP_INTERVALS * log.interval:
-                after = int(stamps.place[place[k + 1]])
+                before, after = stamps.place[place[k : k + 2]].tolist()
+                unread = int(piece.line[after] - piece.line[before]) - usual
                 yield Event(
                     int(piece.record[after]),
                     int(piece.record[after]),
@@ -76,6 +82,7 @@ class Gap(Detector):
                         missing * log.interval,
                         _rate(piece.values[max(after - SIDE_RECORDS, 0) : after]),
                         _rate(piece.values[after : after + SIDE_RECORDS]),
+                        unread if unread >= missing * usual else 0,
                     ),
                 )
 
@@ -93,6 +100,16 @@ class Gap(Detector):
             to_s=fixed(event.to_s, 3),
             line=event.line,
         )
+        look = _("Find what loses samples, such as a buffer, a cable or a disk.")
+        if lost.unread:
+            sentence += " " + plural(
+                "In its place the log has {count} line that cannot be read.",
+                "In their place the log has {count} lines that cannot be read.",
+                lost.unread,
+            )
+            look = _("Look at these lines of the log, and find what damages them.")
+        if not lost.turning and lost.unread:
+            return Description(sentence, _("A mean of a rest hardly changes by it."), look)
         if not lost.turning:
             return Description(
                 sentence,
@@ -133,7 +150,7 @@ class Gap(Detector):
                 "gap, if shorter) on both sides; whole-turn formulas do not use this turn.",
                 angle=significant(angle, 3),
             ),
-            _("Find what loses samples, such as a buffer, a cable or a disk."),
+            look,
         )
 
 

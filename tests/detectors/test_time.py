@@ -280,6 +280,16 @@ def test_a_gap_beside_other_faults_of_time_keeps_its_size():
 # ---- the clock
 
 
+@pytest.mark.parametrize(("broken", "said"), [(3, "has 3 lines that cannot be read"), (0, "")])
+def test_a_gap_tells_lines_that_cannot_be_read_from_samples_that_were_lost(broken, said):
+    values, keep = rest(400), np.delete(np.arange(400), [200, 201, 202])
+    lines = keep + 1 if broken else np.arange(397) + 1
+    one = piece(values[keep], np.round(INTERVAL * keep, 9), line=lines)
+    (event,) = seen(Gap(), one)
+    described = Gap().describe(event, "a.csv")
+    assert (said in described.sentence) and ("damages" in described.action) == bool(broken)
+
+
 @pytest.mark.parametrize("sigma", [0.02, 0.1, 0.3])
 def test_jitter_is_measured_and_makes_no_gap(sigma):
     generator = np.random.default_rng(5)
