@@ -21,7 +21,7 @@ def pooled(drafted, tmp_path_factory):
     """Their tables with what only a person knows: that they are five of one type."""
     folder = tmp_path_factory.mktemp("mpu9150")
     for name in NAMES:
-        _, results = drafted(name)
+        _, results = drafted(name, "compensation")
         for read in READ.values():
             (folder / name / read.place).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(results.folder / read.place, folder / name / read.place)
