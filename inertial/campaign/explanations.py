@@ -316,7 +316,7 @@ def _explains_named(cause: Hypothesis, other: Hypothesis) -> bool:
     if cause.cause == "quantisation":  # a steady rate in coarse counts goes in regular steps
         beats = other.cause == "oscillation" and other.size < cause.size
         return beats and (cause.unresolved or other.verdict == ONE_OF_CLASS)
-    if not cause.unresolved:
+    if not cause.unresolved or cause.alike:  # that clock is in the scale factors, and nowhere else
         return False
     if cause.cause == "bias_removed":  # at rest, and with it the earth's rate
         return "earth_rate_omitted" in other.causes
@@ -426,7 +426,7 @@ def _explains_uncertain(cause: Hypothesis, other: Hypothesis) -> bool:
         return False
     if other.cause == "gyro_random_walk" and _is_short_tilt(cause):
         return False
-    return cause.unresolved and same_axis(cause, other)
+    return cause.unresolved and not cause.alike and same_axis(cause, other)
 
 
 def _is_short_tilt(fault: Hypothesis) -> bool:

@@ -47,6 +47,8 @@ CONFIRMED = _("Nothing more: the campaign file confirms it by accept: [{repair}]
 TIME = "t0"  # the parameter of effects that set in at a moment
 CLEAR_SIGMAS = 3.0  # of an angle
 MAX_CARRYING = 3  # manoeuvres that carry a structure of the residuals; it is elsewhere with more
+CLOCK = "clock_scale"  # in ppm
+MAX_UNLIKE = 0.1  # of what a clock is off by, by which logs differ
 MIN_SPOILING = 2  # severity of a fault that leaves a mark on what is estimated
 
 
@@ -62,7 +64,7 @@ class Hypothesis:
     would, so that none is applied; `masked`: whether its records are; `time`: s since the first
     sample of all logs, with its sigma, where it is one moment; `angle`: rad, by which it turns the
     case, where it does; `share`: by which the turns go further in their time than planned, if all
-    do.
+    do; `alike`: whether it is a clock that is off by the same in all logs, from end to end.
     """
 
     id: str
@@ -79,6 +81,7 @@ class Hypothesis:
     time: tuple[float, float] | None = None
     angle: float | None = None
     share: float | None = None
+    alike: bool = False
 
     @property
     def sensor(self) -> str | None:
@@ -204,6 +207,7 @@ def hypotheses(findings: Findings) -> Iterator[Hypothesis]:
                 time=times.get(row["id"]),
                 angle=angles.get(row["id"]),
                 share=shares.get(row["id"]),
+                alike=_is_alike(row, findings.clocks),
             )
     for row in without:
         cause = _CAUSE_OF_REPAIR[row["repair"]]
@@ -253,6 +257,14 @@ def _shares(findings: Findings) -> dict[str, float]:
         if row["finding"] and row["effect"] == "table_angle_scale" and row["value"] is not None
     }
     return by_plan | by_model
+
+
+def _is_alike(row: Row, clocks: pd.DataFrame) -> bool:
+    """Whether it is the clock of rates, off by as much in all logs; one of a part has no sensor."""
+    if (row["cause"], row["sensor"]) != (CLOCK, "gyro"):
+        return False
+    intervals = clocks["interval"].dropna()
+    return bool(intervals.max() / intervals.min() - 1 < MAX_UNLIKE * 1e-6 * abs(row["size"]))
 
 
 def _repairs(findings: Findings) -> tuple[dict[str, list[Row]], list[Row]]:

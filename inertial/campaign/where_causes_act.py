@@ -4,6 +4,7 @@ from collections.abc import Callable
 from math import hypot, inf
 
 from inertial.campaign.hypotheses import (
+    CLOCK,
     FOUND,
     MOUNTINGS,
     OF_ATTITUDES,
@@ -20,7 +21,6 @@ MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with a
 MAX_ANGLE_RATIO = 2.0  # of one rotation as two stages have it: a rest shows two components of three
 MAX_SHARE_OFF = 0.3  # of a share by which all turns are off, as two stages have it
 MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
-CLOCK = "clock_scale"  # in ppm
 MAX_RATIO_OF_TIMES = 2.0  # of what a clock is off by, as two stages have it
 
 Where = Callable[[Hypothesis, Hypothesis], bool]

@@ -251,6 +251,15 @@ def test_a_clock_that_is_wrong_explains_what_is_in_proportion_and_laws(found, ex
     assert (found.cause not in causes(clock, found)) == explained
 
 
+@pytest.mark.parametrize("alike", [True, False])
+def test_a_clock_that_is_off_by_as_much_in_all_logs_is_in_the_scale_factors_alone(alike):
+    clock = finding("quality", "clock_scale", "gyro", alike=alike)
+    named = effect("gyro_scale_asymmetry", "gyro")
+    unnamed = effect("unknown_structure", "gyro", "unknown_structure")
+    assert ("gyro_scale_asymmetry" in causes(clock, named)) == alike
+    assert ("unknown_structure" in causes(clock, unnamed)) == alike
+
+
 @pytest.mark.parametrize(("ratio", "explained"), [(1.0004, True), (1.01, False)])
 def test_a_clock_explains_what_is_off_by_no_more_than_it_is(ratio, explained):
     clock, turns = finding("quality", "clock_scale", "gyro"), finding("segment", "rate_off")

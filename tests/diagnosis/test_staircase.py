@@ -62,3 +62,15 @@ def test_stamps_that_the_table_contradicts_are_wrong_and_the_rate_of_samples_is_
     assert cause["sentence"].endswith("at the stated rate, and the stamps are wrong.")
     verdicts = results["diagnosis/verdict"].set_index("sensor")["verdict"]
     assert verdicts.to_dict() == {"gyro": "not_usable", "accel": "usable"}
+
+
+def test_beside_a_rate_of_samples_that_is_misstated_an_asymmetry_has_its_name():
+    """The clock took it for its consequence, though it is off by the same in all that is read."""
+    asymmetry = {"gyro_scale_asymmetry": {"asymmetry_ppm": [0, 500, 0]}}
+    document = hidden_plans.rates(seed=5, effects=asymmetry)
+    document["faults"] = [{"drift": {"log": document["campaign"]["log"], "ppm": 3000}}]
+    results = chain.in_memory_of(document, "diagnosis", chain.BESIDE)
+    causes = results["diagnosis/causes"].set_index("cause")
+    assert set(causes.index) == {"clock_scale", "gyro_scale_asymmetry"}
+    found = causes.loc["gyro_scale_asymmetry"]
+    assert found["axis"] == "y" and abs(found["size"] - 500e-6) < 4 * found["sigma"]
