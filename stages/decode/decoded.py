@@ -79,12 +79,13 @@ def refuse_grown(path: Path, size: int) -> None:
 # ---- A decoded piece of a log, and the clock of a log by its first pieces.
 
 LOOK_AHEAD = 1000  # samples, where there are as many, by which the interval is known
+MIN_SPANS = 8  # of the log, of fewer samples, so that most of them lie beside a gap
 MAX_STILL = 50  # samples that stamps which are rounded stand still for; more repeat one record
 MAX_OFF_SHARE = 0.5  # of the interval, by which a step is too short or too long
 USUAL_PERCENT = (1, 99)  # of the other steps, which give their spread
 MIN_GAP_SPREAD = 1.5  # of this, by which a gap is longer than an interval: what is less is jitter
 MAX_OFF_SPREAD = 5.0  # of this, by which jitter is off; with more the clock jumps
-MIN_SHORT, MIN_SHORT_SHARE = 1e-3, 0.2  # of all steps, of those too long: more are scatter
+MIN_SHORT, MIN_SHORT_SHARE = 0.01, 0.2  # of all steps, of those too long: more are scatter
 
 
 @dataclass(frozen=True)
@@ -128,7 +129,8 @@ def interval_of(times: NDArray[Any]) -> float | None:
         return None
     apart = max(min(LOOK_AHEAD, len(times) // 2), 1)
     over = (times[apart:] - times[:-apart]) / apart
-    about = float(np.median(over))
+    few = max(min(LOOK_AHEAD, len(times) // MIN_SPANS), 1)
+    about = float(np.median(times[few:] - times[:-few])) / few
     if about <= 0:
         about = float(np.median(steps[steps > 0]))
     short, long = steps < about - MAX_OFF_SHARE * about, steps > about + MAX_OFF_SHARE * about
@@ -137,6 +139,8 @@ def interval_of(times: NDArray[Any]) -> float | None:
         near = np.abs(over - about)
         return float(np.mean(over[near <= MAX_OFF_SPREAD * np.median(near)]))
     usual = steps[~(short | long)]
+    if not len(usual):
+        return about
     spread = float(np.ptp(np.percentile(usual, USUAL_PERCENT)))
     mean = float(np.mean(usual[np.abs(usual - np.median(usual)) <= MAX_OFF_SPREAD * spread]))
     gap = steps - mean > MIN_GAP_SPREAD * spread

@@ -163,3 +163,11 @@ def test_increments_become_rates_by_the_mean_interval(tmp_path):
         readings.append(channels(tables["samples"], 0))
     assert abs(np.median(np.diff(jitter))) > 3e-6  # s, by which the median interval is off
     np.testing.assert_allclose(readings[0], readings[1], rtol=1e-4)
+
+
+@pytest.mark.parametrize("lost", [1000, -1400], ids=["a gap", "a clock set back"])
+@pytest.mark.parametrize("at", [300, 700])
+def test_a_gap_or_a_jump_of_a_short_log_leaves_its_interval(at, lost):
+    """Once most of the pairs of stamps lay across it: three intervals for one, or none at all."""
+    stamps = np.arange(1000) + np.where(np.arange(1000) < at, 0, lost)
+    assert interval_of(10_000_000 * stamps) == pytest.approx(1e7, rel=1e-9)
