@@ -109,6 +109,8 @@ IN_PROPORTION = frozenset(
         "gyro_scale_quadratic",
         "gyro_scale_cubic",
         "gyro_scale_g_dependence",
+        "gyro_cross_axis_squares",
+        "gyro_rate_products",
         "gyro_scale_ramp",
         "gyro_scale_jump",
         "gyro_scale_temperature",

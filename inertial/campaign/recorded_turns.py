@@ -102,7 +102,7 @@ def refusal_of(m: Manoeuvre, done: Performed, part: Blocks) -> str:
     if m.angle is None or m.angle_sigma is None:
         return _("its angle is not stated")
     if done.angle is None:
-        return _("its angle is not measured: {sentence}", sentence=done.sentence)
+        return done.sentence
     if done.angle * m.angle < 0:
         return _("it turned by {degrees:.1f}°, against the plan", degrees=degrees(done.angle))
     return ""

@@ -30,7 +30,7 @@ MIN_TURNED = 0.05  # rad, of the gyros and of the force, within it: less tells n
 MAX_ARM = (
     0.4  # m: a change of the force within that times the rate squared may be the pull of an arm
 )
-MIN_SPANS, MAX_SPANS = 20, 20_000
+MIN_SPANS, MAX_SPANS = 12, 20_000  # of three equations each, for 24 unknowns
 MIN_ENTRY_SIGMA = 10.0  # sigmas of the entries of G that decide
 MAX_ENTRY_SIGMA = 0.15  # of any entry
 MAX_OFF_DIAGONAL = 0.5  # of the largest entry of its row and column
@@ -213,8 +213,8 @@ def _spans(forces: Array, rates: Array, step: float, arm: float) -> tuple[Array,
     moved = (np.linalg.norm(whole, axis=1) > MIN_TURNED) & (
         np.arctan2(across_both, along) > MIN_TURNED
     )
-    fastest = np.sum(rate**2, axis=2).max(axis=1)
-    moved &= np.linalg.norm(change, axis=1) > arm * fastest
+    at_ends = np.sum(rate[:, [0, -1]] ** 2, axis=2).max(axis=1)  # between them it comes and goes
+    moved &= np.linalg.norm(change, axis=1) > arm * at_ends
     there = np.isfinite(of_matrix).all(axis=(1, 2)) & moved
     design = np.concatenate([of_matrix, of_bias, of_level, of_both], axis=2)
     return design[there], change[there], starts[there]
