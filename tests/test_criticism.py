@@ -59,7 +59,8 @@ QUICK = ("lever_arm",)
 NOT_NEEDED = ("studies", "comparison", "compensation")  # by criticism and extension
 # What this plan cannot tell from it.
 CLASS = {
-    "accel_quadratic": {"accel_scale_asymmetry"},
+    # Each axis is up once: what disturbs it there and nowhere else.
+    "accel_quadratic": {"accel_scale_asymmetry", "accel_bias_of_position"},
     "gyro_hysteresis": {"gyro_bias_sense"},  # but for a scale factor
     "gyro_bias_sense": {"gyro_hysteresis"},
     "gyro_relaxation_sense": {"gyro_relaxation_braking"},  # likewise

@@ -116,8 +116,9 @@ def expanded(file: YamlFile, key: Key, item: dict[str, Any]) -> Iterator[Row]:
 def stays_in_position(before: Row, after: Row) -> bool:
     """Whether a manoeuvre of the same log begins in the attitude in which the one before ended.
 
-    Then it is the same set position, with the same error, unless the campaign says otherwise. A
-    tumble is set at each of its rests, and so is what rows of means are of.
+    On a table it is the same set position, with the same error, unless the campaign says otherwise;
+    a hand turns none back to where it stood. A tumble is set at each of its rests, and so is what
+    rows of means are of.
     """
     if any(before[name] != after[name] for name in ("file", "format", "mount")):
         return False

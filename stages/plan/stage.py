@@ -173,7 +173,7 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list
     """The plan with every shorthand expanded, in its order, each with its log."""
     rows: dict[str, Row] = {}
     rate = StatedRate.of(file, listed)
-    cycles, before, stated = 0, None, StatedPosition()
+    cycles, before, stated, set_by_hand = 0, None, StatedPosition(), by_hand(file.content)
     for number, item in enumerate(file.content["plan"]):
         cycles += bool(rows and item.get("power_cycle"))  # before the first there is no part
         for row in expanded(file, ["plan", number], item):
@@ -188,7 +188,7 @@ def _manoeuvres(file: YamlFile, entry: dict[str, Any], listed: YamlFile) -> list
             for each in one_by_one(row | where):
                 if "position" in item:
                     each |= {"turned_on": stated.turned_on(each)}
-                elif before is not None and stays_in_position(before, each):
+                elif before and not set_by_hand and stays_in_position(before, each):
                     each |= {"position": before["position"]}
                 before = each
                 rows[each["manoeuvre"]] = each | {"number": number, "switch_on": cycles}

@@ -592,15 +592,14 @@ CASES: tuple[Case, ...] = (
         short,
         (cause({"mounting_shift"}, alone=True),),
         accel=LIMITED,
-        gyro=LOST,  # its axes are those of the second mounting, and nothing in it shows that
+        gyro=LIMITED,  # its turns are all of the second mounting: the accelerometers tell the first
         hidden=effect(mounting_shift={"rotation_arcsec": [0.0, 0.0, 200.0], "at_s": 180.0}),
-        known=False,
     ),
     Case(
         "quadratic-accelerometer",
         positions,
         (cause({"accel_quadratic"}, "accel"),),
-        accel=LOST,  # one position alone shows it, so the joint result stays, which it moves
+        accel=LIMITED,  # the mean over what it may be: one position alone shows it
         hidden=effect(accel_quadratic={"k2_micro_g_g2": [60.0, 0.0, 0.0]}),  # SNR 15
     ),
     Case(
@@ -621,7 +620,7 @@ CASES: tuple[Case, ...] = (
         "spikes-and-quadratic",
         short,
         (cause({"spike"}, "gyro", "y"), cause({"accel_quadratic"}, "accel")),
-        accel=LOST,  # as above
+        accel=LIMITED,  # as above
         gyro=HARMLESS,
         hidden=fault({"spikes": {"log": "all"} | SPIKED})
         | effect(accel_quadratic={"k2_micro_g_g2": [80.0, 0.0, 0.0]}),
