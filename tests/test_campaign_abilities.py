@@ -208,7 +208,7 @@ def test_a_table_that_counts_clockwise(simple, simple_results, tmp_path):
 def test_a_turn_of_which_only_the_axis_is_known_gives_its_scale(
     recorded, simple, simple_results, tmp_path
 ):
-    """Recorded whole, the rests beside it show the earth's rate along its axis; steady, nothing."""
+    """The rests beside it show the earth's rate along its axis; steady, the table's rate counts."""
     campaign = rewritten(simple, tmp_path / "raw", lambda rows: rows)
     for manoeuvre in campaign["plan"]:
         if manoeuvre["do"] == "turn":
@@ -225,9 +225,8 @@ def test_a_turn_of_which_only_the_axis_is_known_gives_its_scale(
     if recorded == "whole":
         assert known < scale < 3 * known
     else:
-        # Two turns, in each of which the earth's rate has any direction, and the table's rate.
-        earth = 7.292115e-5 / np.sqrt(3) / np.radians(60)
-        assert scale == pytest.approx(np.hypot(earth, 100e-6) / np.sqrt(2), rel=0.2)
+        # Of two turns each rate is off by 100 ppm, and both by as much together.
+        assert scale == pytest.approx(100e-6 * np.sqrt(1 + 1 / 2), rel=0.02)
 
 
 @pytest.mark.slow
