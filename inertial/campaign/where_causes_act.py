@@ -1,7 +1,7 @@
 """Where a cause acts: in which sensor, axis, manoeuvre and log, and whether two are one event."""
 
 from collections.abc import Callable
-from math import hypot, inf
+from math import hypot, inf, nan
 
 from inertial.campaign.hypotheses import (
     CLOCK,
@@ -18,6 +18,8 @@ JUMP_IN_REST = "bias_jump"  # as the readings of one rest show it
 RESTARTS = frozenset({"gyro_restarts", "accel_restarts"})
 MAX_APART_SIGMAS = 3.0  # of two times of one event
 MAX_VAGUE_S = 30.0  # sigma of a time: one that is known no better agrees with any other
+MAX_PAUSE_SHARE = 0.1  # of the sigma of a time in a pause, by which those of one pause differ
+NOT_KNOWN = nan, nan
 MAX_ANGLE_RATIO = 2.0  # of one rotation as two stages have it: a rest shows two components of three
 MAX_SHARE_OFF = 0.3  # of a share by which all turns are off, as two stages have it
 MAX_OF_READINGS = 10.0  # °, of a turn, that single readings lack: a tenth of a second at 100 °/s
@@ -138,7 +140,15 @@ def is_same_event(cause: Hypothesis, other: Hypothesis) -> bool:
     if {cause.cause, other.cause} != JUMPS or {cause.verdict, other.verdict} != {FOUND}:
         return False
     vague = [one.time[1] for one in (cause, other) if one.time]
-    return max(vague) < MAX_VAGUE_S and (vague[0], cause.id) < (vague[1], other.id)
+    known = max(vague) < MAX_VAGUE_S or _in_one_pause(cause, other)
+    return known and (vague[0], cause.id) < (vague[1], other.id)
+
+
+def _in_one_pause(cause: Hypothesis, other: Hypothesis) -> bool:
+    """Whether both are somewhere between the same two manoeuvres, which is what their sigma is."""
+    (first, of_first), (second, of_second) = cause.time or NOT_KNOWN, other.time or NOT_KNOWN
+    longest = MAX_PAUSE_SHARE * of_first
+    return abs(first - second) < longest and abs(of_first - of_second) < longest
 
 
 def _same_angle(cause: Hypothesis, other: Hypothesis) -> bool:

@@ -101,6 +101,18 @@ def test_both_sizes_of_one_knock_are_said():
     assert row["sentence"].endswith("b_y = 5851 µg.")
 
 
+@pytest.mark.parametrize(
+    ("accel", "number"),
+    [((874.3, 34.9), 1), ((905.0, 35.0), 2), ((874.0, 120.0), 2)],
+    ids=["the same pause", "another pause", "any of several pauses"],
+)
+def test_jumps_of_both_sensors_in_one_pause_are_one_event(accel, number):
+    """As where the IMU is switched off and on between two logs, and nobody states it."""
+    jumps = [at(effect("gyro_bias_jump", "gyro"), 874.0, 35.0)]
+    jumps.append(at(effect("accel_bias_jump", "accel"), *accel))
+    assert len(list(compete(jumps))) == number
+
+
 def test_a_rotation_is_about_the_axes_that_show_it():
     rows = [
         {"finding": "f", "effect": "mounting_shift", "unit": "rad", "parameter": f"theta_{axis}"}
