@@ -149,6 +149,15 @@ def test_a_motion_with_masked_records_is_left_out_by_name(imu, recorded):
     assert "by-hand-04 to by-hand-05" in fit.loc[0, "used"]
 
 
+def test_records_that_repeat_the_one_before_cost_no_motion(imu, recorded):
+    """One of a hundred came twice, stamp and all: no gyro had a scale factor."""
+    moving = recorded["phase"] == "between"
+    repeats = np.cumsum(moving & (np.cumsum(moving) % 100 == 50)).to_numpy()
+    later = {name: recorded[name] + repeats for name in ("from_record", "to_record")}
+    _, fit, _ = rows(add_free_gyros, "gyroscope", recorded.assign(**later), imu)
+    assert not fit.loc[0, "left_out"]
+
+
 def with_holes(recorded, samples):
     """The blocks without every hundredth record of the motions and those after it."""
     moving = (recorded["phase"] == "between").to_numpy()

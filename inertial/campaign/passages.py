@@ -113,8 +113,8 @@ def refusal_of(
     ends = np.append(before.after, part["to_record"].to_numpy(np.int64))
     starts = np.append(part["from_record"].to_numpy(np.int64), behind.first)
     timed = np.append(part["missing_s"].to_numpy(np.float64), 0.0) != 0
-    masked = int((starts - ends)[~timed].sum())
-    if masked:
+    masked = int(np.where(timed, 0, starts - ends).max())
+    if masked > MAX_LOST_RUN:  # fewer repeat one another, which takes no time
         return _(
             "{masked} records are masked while it moves, so no attitude is carried through",
             masked=masked,
