@@ -358,11 +358,17 @@ def _chance(length: Integers, rough: float) -> Array:
 def _quieter(values: Array, start: int, end: int, usual: float) -> float:
     """The roughness beside a run, if it is less than the usual one of the log, in counts.
 
-    Most of a log may be louder than that: it may oscillate. Another run beside it does not count.
+    Most of a log may be louder than that: it may oscillate, or a rest may be short. Another run
+    beside it does not count.
     """
-    sides = values[max(start - BLOCK - 1, 0) : start], values[end : end + BLOCK + 1]
-    rough = [roughness(side) / smallest_step(values) for side in sides]
-    return min(usual, *(sigma for sigma in rough if sigma > 0), usual)
+    count, rough = smallest_step(values), [usual]
+    for width in (end - start, BLOCK):
+        for side in (values[max(start - width, 0) : start + 1], values[end - 1 : end + width]):
+            change = np.abs(np.diff(side)) / count
+            by_one = 0 < change.max(initial=0.0) < MAX_STILL_COUNTS  # from count to count
+            if len(change) >= width and (by_one or (width == BLOCK and change.any())):
+                rough.append(float(np.sqrt(np.mean(change**2) / 2)))
+    return min(rough)
 
 
 def _leapt_to(values: Array, start: Integers, end: Integers) -> Booleans:

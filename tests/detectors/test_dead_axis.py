@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from on_a_table import carried, recorded, rest, tumble, turn
 from recorded_by_hand import COUNT, NOISE, assert_told
+from scipy.signal import butter, lfilter
 
 from inertial.campaign.findings import detections_of
 from inertial.detectors.dead_axis import DeadAxis
@@ -42,6 +43,18 @@ def test_zeros_in_a_turn_are_found_however_short(samples):
     assert (event.channel, event.first, event.after) == (5, 2000, 2000 + samples)
     words = DeadAxis().describe(event, "log")
     assert "gyro z reads 0 °/s" in words.sentence and "below a threshold" in words.action
+
+
+def test_in_short_rests_between_motions_slow_noise_goes_from_count_to_count():
+    """Behind a filter of 3 Hz gyros of coarse counts stood still for 20 readings: "dead"."""
+    random, values = np.random.default_rng(3), rest(8000)
+    time = np.arange(8000) / 100
+    moving = np.sin(np.pi * np.clip(time % 8 / 6, 0, 1)) ** 2  # 6 s of motion, 2 s of rest
+    slow = lfilter(*butter(2, 3, fs=100), random.normal(size=(8000, 3)), axis=0)
+    slow *= 0.5 / slow.std(axis=0)
+    rates = 900 * moving[:, None] * np.sin(2 * np.pi * 3 * time[:, None] + np.arange(3)) + slow
+    values[:, 3:] = COUNT[3:] * np.rint(rates + np.array([9.4, -5.5, 19.6]))
+    assert not found(values)
 
 
 def test_an_axis_that_never_changes_is_measured_by_the_other_axes():
