@@ -127,10 +127,10 @@ def is_same_event(cause: Hypothesis, other: Hypothesis) -> bool:
 
     A shift of the IMU in its fixture stands for the rest in which it tilts, and any tilt for the
     level accelerometer that jumps; of two sensors the one whose time is known better stands for
-    both.
+    both, of restarts the one that shows them without a rival.
     """
     if {cause.cause, other.cause} == RESTARTS and cause.named and other.named:
-        return cause.id < other.id
+        return (cause.verdict != FOUND, cause.id) < (other.verdict != FOUND, other.id)
     if not same_time(cause, other) or not cause.named:
         return False
     if cause.cause in MOUNTINGS and other.cause == TABLE_MOVING:

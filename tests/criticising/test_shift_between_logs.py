@@ -1,6 +1,7 @@
 """An IMU that is mounted anew between two logs that share no clock, with the same bias."""
 
 import shutil
+from itertools import product
 from typing import Any
 
 import chain
@@ -29,7 +30,8 @@ def rests_and_turns(**effects: Any) -> dict[str, Any]:
 def test_it_is_named_with_its_angles_and_the_manoeuvre_from_which_on_it_is() -> None:
     """What gyros tell holds for the second mounting alone: a g-sensitivity was named in it."""
     shift = {"rotation_arcsec": SHIFT, "at_s": 170.0}
-    results = chain.in_memory_of(rests_and_turns(mounting_shift=shift), "diagnosis")
+    document = rests_and_turns(mounting_shift=shift)
+    results = chain.in_memory_of(document, "diagnosis")
     (cause,) = results["diagnosis/causes"].to_dict("records")
     assert cause["cause"] == "mounting_shift" and " at x-forward:" in cause["sentence"]
     found = results["criticism/effects"].set_index(["effect", "parameter"]).loc["mounting_shift"]
@@ -37,7 +39,16 @@ def test_it_is_named_with_its_angles_and_the_manoeuvre_from_which_on_it_is() -> 
         own = found.loc[f"theta_{axis}"]
         assert abs(own["value"] - size) < 3.5 * own["sigma"]
     verdicts = results["diagnosis/verdict"].set_index("sensor")["verdict"]
-    assert verdicts["gyro"] == "not_usable"  # whose turns are all in the second mounting
+    # Its turns are all in the second mounting: the accelerometers tell those of the first.
+    assert verdicts["gyro"] == "usable_within_limits"
+    own = results["diagnosis/result"].set_index(["sensor", "parameter"]).loc["gyro"]
+    matrix = np.array(document["truth"]["gyro"]["matrix"]) - np.eye(3)
+    pulls = [
+        (own.at[name, "value"] - matrix[i, k]) / own.at[name, "sigma"]
+        for (i, a), (k, b) in product(enumerate("xyz"), repeat=2)
+        for name in [f"scale_{a}" if a == b else f"cross_{a}{b}"]
+    ]
+    assert np.abs(pulls).max() < 3.5
 
 
 @pytest.mark.slow
