@@ -11,6 +11,7 @@ from residuals_of_turns import NOISE, turns
 
 import laboratory
 from inertial import tables
+from inertial.signal.scatter import smallest_step
 from stages.criticism.oscillation_removal import without_lines
 from stages.criticism.oscillation_search import find_oscillations
 
@@ -73,7 +74,8 @@ def criticised(decoded, disturbance):
     """The findings where the rates, as functions of the samples, are added to the x gyro."""
     recording, tables_before = decoded
     samples = tables_before["decode/samples"].copy()
-    samples["gyro_x"] += disturbance(samples)
+    count = smallest_step(samples["gyro_x"].to_numpy())
+    samples["gyro_x"] += count * np.rint(disturbance(samples) / count)
     disturbed = tables_before.replaced("decode/samples", samples)
     results = chain.in_memory(recording, "criticism", chain.BESIDE, onto=disturbed)
     return results["criticism/findings"].set_index("cause"), results["criticism/effects"]

@@ -258,7 +258,7 @@ def test_what_the_laboratory_hides_in_a_campaign_is_named():
         assert_near((found["value"], found["sigma"]), true)
     causes = results["criticism/findings"].set_index("cause")
     # The case tips by 16″ into the table's rate, which no cross term tells.
-    assert "by the case's tipping" in causes.loc["oscillation", "sentence"]
+    assert "is expected as the case tilts" in causes.loc["oscillation", "sentence"]
 
 
 def test_a_line_in_time_is_removed_from_the_accelerometers_too():
