@@ -239,7 +239,9 @@ def rate_deviation(
 # own frequency: by that of the whole band, of which a filter takes the upper part, every wave of
 # the noise below would be a line.
 
-CELL_BINS = 8.0  # of each record in a cell of the spectrum; a line fills three or four
+CELL_BINS = 8.0  # of each record in a cell of the spectrum
+LOBE_BINS = 2  # to each side, that a line fills in a spectrum with a Hann window
+BESIDE_BINS = 12  # on each side, above whose median a line stands out
 CELL_RATIO = 1.1  # of the ends of a cell, at least
 MAX_WIDER = 1.5  # of the bins of records that tell the shape, times those of the usual one
 MAX_CHANCE = 1e-4  # that white noise counts as coloured
@@ -249,7 +251,8 @@ MEDIAN_VARIANCE = 1 / np.log(2) ** 2  # relative, times n, of the median of n ex
 def noise_shape(records: Sequence[Array], rate: float, lowest: float) -> NoiseShape:
     """The shape that records have in common; `WHITE` where they differ from that by chance alone.
 
-    By the median in each cell of the spectrum, to which a line adds too few bins to count.
+    By the median in each cell of the spectrum, without the bins of lines: at low frequencies one
+    fills half of a cell.
 
     Parameters
     ----------
@@ -270,7 +273,8 @@ def shape_of(frequencies: Sequence[Array], levels: Sequence[Array]) -> NoiseShap
 
     By the longer records, which have half of the bins at least: the bins of a short one are wide.
     """
-    there = [(f, level) for f, level in zip(frequencies, levels, strict=True) if level.any()]
+    split = [(f, level, _line_bins(level)) for f, level in zip(frequencies, levels, strict=True)]
+    there = [(f[~line], level[~line]) for f, level, line in split if level[~line].any()]
     bin_width = _usual_bin_width([frequency for frequency, _level in there])
     there = [one for one in there if _bin_width(one[0]) <= MAX_WIDER * bin_width]
     edges = _cells([frequency for frequency, _level in there], bin_width)
@@ -293,6 +297,23 @@ def shape_of(frequencies: Sequence[Array], levels: Sequence[Array]) -> NoiseShap
     smooth = np.maximum(np.convolve(about, (0.25, 0.5, 0.25), "valid"), found)
     middle = (edges[1:] + edges[:-1]) / 2
     return NoiseShape(middle[: len(known)][known], np.exp(smooth / 2))
+
+
+def _line_bins(level: Array) -> Booleans:
+    """Which bins of the periodogram of a record a line fills, (m,).
+
+    One that is higher than noise alone has any, by the larger median of the bins before it and
+    after it: on the slope of a filter or of a drift the one, beside another line the other.
+    """
+    pieces = len(level) // BESIDE_BINS
+    if pieces < 2:
+        return np.zeros(len(level), bool)
+    medians = np.median(level[: pieces * BESIDE_BINS].reshape(pieces, BESIDE_BINS), axis=1)
+    about = np.pad(medians, 1, mode="edge")
+    piece = np.minimum(np.arange(len(level)) // BESIDE_BINS, pieces - 1)
+    noise = np.maximum(about[:-2], about[2:])[piece] / np.log(2)
+    high = level > LINE_CHANCES * np.log(len(level)) * noise
+    return np.asarray(np.convolve(high, np.ones(2 * LOBE_BINS + 1), "same") > 0)
 
 
 def _usual_bin_width(frequencies: Sequence[Array]) -> float:

@@ -35,6 +35,18 @@ def test_it_is_that_of_the_filter_and_a_line_does_not_change_it():
         np.testing.assert_allclose(ratio / np.median(ratio), 1.0, atol=0.15)
 
 
+@pytest.mark.parametrize("hertz", [0.7, 1.3, 1.312, 2.9])
+@pytest.mark.parametrize("amplitude", [0.2, 2.0, 20.0])
+def test_a_slow_line_is_no_shape(hertz, amplitude):
+    """Where a cell has few bins, of which a line fills half."""
+    random, time = np.random.default_rng(5), np.arange(1600) / 50.0
+    for _ in range(10):
+        phases = random.uniform(0, 2 * np.pi, (6, 1))
+        wave = amplitude * np.sin(2 * np.pi * hertz * time + phases)
+        shape = noise_shape(list(wave + random.standard_normal(wave.shape)), 50.0, 0.5)
+        assert shape.at(hertz) / np.median(shape.amplitude) < 1.4
+
+
 @pytest.mark.slow
 def test_in_filtered_noise_the_p_values_are_about_those_of_chance():
     p_values, together = [], []
