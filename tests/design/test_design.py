@@ -129,7 +129,7 @@ def test_a_class_is_split_in_a_fraction_of_the_time(imu):
 def with_effect(data, name, size):
     """A campaign with the readings of an effect in its blocks, to first order."""
     campaign, effect = campaign_of(data), CATALOGUE[name]
-    sensitivities = campaign._sensitivities("gyro", [effect])
+    sensitivities = campaign.sensitivities("gyro", [effect])
     blocks = data.blocks.copy()
     gyros = ["gyro_x", "gyro_y", "gyro_z"]
     for turn, response in zip(
