@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 import sys
@@ -243,7 +244,10 @@ def test_a_rate_stated_ten_times_too_low_cuts_rests_to_pieces(
     results = by_hand(recordings, tmp_path, "time: {rate_hz: 10}")
     assert check(copied(results, tmp_path / "data")) == 1
     said = " ".join(capsys.readouterr().out.split())
-    assert "NO RESULT · positions 48 rests were found, and 26 stand as the one before" in said
+    pieces = re.search(
+        r"NO RESULT · positions (\d+) rests were found, and (\d+) stand as the one before", said
+    )
+    assert pieces is not None and 2 * int(pieces[2]) > int(pieces[1])
 
 
 def test_positions_by_hand_have_their_result(

@@ -310,3 +310,16 @@ def test_noise_of_an_information_that_rounding_made_indefinite():
     assert np.linalg.eigvalsh(information).min() < -1e-6
     drawn = noise(information, 200_000, np.random.default_rng(4))
     np.testing.assert_allclose(np.cov(drawn), information, atol=0.4)
+
+
+def test_noise_has_the_covariance_of_an_information_matrix_of_lower_rank():
+    """Columns of which two are equal and one shows nothing: 5000 draws tell each to 7 %."""
+    rows = np.random.default_rng(1).standard_normal((4, 12)) * np.geomspace(1e-6, 1e6, 12)
+    rows[:, 3], rows[:, 7] = rows[:, 2], 0.0
+    information = rows.T @ rows
+    drawn = noise(information, 5000, np.random.default_rng(2))
+    size = np.sqrt(np.maximum(np.diag(information), 1e-300))
+    off = (drawn @ drawn.T / 5000 - information) / np.outer(size, size)
+    assert np.abs(off).max() < 5 * np.sqrt(2 / 5000)
+    np.testing.assert_allclose(drawn[3], drawn[2], rtol=1e-6)
+    assert not drawn[7].any()
