@@ -146,6 +146,20 @@ def test_an_axis_that_shows_no_flicker_has_that_of_the_two_others_as_far_as_it_l
     assert not limit["detected"] and drift.instability[0] == limit["upper"]
 
 
+def test_an_axis_with_a_step_in_one_rest_has_the_flicker_of_the_two_others():
+    """The step is no drift, and says nothing against the flicker."""
+    size, rng = 0.3 * INSTABILITY, np.random.default_rng(8)
+    values = white(rng, STRETCH * COUNT)
+    for axis in (3, 4, 5):
+        values[:, axis] += size * flicker(rng, len(values))
+    values[STRETCH // 2 : STRETCH, 3] += 4 * INSTABILITY
+    found = noise_of(of_stretches(values))
+    assert found["terms"].set_index("channel").loc["gyro_x", "stepped"].all()
+    instability = NoiseLevels(found["levels"]).drift("gyro").instability
+    assert instability[0] == pytest.approx(np.sqrt(np.mean(instability[1:] ** 2)))
+    assert instability[0] == pytest.approx(size, rel=0.4)
+
+
 @pytest.mark.parametrize(
     ("shown", "limit", "third"), [((3.0, 4.0), 9.0, 12.5**0.5), ((3.0, 4.0), 2.0, 2.0)]
 )

@@ -393,7 +393,7 @@ class SensorNoise:
             for terms, stepped in zip(self.of_bias, self.stepped, strict=True)
         ]
         pairs = zip(shown, stated, strict=True)
-        drifts = of_one_design([drift_of(*pair, self.seconds) for pair in pairs], shown)
+        drifts = of_one_design([drift_of(*pair, self.seconds) for pair in pairs], self.of_bias)
         for channel, drift, figure in zip(self.channels, drifts, stated, strict=True):
             own: dict[str, float | None] = {**drift, "data_sheet": figure}
             if channel in self.quantised:
