@@ -164,10 +164,15 @@ def test_an_axis_with_a_step_in_one_rest_has_the_flicker_of_the_two_others():
     ("shown", "limit", "third"), [((3.0, 4.0), 9.0, 12.5**0.5), ((3.0, 4.0), 2.0, 2.0)]
 )
 def test_the_third_axis_has_the_mean_power_of_the_two_others(shown, limit, third):
-    open_to = SimpleNamespace(terms={"bias_instability": SimpleNamespace(most=limit)})
+    open_to, hinting = (
+        SimpleNamespace(terms={"bias_instability": SimpleNamespace(most=limit, p_value=p_value)})
+        for p_value in (0.4, 0.03)
+    )
     axes: list[dict[str, float]] = [{}, *({"bias_instability": size} for size in shown)]
     assert of_one_design(axes, [open_to] * 3)[0] == {"bias_instability": pytest.approx(third)}
     assert of_one_design([{}, {}, axes[1]], [open_to] * 3) == [{}, {}, axes[1]]
+    beside_one = of_one_design([{}, {}, axes[1]], [open_to, hinting, open_to])
+    assert beside_one == [{}, {"bias_instability": min(shown[0], limit)}, axes[1]]
     walking = {"random_walk": 1.0}
     assert of_one_design([walking, *axes[1:]], [open_to] * 3)[0] == walking
 

@@ -40,6 +40,7 @@ DRIFTS = ("bias_instability", "random_walk")  # terms of the noise
 MAX_P_VALUE = 1e-3  # of a drift that enters: of 12 that are absent, one in a campaign of a hundred
 LEVEL_COLUMNS = [column.name for column in tables.LEVELS.columns]
 LEAST_ALIKE = 2  # axes with a bias instability, by which the third has one too
+MAX_ALIKE_P_VALUE = 0.1  # of an axis beside a single one: a drift that is known to be there
 MAX_STATED_RATIO = 1.5  # of a bias instability to the data sheet's, from which it is unexpected
 MIN_NOISE_RECORDING_S = 1800.0  # s, of a rest that is recorded for its noise
 OWN, BETWEEN, COMMON = "own", "between", "common"
@@ -81,17 +82,20 @@ def of_one_design(
 
     The axes of a sensor are of one design. Where two of them show a bias instability, short
     stretches have missed that of the third: it has the mean power of theirs, as far as its own
-    upper limit leaves it open. Else its stretches would seem to differ by more than noise does.
+    upper limit leaves it open. Else its stretches would seem to differ by more than noise does. So
+    has one beside a single such axis, if it hints at a bias instability itself.
     """
     instability, _ = DRIFTS
     shown = [drift[instability] for drift in drifts if drift.get(instability)]
     result = [dict(drift) for drift in drifts]
-    if len(shown) >= LEAST_ALIKE:
+    if shown:
         of_others = float(np.sqrt(np.mean(np.square(shown))))
         for drift, own in zip(result, terms, strict=True):
-            if own is not None and not drift:
-                limit = own.terms[instability].most
-                drift[instability] = float(np.fmin(of_others, limit))
+            if own is None or drift:
+                continue
+            term = own.terms[instability]
+            if len(shown) >= LEAST_ALIKE or term.p_value < MAX_ALIKE_P_VALUE:
+                drift[instability] = float(np.fmin(of_others, term.most))
     return result
 
 
