@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any
 
 import chain
@@ -13,7 +14,7 @@ from ruamel.yaml import YAML
 
 import laboratory
 from inertial import tables
-from inertial.campaign.noise_levels import NoiseLevels
+from inertial.campaign.noise_levels import NoiseLevels, of_one_design
 
 RATE, STRETCH, COUNT = 10.0, 6000, 10  # Hz, samples of a stretch, stretches
 WHITE = {"accel": 1e-4, "gyro": 3.5e-6}  # m/s/√s, rad/√s
@@ -131,6 +132,49 @@ def test_only_the_axes_that_drift_have_a_drift_in_the_covariance():
     assert gyro.walk[1] == pytest.approx(WALK, rel=0.4) and not gyro.walk[[0, 2]].any()
     assert gyro.instability[2] == pytest.approx(INSTABILITY, rel=0.4)
     assert not gyro.instability[:2].any() and not levels.drift("accel")
+
+
+def test_an_axis_that_shows_no_flicker_has_that_of_the_two_others_as_far_as_it_leaves_open():
+    """They are of one design: a stretch of white noise says only what its flicker is below."""
+    rng = np.random.default_rng(8)
+    values = white(rng, STRETCH * COUNT)
+    for axis, size in ((4, INSTABILITY), (5, 2 * INSTABILITY)):
+        values[:, axis] += size * flicker(rng, len(values))
+    found = noise_of(of_stretches(values))
+    limit = found["terms"].set_index(["channel", "term"]).loc[("gyro_x", "bias_instability")]
+    drift = NoiseLevels(found["levels"]).drift("gyro")
+    assert not limit["detected"] and drift.instability[0] == limit["upper"]
+
+
+def test_an_axis_with_a_step_in_one_rest_has_the_flicker_of_the_two_others():
+    """The step is no drift, and says nothing against the flicker."""
+    size, rng = 0.3 * INSTABILITY, np.random.default_rng(8)
+    values = white(rng, STRETCH * COUNT)
+    for axis in (3, 4, 5):
+        values[:, axis] += size * flicker(rng, len(values))
+    values[STRETCH // 2 : STRETCH, 3] += 4 * INSTABILITY
+    found = noise_of(of_stretches(values))
+    assert found["terms"].set_index("channel").loc["gyro_x", "stepped"].all()
+    instability = NoiseLevels(found["levels"]).drift("gyro").instability
+    assert instability[0] == pytest.approx(np.sqrt(np.mean(instability[1:] ** 2)))
+    assert instability[0] == pytest.approx(size, rel=0.4)
+
+
+@pytest.mark.parametrize(
+    ("shown", "limit", "third"), [((3.0, 4.0), 9.0, 12.5**0.5), ((3.0, 4.0), 2.0, 2.0)]
+)
+def test_the_third_axis_has_the_mean_power_of_the_two_others(shown, limit, third):
+    open_to, hinting = (
+        SimpleNamespace(terms={"bias_instability": SimpleNamespace(most=limit, p_value=p_value)})
+        for p_value in (0.4, 0.03)
+    )
+    axes: list[dict[str, float]] = [{}, *({"bias_instability": size} for size in shown)]
+    assert of_one_design(axes, [open_to] * 3)[0] == {"bias_instability": pytest.approx(third)}
+    assert of_one_design([{}, {}, axes[1]], [open_to] * 3) == [{}, {}, axes[1]]
+    beside_one = of_one_design([{}, {}, axes[1]], [open_to, hinting, open_to])
+    assert beside_one == [{}, {"bias_instability": min(shown[0], limit)}, axes[1]]
+    walking = {"random_walk": 1.0}
+    assert of_one_design([walking, *axes[1:]], [open_to] * 3)[0] == walking
 
 
 def on_faces(seed: int, tilt: float = 0.0, walk: float = 0.0) -> np.ndarray:

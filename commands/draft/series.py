@@ -11,6 +11,7 @@ from inertial.signal.rests_and_motions import (
     MIN_HAND_RATE,
     MIN_MOTION_SIGMA,
     BinStretch,
+    level_of_each_rest,
     moving,
     rest_level,
     stretches,
@@ -138,7 +139,8 @@ def divided(series: Series, level: tuple[Array, float] | None, *, known_units: b
             away = np.linalg.norm(rates - rest, axis=1)
             lowest = MIN_MOVED_SHARE * float(np.quantile(away, 0.95))
         moves = moving(rates, forces, rest, max(lowest, noise))
-        above = moving(rates, forces, rest, noise)
+        levels = level_of_each_rest(stretches(moves, step, forces), rates, rest, noise)
+        above = moving(rates, forces, levels, noise)
     else:
         rest = np.full(3, np.nan)
         size = 1.0 if known_units else 9.8 / float(np.median(np.linalg.norm(forces, axis=1)))

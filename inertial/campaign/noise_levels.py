@@ -39,6 +39,8 @@ LEVEL_P_VALUE = 2.7e-3  # that any level of a channel differs so by chance: thre
 DRIFTS = ("bias_instability", "random_walk")  # terms of the noise
 MAX_P_VALUE = 1e-3  # of a drift that enters: of 12 that are absent, one in a campaign of a hundred
 LEVEL_COLUMNS = [column.name for column in tables.LEVELS.columns]
+LEAST_ALIKE = 2  # axes with a bias instability, by which the third has one too
+MAX_ALIKE_P_VALUE = 0.1  # of an axis beside a single one: a drift that is known to be there
 MAX_STATED_RATIO = 1.5  # of a bias instability to the data sheet's, from which it is unexpected
 MIN_NOISE_RECORDING_S = 1800.0  # s, of a rest that is recorded for its noise
 OWN, BETWEEN, COMMON = "own", "between", "common"
@@ -71,6 +73,30 @@ def drift_of(
         return shown if larger or not alike else {instability: stated}
     limit = terms.terms[instability].most
     return {instability: max(shown.get(instability, 0.0), float(np.fmin(stated, limit)))}
+
+
+def of_one_design(
+    drifts: Sequence[Mapping[str, float]], terms: Sequence[NoiseTerms | None]
+) -> list[dict[str, float]]:
+    """What enters of each axis of a sensor; of one that shows no drift also that of the others.
+
+    The axes of a sensor are of one design. Where two of them show a bias instability, short
+    stretches have missed that of the third: it has the mean power of theirs, as far as its own
+    upper limit leaves it open. Else its stretches would seem to differ by more than noise does. So
+    has one beside a single such axis, if it hints at a bias instability itself.
+    """
+    instability, _ = DRIFTS
+    shown = [drift[instability] for drift in drifts if drift.get(instability)]
+    result = [dict(drift) for drift in drifts]
+    if shown:
+        of_others = float(np.sqrt(np.mean(np.square(shown))))
+        for drift, own in zip(result, terms, strict=True):
+            if own is None or drift:
+                continue
+            term = own.terms[instability]
+            if len(shown) >= LEAST_ALIKE or term.p_value < MAX_ALIKE_P_VALUE:
+                drift[instability] = float(np.fmin(of_others, term.most))
+    return result
 
 
 def effective_levels(

@@ -63,9 +63,12 @@ class SteadyTurn:
 
     @property
     def rate(self) -> float:
-        """The rate of the table, rad/s; NaN where its angle is not known, or does not change."""
-        turned = float(self.angle[-1] - self.angle[0])
-        return turned / (len(self.angle) - 1) / self.step if turned else np.nan
+        """The rate of the table, rad/s; NaN where its angle is not known, or does not change.
+
+        Slower than the earth it does not: of a table that stands still rounding remains.
+        """
+        rate = float(self.angle[-1] - self.angle[0]) / (len(self.angle) - 1) / self.step
+        return rate if abs(rate) > EARTH_RATE else np.nan
 
     @property
     def seconds(self) -> float:
@@ -127,7 +130,8 @@ class SteadyTurn:
 def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
     """The steady parts of all turns of one mount; none where its gyros are not determined.
 
-    Of a turn that was another than stated nothing is simulated that it could be compared with.
+    Of a turn that was another than stated nothing is simulated that it could be compared with; nor
+    of one that is simulated at rest, for so most of what was taken for its steady part was.
     """
     gyro = data.result.gyro
     if gyro is None:
@@ -154,22 +158,22 @@ def steady_turns(data: CampaignData, simulated: Stream) -> list[SteadyTurn]:
         if len(truth) < MIN_SAMPLES or not np.isfinite(truth).all():
             continue
         tilted = m.up is None or abs(float(m.up @ m.axis)) < MIN_UPRIGHT_COSINE
-        steady_parts.append(
-            SteadyTurn(
-                name,
-                m.axis,
-                gyro.matrix,
-                truth,
-                further[:, 2:],
-                further[:, 0],
-                step,
-                data.clocks[m.log].averaged,
-                tilted,
-                float(further[0, 1]),
-                np.nan if m.angle is None else m.angle,
-                rests=[*_rests(rows, inverse)],
-            )
+        turn = SteadyTurn(
+            name,
+            m.axis,
+            gyro.matrix,
+            truth,
+            further[:, 2:],
+            further[:, 0],
+            step,
+            data.clocks[m.log].averaged,
+            tilted,
+            float(further[0, 1]),
+            np.nan if m.angle is None else m.angle,
+            rests=[*_rests(rows, inverse)],
         )
+        if np.isfinite(turn.rate) or np.isnan(turn.angle).all():
+            steady_parts.append(turn)
     return [*_with_shapes(steady_parts)]
 
 

@@ -1,5 +1,6 @@
 """Where a log moves and where it rests, by short means of its channels."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -71,7 +72,7 @@ def moving(rates: Array, forces: Array, level: Array, threshold: float) -> Boole
     Parameters
     ----------
     rates, forces : (k, 3), rad/s and m/s², NaN where not recorded
-    level : (3,), rad/s, the gyros at rest
+    level : (3,) or (k, 3), rad/s, the gyros at rest
     threshold : rad/s
     """
     recorded = ~np.isnan(rates).all(axis=0)
@@ -121,6 +122,36 @@ def _fell(stretch: BinStretch, forces: Array | None) -> bool:
     after = forces[stretch.after : stretch.after + BINS_BESIDE].mean(axis=0)
     cosine = before @ after / (np.linalg.norm(before) * np.linalg.norm(after))
     return bool(cosine < np.cos(MAX_KNOCK_TILT))  # not where they are not recorded
+
+
+def level_of_each_rest(
+    found: Sequence[BinStretch], rates: Array, level: Array, noise: float
+) -> Array:
+    """What the gyros read at rest in each bin, (k, 3): that of all rests, or of its own rest.
+
+    A bias that warms up is another one in each rest. Beside the level of all, such a rest would be
+    above the noise from end to end, as a motion that ends slowly is at its end. So it has the level
+    of its middle third, if by that fewer of its bins are off.
+
+    Parameters
+    ----------
+    rates : (k, 3), rad/s, NaN where not recorded
+    level : (3,), rad/s, of all rests; noise : rad/s, beyond which a bin is off
+    """
+    levels = np.tile(level, (len(rates), 1))
+    for stretch in found:
+        third = (stretch.after - stretch.first) // 3
+        if stretch.moves or 3 * third < MIN_BINS_OF_A_REST:
+            continue
+        still = bridged(rates[stretch.first : stretch.after])
+        own = np.median(still[third:-third], axis=0)
+        by_all, by_own = (
+            np.sum(np.linalg.norm(np.nan_to_num(still - each), axis=1) > noise)
+            for each in (level, own)
+        )
+        if by_own < by_all:
+            levels[stretch.first : stretch.after] = own
+    return levels
 
 
 def toggling(quantum: Array) -> Array:

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inertial.arrays import Array, Booleans, finite_or_none
-from inertial.campaign.noise_levels import DRIFTS, MAX_P_VALUE, drift_of
+from inertial.campaign.noise_levels import DRIFTS, MAX_P_VALUE, drift_of, of_one_design
 from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
 from inertial.estimation.low_pass import LowPass
@@ -387,10 +387,15 @@ class SensorNoise:
         self, sheet: Mapping[str, Mapping[str, float | None]]
     ) -> Iterator[tuple[str, dict[str, float | None]]]:
         """What enters the covariance, by channel; `sheet`: see `term_rows`."""
-        for channel, terms, stepped in zip(self.channels, self.of_bias, self.stepped, strict=True):
-            stated = sheet[channel].get("bias_instability")
-            shown = None if stepped else terms
-            own = {**drift_of(shown, stated, self.seconds), "data_sheet": stated}
+        stated = [sheet[channel].get("bias_instability") for channel in self.channels]
+        shown = [
+            None if stepped else terms
+            for terms, stepped in zip(self.of_bias, self.stepped, strict=True)
+        ]
+        pairs = zip(shown, stated, strict=True)
+        drifts = of_one_design([drift_of(*pair, self.seconds) for pair in pairs], self.of_bias)
+        for channel, drift, figure in zip(self.channels, drifts, stated, strict=True):
+            own: dict[str, float | None] = {**drift, "data_sheet": figure}
             if channel in self.quantised:
                 own["quantisation"] = self.quantised[channel].quantisation
             if channel in self.filtered:

@@ -14,6 +14,7 @@ from inertial.physics.motion import turned_between
 from inertial.signal.axis_permutations import AS_NAMED, Permutation
 from inertial.signal.rests_and_motions import (
     BinStretch,
+    level_of_each_rest,
     moving,
     rest_level,
     shaken_bins,
@@ -160,12 +161,13 @@ def divide(
     `swings`: whether a table moves, which swings on when it is stopped.
     """
     ways = []
-    above_noise = moving(binned.rates, binned.forces, level, noise)
     for lowest in (threshold, noise):
         # Where gravity is another one after a pause of the recording, the IMU was moved in it.
         moves = moving(binned.rates, binned.forces, level, lowest)
         moves |= binned.beside_pauses | binned.beside_jumps
         divided = stretches(moves, binned.bin_seconds, binned.forces)
+        levels = level_of_each_rest(divided, binned.rates, level, noise)
+        above_noise = moving(binned.rates, binned.forces, levels, noise)
         above = above_noise | shaken_bins(divided, binned.forces, binned.quantum[:3])
         divided = with_slow_ends(divided, above, binned.bin_seconds, swings=swings)
         ways.append((divided, observe(binned, divided, level)))

@@ -293,3 +293,11 @@ def test_a_line_in_time_is_removed_from_the_accelerometers_too():
     left = (quiet - truth).std(axis=0)
     assert before[0] > 2 * noise / np.sqrt(long)
     assert (left < 0.1 * noise / np.sqrt(long)).all()
+
+
+def test_of_a_table_that_is_simulated_at_rest_rounding_is_no_rate():
+    """Angles that change by rounding alone have no order: of half the sample rate it is endless."""
+    *made, last = turns(9)
+    standing = replace(last, angle=last.angle[0] + 1e-16 * np.arange(len(last.angle)))
+    assert np.isnan(standing.rate)
+    assert not said([*made, standing])["findings"]
