@@ -213,10 +213,7 @@ class Estimates:
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """The tables, with their columns even where there are no rows."""
-        frames = {
-            name: pd.DataFrame(rows) if rows else TABLES[name].empty()
-            for name, rows in self.rows.items()
-        }
+        frames = {name: TABLES[name].frame(rows) for name, rows in self.rows.items()}
         empty = tables.COVARIANCE.empty()
         return frames | {"covariance": pd.concat(self.covariances) if self.covariances else empty}
 

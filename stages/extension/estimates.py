@@ -114,8 +114,6 @@ class Solved:
             "scatter_seconds": scatter_seconds,
             "unit": UNIT[self.stage],
             "random_walk": self.random_walk,
-            "random_walk_sigma": None,
-            "earth_rate_up": None,
         }
 
 
