@@ -123,7 +123,7 @@ class Splitting:
         found = evidence(present, self._effects).total
         column = {name: i for i, name in enumerate(found.names)}
         searched = [
-            searched_effect(name, *[_columns(effect, column) for effect in family])
+            searched_effect(name, *[[column[own] for own in effect.columns] for effect in family])
             for name, family in self._families.items()
         ]
         others = [(name, _place(self._families[name], at)) for name, at in of.others]
@@ -247,10 +247,6 @@ class Splitting:
 def _campaign(data: CampaignData) -> Campaign:
     """The equations as the stage criticism has them: drifts are weighed against effects there."""
     return replace(campaign_of(data), drifts=dict.fromkeys(SENSORS, NO_DRIFT))
-
-
-def _columns(effect: Effect, column: dict[str, int]) -> list[int]:
-    return [column[name] for name in effect.columns]
 
 
 def _place(family: Sequence[Effect], at: float | None) -> int:

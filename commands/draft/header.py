@@ -28,7 +28,7 @@ from inertial.estimation.multi_position import (
 )
 from inertial.estimation.scatter_and_random_walk import with_scatter
 from inertial.signal.axis_permutations import Permutation
-from inertial.text.messages import _, plural
+from inertial.text.messages import _, first_of, plural
 from inertial.text.numbers import significant, whole
 from inertial.text.parameters import AXES
 
@@ -489,4 +489,4 @@ def recorded_on(kinds: Sequence[Kind]) -> tuple[str, RawLog] | None:
 def names_of_logs(kind: Kind) -> str:
     """The names of its files, of many the first."""
     names = list(dict.fromkeys(log.path.name for part in kind.parts for log in part.logs))
-    return ", ".join(names[:4]) + (_(" and {more} more", more=len(names) - 4) if names[4:] else "")
+    return first_of(names, 4)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 
 import numpy as np
 
@@ -200,7 +201,9 @@ def most_moved(
         columns = iter(np.abs(shifts).T)
         for own in found:
             for i, before in enumerate(own):
-                own[i] = max(before, _largest(sensor, names, next(columns)), key=_sigmas)
+                own[i] = max(
+                    before, _largest(sensor, names, next(columns)), key=attrgetter("sigmas")
+                )
     return found
 
 
@@ -211,7 +214,3 @@ def _largest(sensor: str, names: Sequence[str], sigmas: Array) -> Moved:
     own = names[worst]
     parameter = linear_names()[int(own)] if own.isdigit() else own
     return Moved(sensor, parameter, float(sigmas[worst]))
-
-
-def _sigmas(moved: Moved) -> float:
-    return moved.sigmas

@@ -100,7 +100,7 @@ class Estimates:
         reasons: dict[str, str],
     ) -> None:
         """The result of one method; a name in `reasons` is not determined, for that reason."""
-        ids = [self._id(method, name) for name in names]
+        ids = [f"{self.stage}/{with_mount(method, self.mount)}/{name}" for name in names]
         sigma = np.sqrt(np.diag(covariance))
         for i, name in enumerate(names):
             unit, frame, meaning = described(self.stage, name, by_hand=method == FREE)
@@ -127,9 +127,6 @@ class Estimates:
         """The columns that say whose estimate a row holds."""
         key = {"mount": self.mount, "sensor": SENSOR_OF[self.stage], "method": method}
         return key | ({"quantity": quantity} if quantity else {})
-
-    def _id(self, method: str, name: str) -> str:
-        return f"{self.stage}/{with_mount(method, self.mount)}/{name}"
 
     def add_triad(self, method: str, estimate: Estimate, reasons: dict[str, str]) -> None:
         """The twelve unknowns of three sensors, and the polar decomposition of M."""
@@ -216,10 +213,7 @@ class Estimates:
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """The tables, with their columns even where there are no rows."""
-        frames = {
-            name: pd.DataFrame(rows) if rows else TABLES[name].empty()
-            for name, rows in self.rows.items()
-        }
+        frames = {name: TABLES[name].frame(rows) for name, rows in self.rows.items()}
         empty = tables.COVARIANCE.empty()
         return frames | {"covariance": pd.concat(self.covariances) if self.covariances else empty}
 

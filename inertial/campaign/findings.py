@@ -57,7 +57,7 @@ class Detection:
 
 def table_of(findings: Sequence[Finding]) -> pd.DataFrame:
     """The findings table, which may be empty."""
-    return pd.DataFrame([asdict(f) for f in findings]) if findings else FINDINGS.empty()
+    return FINDINGS.frame([asdict(finding) for finding in findings])
 
 
 def masks_of(detections: Sequence[Detection]) -> pd.DataFrame:
@@ -77,7 +77,7 @@ def masks_of(detections: Sequence[Detection]) -> pd.DataFrame:
         for log, event in each.events
         for channel in event.channels or (None,)
     ]
-    return pd.DataFrame(rows) if rows else MASKS.empty()
+    return MASKS.frame(rows)
 
 
 def detections_of(

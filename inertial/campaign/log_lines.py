@@ -7,16 +7,8 @@ import numpy as np
 import pandas as pd
 
 from inertial.campaign.masked_samples import Columns, pieces
-from inertial.campaign.records import Part, rows_of
+from inertial.campaign.records import TURNING, Part, rows_of
 from inertial.tables.parquet import Stream
-
-OF_TURN = (
-    "spin-up",
-    "steady",
-    "spin-down",
-    "settling",
-    "turning",
-)  # phases in which the table turns
 
 
 @dataclass(frozen=True)
@@ -72,7 +64,7 @@ def used_phases(
     recorded = dict(zip(manoeuvres["manoeuvre"], manoeuvres["recorded"], strict=True))
     used: dict[Part, list[UsedPhase]] = {part: [] for part in parts}
     for (manoeuvre, phase, log), rows in blocks.groupby(["manoeuvre", "phase", "log"], sort=False):
-        whole = phase == "steady" if recorded.get(manoeuvre) == "steady" else phase in OF_TURN
+        whole = phase == "steady" if recorded.get(manoeuvre) == "steady" else phase in TURNING
         candidates = [Part(str(manoeuvre), str(phase)), *([Part(str(manoeuvre))] if whole else [])]
         first, after = int(rows["from_record"].min()), int(rows["to_record"].max())
         records = RecordRange(str(log), first, after)

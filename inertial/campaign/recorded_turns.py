@@ -10,7 +10,7 @@ import numpy as np
 from inertial.arrays import Array
 from inertial.campaign.encoder import windows_of
 from inertial.campaign.noise_levels import NoiseLevels
-from inertial.campaign.records import Manoeuvre, Performed
+from inertial.campaign.records import TURNING, Manoeuvre, Performed
 from inertial.campaign.static_positions import NO_BLOCKS, Blocks, by_manoeuvre
 from inertial.estimation.gyroscope_observations import Gap
 from inertial.estimation.noise_model import sigma_of_mean
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from inertial.campaign.campaign_data import CampaignData
 
 
-TURNING = ("spin-up", "steady", "spin-down", "settling", "turning")
 MIN_REST_SHARE = 0.1  # of the time of a turn, that its rests last to show the bias in it
 MAX_RATE_SHARE = 0.5  # of what an angle lacks, by which the rate is less where samples are lost
 

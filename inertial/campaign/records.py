@@ -13,6 +13,8 @@ from inertial.text.messages import _
 
 MAX_NAMED = 5  # manoeuvres that are left out for the same reason
 
+# Phases in which the table turns.
+TURNING = ("spin-up", "steady", "spin-down", "settling", "turning")
 Row = dict[str, Any]
 Item = TypeVar("Item")
 Group = TypeVar("Group")

@@ -48,7 +48,7 @@ def references_of(campaign: Row, known: Iterable[Row], manoeuvres: Iterable[Row]
     values = {row["quantity"]: row["value"] for row in known}
     place = (campaign["latitude"], campaign["height"])
     sources = {
-        source: " ".join([source, *map(_stated, (*place, values[quantity]))])
+        source: " ".join([source, *(f"{each:.{DIGITS}g}" for each in (*place, values[quantity]))])
         for source, quantity in QUANTITIES.items()
         if None not in (*place, values.get(quantity))
     }
@@ -71,7 +71,3 @@ def reference_rows(references: References, budget: Iterable[Row]) -> list[Row]:
         for row in budget
         if row["source"] in references.sources
     ]
-
-
-def _stated(value: float) -> str:
-    return f"{value:.{DIGITS}g}"

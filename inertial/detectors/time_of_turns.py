@@ -1,6 +1,6 @@
 """The time of turns by the plan: its unit, the sampling rate, and samples that are lost."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -255,22 +255,13 @@ class LostSamplesOfTurns(PlanDetector):
 
     def describe(self, deviation: Deviation, recorded: Recorded) -> Description:
         short = deviation.facts
-        listed = [
-            _(
-                "{name} ({far}° of {planned}°)",
-                name=recorded.name[i],
-                far=fixed(float(np.degrees(recorded.moved[i])), 2),
-                planned=fixed(float(np.degrees(recorded.angle[i])), 0),
-            )
-            for i in short[:MAX_LISTED]
-        ]
         return Description(
             _(
                 "{turns} have too small an angle for their rate, which is as in the others: "
                 "{listed}. Samples are lost there that the stamps do not show, or the table "
                 "stopped before.",
                 turns=counted(len(short), "turn"),
-                listed=", ".join(listed),
+                listed=", ".join(angles_in_words(recorded, short[:MAX_LISTED])),
             ),
             _("Taken as planned, they make an asymmetry of the gyros, or wrong scale factors."),
             _(
@@ -278,3 +269,16 @@ class LostSamplesOfTurns(PlanDetector):
                 "the table, state the degrees through which it turned."
             ),
         )
+
+
+def angles_in_words(recorded: Recorded, turns: Iterable[int]) -> list[str]:
+    """How far each of some turns goes, of the planned angle."""
+    return [
+        _(
+            "{name} ({far}° of {planned}°)",
+            name=recorded.name[i],
+            far=fixed(float(np.degrees(recorded.moved[i])), 2),
+            planned=fixed(float(np.degrees(recorded.angle[i])), 0),
+        )
+        for i in turns
+    ]

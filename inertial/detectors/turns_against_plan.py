@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from inertial.arrays import finite_or_none
-from inertial.detectors.time_of_turns import thousands_longer, time_ratio
+from inertial.detectors.time_of_turns import angles_in_words, thousands_longer, time_ratio
 from inertial.signal.detector import Description
 from inertial.signal.plan_detector import (
     Deviation,
@@ -367,22 +367,13 @@ class TurnTooFar(PlanDetector):
                     cure=_cure(recorded, same),
                 ),
             )
-        angles = [
-            _(
-                "{name} ({far}° of {planned}°)",
-                name=recorded.name[i],
-                far=fixed(float(np.degrees(recorded.moved[i])), 2),
-                planned=fixed(float(np.degrees(recorded.angle[i])), 0),
-            )
-            for i in same
-        ]
         _rate, angle = turn_ratios(recorded)
         return Description(
             _(
                 "{turns} go {ratio} times as far as planned: {listed}.",
                 turns=counted(len(same), "turn"),
                 ratio=significant(float(np.median(angle[same])), 3),
-                listed=listed(angles),
+                listed=listed(angles_in_words(recorded, same)),
             ),
             if_taken(recorded, same[0]),
             _(

@@ -4,30 +4,21 @@ To add an effect, write its file beside this one and add it here; the tests, the
 and the report take it from the catalogue.
 """
 
-from inertial.effects.accel_bias_jump import AccelBiasJump
-from inertial.effects.accel_bias_ramp import AccelBiasRamp
-from inertial.effects.accel_bias_temperature import AccelBiasTemperature
 from inertial.effects.accel_cross_products import AccelCrossProducts
 from inertial.effects.accel_cubic import AccelCubic
 from inertial.effects.accel_hysteresis import AccelHysteresis
 from inertial.effects.accel_latency import AccelLatency
 from inertial.effects.accel_quadratic import AccelQuadratic
-from inertial.effects.accel_saturation import AccelSaturation
-from inertial.effects.accel_scale_asymmetry import AccelScaleAsymmetry
-from inertial.effects.accel_scale_jump import AccelScaleJump
-from inertial.effects.accel_scale_ramp import AccelScaleRamp
-from inertial.effects.accel_scale_temperature import AccelScaleTemperature
 from inertial.effects.accel_vibration_rectification import AccelVibrationRectification
-from inertial.effects.accel_warm_up import AccelWarmUp
+from inertial.effects.bias_jump import BiasJump
 from inertial.effects.bias_of_position import BiasOfPosition
+from inertial.effects.bias_ramp import BiasRamp
+from inertial.effects.bias_temperature import BiasTemperature
 from inertial.effects.clock_scale import ClockScale
 from inertial.effects.earth_rate_omitted import EarthRateOmitted
 from inertial.effects.gravity_error import GravityError
 from inertial.effects.gyro_accel_misalignment import GyroAccelMisalignment
-from inertial.effects.gyro_bias_jump import GyroBiasJump
-from inertial.effects.gyro_bias_ramp import GyroBiasRamp
 from inertial.effects.gyro_bias_sense import GyroBiasSense
-from inertial.effects.gyro_bias_temperature import GyroBiasTemperature
 from inertial.effects.gyro_cross_axis_squares import GyroCrossAxisSquares
 from inertial.effects.gyro_dead_band import GyroDeadBand
 from inertial.effects.gyro_flicker import GyroFlicker
@@ -40,16 +31,10 @@ from inertial.effects.gyro_rate_products import GyroRateProducts
 from inertial.effects.gyro_relaxation import GyroRelaxation
 from inertial.effects.gyro_relaxation_braking import GyroRelaxationBraking
 from inertial.effects.gyro_relaxation_sense import GyroRelaxationSense
-from inertial.effects.gyro_saturation import GyroSaturation
-from inertial.effects.gyro_scale_asymmetry import GyroScaleAsymmetry
 from inertial.effects.gyro_scale_cubic import GyroScaleCubic
 from inertial.effects.gyro_scale_g_dependence import GyroScaleGDependence
-from inertial.effects.gyro_scale_jump import GyroScaleJump
 from inertial.effects.gyro_scale_quadratic import GyroScaleQuadratic
-from inertial.effects.gyro_scale_ramp import GyroScaleRamp
-from inertial.effects.gyro_scale_temperature import GyroScaleTemperature
 from inertial.effects.gyro_vibration_rectification import GyroVibrationRectification
-from inertial.effects.gyro_warm_up import GyroWarmUp
 from inertial.effects.heading_error import HeadingError
 from inertial.effects.latitude_error import LatitudeError
 from inertial.effects.latitude_sign import LatitudeSign
@@ -59,6 +44,11 @@ from inertial.effects.mounting_shift import MountingShift
 from inertial.effects.mounting_slip import MountingSlip
 from inertial.effects.oscillation import Oscillation
 from inertial.effects.restarts import Restarts
+from inertial.effects.saturation import Saturation
+from inertial.effects.scale_asymmetry import ScaleAsymmetry
+from inertial.effects.scale_jump import ScaleJump
+from inertial.effects.scale_ramp import ScaleRamp
+from inertial.effects.scale_temperature import ScaleTemperature
 from inertial.effects.size_effect import SizeEffect
 from inertial.effects.table_angle_scale import TableAngleScale
 from inertial.effects.table_axis_error import TableAxisError
@@ -79,6 +69,7 @@ from inertial.effects.temperature_model import TemperatureModel
 from inertial.effects.thermal_hysteresis import ThermalHysteresis
 from inertial.effects.tumble_eccentricity import TumbleEccentricity
 from inertial.effects.turn_angle_error import TurnAngleError
+from inertial.effects.warm_up import WarmUp
 from inertial.physics.effect import Effect
 
 CATALOGUE: dict[str, Effect] = {
@@ -90,17 +81,17 @@ CATALOGUE: dict[str, Effect] = {
         GyroRateProducts(),
         GyroCrossAxisSquares(),
         GyroVibrationRectification(),
-        GyroScaleAsymmetry(),
+        ScaleAsymmetry("gyro"),
         GyroScaleQuadratic(),
         GyroScaleCubic(),
         GyroScaleGDependence(),
-        GyroBiasRamp(),
-        GyroScaleRamp(),
-        GyroWarmUp(),
-        GyroBiasTemperature(),
-        GyroScaleTemperature(),
-        GyroBiasJump(),
-        GyroScaleJump(),
+        BiasRamp("gyro"),
+        ScaleRamp("gyro"),
+        WarmUp("gyro"),
+        BiasTemperature("gyro"),
+        ScaleTemperature("gyro"),
+        BiasJump("gyro"),
+        ScaleJump("gyro"),
         BiasOfPosition("gyro"),
         GyroRandomWalk(),
         GyroFlicker(),
@@ -110,24 +101,24 @@ CATALOGUE: dict[str, Effect] = {
         GyroRelaxation(),
         GyroRelaxationSense(),
         GyroRelaxationBraking(),
-        GyroSaturation(),
+        Saturation("gyro"),
         GyroLatency(),
         # accelerometers
         AccelQuadratic(),
         AccelCubic(),
         AccelCrossProducts(),
-        AccelScaleAsymmetry(),
-        AccelBiasRamp(),
-        AccelScaleRamp(),
-        AccelWarmUp(),
-        AccelBiasTemperature(),
-        AccelScaleTemperature(),
-        AccelBiasJump(),
-        AccelScaleJump(),
+        ScaleAsymmetry("accel"),
+        BiasRamp("accel"),
+        ScaleRamp("accel"),
+        WarmUp("accel"),
+        BiasTemperature("accel"),
+        ScaleTemperature("accel"),
+        BiasJump("accel"),
+        ScaleJump("accel"),
         BiasOfPosition("accel"),
         AccelVibrationRectification(),
         AccelHysteresis(),
-        AccelSaturation(),
+        Saturation("accel"),
         AccelLatency(),
         # the case
         LeverArm(),

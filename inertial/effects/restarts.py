@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from inertial.arrays import Array
+from inertial.effects.bias_jump import SIZES, TYPICAL
 from inertial.physics.drift import after, without_clock
 from inertial.physics.effect import (
     Constant,
@@ -13,19 +14,12 @@ from inertial.physics.effect import (
     Reading,
     Term,
     Truth,
-    by_grade,
     parameters_by_axis,
 )
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
-from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 
 MAX_RESTARTS = 6  # in one campaign: nobody switches off and on at each of more gaps
-TYPICAL = {"gyro": ("rad/s", DEGREE_PER_HOUR), "accel": ("m/s²", 1e-5 * STANDARD_GRAVITY)}
-SIZES = {
-    "gyro": by_grade(DEGREE_PER_HOUR, 0.3, 10, 30, 100),
-    "accel": by_grade(1e-6 * STANDARD_GRAVITY, 20, 100, 200, 1000),
-}
 MEANINGS = {  # of b0, b1 …
     "gyro": _("further bias of the {axis} gyro in this run; b0: before the first restart"),
     "accel": _(

@@ -4,7 +4,7 @@ import numpy as np
 
 from inertial.arrays import Array
 from inertial.physics.drift import without_clock, without_temperature
-from inertial.physics.effect import Effect, Reading, Scan, Truth, parameters_by_axis
+from inertial.physics.effect import OfEither, OfSensor, Reading, Scan, Truth, by_grade
 from inertial.physics.motion import Motion
 from inertial.sensors import PLURAL
 from inertial.text.messages import _
@@ -13,18 +13,10 @@ from inertial.text.units import DEGREE_PER_HOUR, STANDARD_GRAVITY
 WIDTHS = (1.0, 2.0, 4.0, 8.0)  # K
 MIN_RETURN = 5.0  # K, by which the temperature must go back on its way
 ONE_WAY = _("The temperature goes one way only, so warming cannot be compared with cooling.")
-UNITS = {"accel": ("m/s²", 1e-5 * STANDARD_GRAVITY), "gyro": ("rad/s", 0.1 * DEGREE_PER_HOUR)}
-
-MEANINGS = {
-    "gyro": _("half the difference of the bias of the {axis} gyro after warming and after cooling"),
-    "accel": _(
-        "half the difference of the bias of the {axis} accelerometer after warming and after "
-        "cooling"
-    ),
-}
+CAUSE = _("the biases of the {sensors} are others after warming and after cooling")
 
 
-class ThermalHysteresis(Effect):
+class ThermalHysteresis(OfEither):
     """Reading += h (T − p(T)) / w: +h after long warming, −h after long cooling.
 
     p: the play operator of half width w, moved by T once it touches one of its sides. Told from a
@@ -32,21 +24,27 @@ class ThermalHysteresis(Effect):
     time by turning back more than once.
     """
 
+    kind, letter = "thermal_hysteresis", "h"
     source = "Krasnosel'skii and Pokrovskii 1989, Systems with hysteresis, section 2"
     scan = Scan("half_width", "K", _("half of the change by which it turns over"))
     stays = _("it depends on which way the temperature came")
-
-    def __init__(self, sensor: str) -> None:
-        unit, size = UNITS[sensor]
-        self.sensor = sensor
-        self.name = hysteresis_name(sensor)
-        self.cause = _(
-            "the biases of the {sensors} are others after warming and after cooling",
-            sensors=PLURAL[sensor],
-        )
-        self.sizes = dict.fromkeys(("fog", "tactical", "mti", "consumer"), size)
-        self.parameters = parameters_by_axis("h", unit, size, MEANINGS[sensor])
-
+    gyro = OfSensor(
+        _("half the difference of the bias of the {axis} gyro after warming and after cooling"),
+        "rad/s",
+        0.1 * DEGREE_PER_HOUR,
+        by_grade(0.1 * DEGREE_PER_HOUR, 1, 1, 1, 1),
+        CAUSE.format(sensors=PLURAL["gyro"]),
+    )
+    accel = OfSensor(
+        _(
+            "half the difference of the bias of the {axis} accelerometer after warming and after "
+            "cooling"
+        ),
+        "m/s²",
+        1e-5 * STANDARD_GRAVITY,
+        by_grade(1e-5 * STANDARD_GRAVITY, 1, 1, 1, 1),
+        CAUSE.format(sensors=PLURAL["accel"]),
+    )
     thinkable = 1e4
 
     def blind(self, motion: Motion) -> str:
@@ -75,8 +73,3 @@ def turned_over(motion: Motion, width: float) -> Array:
     for i, here in enumerate(course):
         before = play[i] = min(max(before, here - width), here + width)
     return np.asarray((course - play)[place] / width)
-
-
-def hysteresis_name(sensor: str) -> str:
-    """The name of the effect on a sensor, gyro or accel."""
-    return f"{sensor}_thermal_hysteresis"

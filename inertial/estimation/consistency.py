@@ -12,6 +12,13 @@ from inertial.estimation.regression import basis
 MIN_ONE_MINUS_LEVERAGE = 1e-9  # below it a reading has a column of its own and fits itself
 
 
+def weighted_mean(values: Array, sigmas: Array) -> tuple[float, float, float]:
+    """Mean of values by their sigmas, its sigma, and the chi-squared of the values about it."""
+    weights = sigmas**-2
+    mean = float(np.average(values, weights=weights))
+    return mean, float(weights.sum() ** -0.5), float(weights @ (values - mean) ** 2)
+
+
 def normal_p_value(in_sigmas: float, degrees: float = np.inf) -> float:
     """Two-sided p-value of an error in units of its sigma.
 

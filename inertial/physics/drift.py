@@ -7,10 +7,8 @@ was switched off and on between, a warm-up begins anew.
 """
 
 from abc import abstractmethod
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import replace
-from itertools import pairwise
 from typing import Self
 
 import numpy as np
@@ -22,6 +20,7 @@ from inertial.physics.effect import (
     WARMEST,
     Constant,
     Effect,
+    OfEither,
     Reading,
     Scan,
     Truth,
@@ -29,9 +28,6 @@ from inertial.physics.effect import (
 from inertial.physics.motion import Motion
 from inertial.text.messages import _
 
-SETTLING_TIMES = (10.0, 3000.0)  # s, of τ: a shorter one is over before the first rest is
-ON = "on_"  # and a number: the constants of a warm-up that begins anew
-SETTLING_CANDIDATES = 11  # of τ; between two of them the trace changes by a tenth
 THERMOMETER_ERROR = 1.0  # K beyond the coldest and the warmest mean; resolution of many
 
 SLOPE_SHARE = 0.5  # of the thermometer's time constant, over which its slope is taken
@@ -44,13 +40,12 @@ NO_TEMPERATURE = _("No temperature is recorded.")
 NOT_EVERYWHERE = _("The temperature is not recorded everywhere.")
 
 
-class Drift(Effect):
+class Drift(OfEither):
     """A bias of each axis of a sensor, gyro or accel, that has a course in time.
 
     Its parameters are the sizes on x, y and z. `of_scale`: the scale factors have it, not the bias.
     """
 
-    sensor: str
     of_scale: bool = False
 
     @abstractmethod
@@ -73,73 +68,6 @@ class Ramp(Drift):
 
     def course(self, motion: Motion) -> Array:
         return motion.time
-
-
-class WarmUp(Drift):
-    """Reading += b exp(−t/τ), with t since the first sample or the last switch-on; τ is scanned.
-
-    Told from an even drift by slowing down. Only logs with a common clock show it, or logs that
-    each begin with a switch-on. Switched on earlier by T, the amplitude at the first sample is
-    exp(−T/τ) of the whole. After each stated switch-on it is the same again, as of an instrument
-    that has cooled down between.
-
-    `switched_on`: when it was switched on again, s since the first sample, where the motion does
-    not have it: after an export, or where the readings tell a restart that nobody stated.
-    """
-
-    switched_on: tuple[float, ...] = ()
-
-    cause = _("the sensor and its electronics warm up after they are switched on")
-    source = "IEEE Std 528-2019, 'warm-up time'"
-    scan = Scan("tau", "s", _("time constant of the settling"), smooth=True)
-
-    def blind(self, motion: Motion) -> str:
-        return "" if np.isfinite(motion.running).all() else NO_CLOCK
-
-    def grid(self, motion: Motion) -> Array:
-        return np.geomspace(*SETTLING_TIMES, SETTLING_CANDIDATES)
-
-    def course(self, motion: Motion) -> Array:
-        running, at = motion.running, np.array([0.0, *self.switched_on])
-        if self.switched_on:
-            on = at[np.clip(np.searchsorted(at, motion.time, side="right") - 1, 0, None)]
-            running = motion.time - on
-        return decayed(running, motion.seconds, self.value(motion))
-
-    def constants(self, motion: Motion) -> Sequence[Constant]:
-        again = self.switched_on or np.unique(motion.switched_on[motion.switched_on > 0])
-        meaning = _("when the instrument was switched on again, after the first sample")
-        return [
-            *super().constants(motion),
-            *(Constant(f"{ON}{i}", "s", meaning, float(at)) for i, at in enumerate(again, 1)),
-        ]
-
-    def with_constants(self, values: Mapping[str, float]) -> Self:
-        return super().with_constants(values).beginning_at(_switched_on(values))
-
-    def as_named(self, values: Mapping[str, float]) -> Effect:
-        effect = super().as_named(values)
-        return effect.beginning_at(_switched_on(values)) if isinstance(effect, WarmUp) else effect
-
-    @property
-    def key(self) -> tuple[object, ...]:
-        return *super().key, self.switched_on
-
-    def beginning_at(self, switched_on: Iterable[float]) -> Self:
-        """The same, that begins again at these times, s since the first sample."""
-        effect = copy(self)
-        effect.switched_on = tuple(sorted(switched_on))
-        names = [f"{ON}{i}" for i in range(1, len(effect.switched_on) + 1)]
-        if names:
-            steps = [f"(t > {names[0]}) * {names[0]}"]
-            steps += [f"(t > {at}) * ({at} - {before})" for before, at in pairwise(names)]
-            factor = f"exp(-(t - {' - '.join(steps)}) / tau)"
-            effect.terms = tuple(replace(term, factor=factor) for term in self.terms)
-        return effect
-
-
-def _switched_on(values: Mapping[str, float]) -> list[float]:
-    return [at for name, at in values.items() if name.startswith(ON)]
 
 
 def without_clock(motion: Motion) -> str:
@@ -165,12 +93,6 @@ def evenly(motion: Motion, count: int) -> Array:
 def after(motion: Motion, time: float) -> Array:
     """The share of each stretch after a time, (n,)."""
     return np.clip((motion.time - time) / motion.seconds + 0.5, 0.0, 1.0)
-
-
-def decayed(time: Array, seconds: Array, constant: float) -> Array:
-    """The mean of exp(−t/τ) over stretches about their middles, (n,), for the constant τ, s."""
-    half = seconds / (2 * constant)
-    return np.asarray(np.exp(-time / constant) * np.sinh(half) / half)
 
 
 def mean_temperature(motion: Motion, reference: float | None) -> Constant:
@@ -278,11 +200,6 @@ SHORT_RUNS = _("Each log holds so little that a bias of its own in each would ex
 MIN_VISITS = 2  # of a log, on average: of more manoeuvres the bias of one of them is no scatter
 BY_LOG = _("it sets in between two logs, and a reading does not tell of which it is")
 JUMP_TIMES = 72  # that are tried: a jump between two of them loses 2 to 4 % of its SNR²
-MIN_SENSED = 0.25  # of the most along an axis: what shows its scale factor
-NEVER_BOTH_WAYS = _(
-    "There is no time before and after which every axis is sensed both ways, by which a scale "
-    "factor that jumps is told from one that depends on direction, rate or attitude."
-)
 
 
 class SettingIn(Effect):
@@ -327,71 +244,7 @@ class SettingIn(Effect):
         return after(motion, at)
 
 
-class Jump(SettingIn, Drift):
-    """Reading += b H(t − t₀): a bias of each axis that jumps once; t₀ is scanned.
-
-    Unlike a drift it is instantaneous. Where logs without a common clock hold a manoeuvre or two,
-    biases of each run, which are a scatter of the manoeuvres, stand for it.
-    """
-
-    cause = _(
-        "stress is released, the electronics switch, or the instrument is knocked or restarted"
-    )
-    source = "Basseville & Nikiforov 1993, Detection of Abrupt Changes, chapter 2"
-    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
-    times = JUMP_TIMES
-
-    def blind(self, motion: Motion) -> str:
-        return super().blind(motion) or (SHORT_RUNS if of_short_runs(motion) else "")
-
-    def grid(self, motion: Motion) -> Array:
-        return np.zeros(0) if of_short_runs(motion) else super().grid(motion)
-
-    def course(self, motion: Motion) -> Array:
-        return self.since(motion)
-
-
 def of_short_runs(motion: Motion) -> bool:
     """Whether logs without a common clock hold hardly more than a manoeuvre each."""
     runs, visits = (len(np.unique(each)) for each in (motion.run, motion.visit))
     return bool(without_clock(motion)) and visits <= MIN_VISITS * runs
-
-
-def _ends(motion: Motion) -> tuple[Array, Array]:
-    """From when on, and until when, what sets in comes in or after each stretch, (n,) each."""
-    if without_clock(motion):
-        place = np.floor(motion.visit)
-        return place, place + 1
-    return motion.time - motion.seconds / 2, motion.time + motion.seconds / 2
-
-
-class ScaleJump(SettingIn):
-    """Reading_i += k_i H(t − t₀) times what is sensed along i: scale factors that jump once.
-
-    t₀ is scanned, over the times before and after which every axis is sensed both ways. Told from
-    a bias that jumps by the directions, from a drift of the scale factors by being instantaneous.
-    """
-
-    cause = _("the instrument is restarted, set to another range, or knocked")
-    source = "IEEE Std 528-2019, 'repeatability'"
-    sensor: str
-    scan = Scan("t0", "s", _("time of the jump since the first sample of all logs"))
-    times = JUMP_TIMES
-    thinkable = 10.0
-
-    def blind(self, motion: Motion) -> str:
-        return super().blind(motion) or ("" if len(self.grid(motion)) else NEVER_BOTH_WAYS)
-
-    def grid(self, motion: Motion) -> Array:
-        every = super().grid(motion)
-        sensed = motion.omega if self.sensor == "gyro" else motion.up
-        clear = np.abs(sensed) > MIN_SENSED * np.abs(sensed).max(axis=0)
-        begin, end = _ends(motion)
-        either_way = np.concatenate([clear & (way * sensed > 0) for way in (1, -1)], axis=1)
-        shown_before = np.where(either_way, end[:, None], np.inf).min(axis=0).max()
-        shown_after = np.where(either_way, begin[:, None], -np.inf).max(axis=0).min()
-        return np.asarray(every[(every >= shown_before) & (every <= shown_after)])
-
-    def reads(self, reading: Reading, truth: Truth, motion: Motion, values: Array) -> Reading:
-        sensed = truth.rate if self.sensor == "gyro" else truth.force
-        return reading.plus(self.sensor, self.since(motion)[:, None] * sensed * values)

@@ -305,6 +305,44 @@ class Effect(ABC):
         return [f"{self.label}.{parameter.name}" for parameter in self.parameters]
 
 
+@dataclass(frozen=True)
+class OfSensor:
+    """What of an effect on either sensor is one's own; `meaning`: of its parameter on an `{axis}`.
+
+    `cause`, `source`: empty where they are the same of both.
+    """
+
+    meaning: str
+    unit: str
+    typical: float
+    sizes: Mapping[str, float]
+    cause: str = ""
+    source: str = ""
+
+
+class OfEither(Effect):
+    """An effect that gyros and accelerometers have alike, on each axis by itself.
+
+    `kind`: its name after that of the sensor; `letter`: of its parameters; `factor`: of its terms,
+    if it has any: those of a scale factor take the truth along the sensor's own axes, s_i.
+    """
+
+    kind: str
+    letter: str
+    factor: str = ""
+    gyro: OfSensor
+    accel: OfSensor
+
+    def __init__(self, sensor: str) -> None:
+        own: OfSensor = getattr(self, sensor)
+        self.sensor, self.name, self.sizes = sensor, f"{sensor}_{self.kind}", own.sizes
+        self.cause, self.source = own.cause or self.cause, own.source or self.source
+        self.parameters = parameters_by_axis(self.letter, own.unit, own.typical, own.meaning)
+        if self.factor:
+            self.terms = on_each_axis(sensor, f"{self.letter}_{{i}}", self.factor)
+        self.own_axis = sensor if "s_{i}" in self.factor else ""
+
+
 class OfSensed(Effect):
     """An effect on the readings of a sensor, gyro or accel, by what is sensed at the moment.
 

@@ -15,7 +15,7 @@ from inertial.signal.plan_detector import (
     confirming,
     rivals_in_words,
 )
-from inertial.text.messages import _, listed
+from inertial.text.messages import _, first_of, listed
 from inertial.text.numbers import counted, significant
 from inertial.text.parameters import AXES
 
@@ -123,8 +123,7 @@ def _sentence(misread: Misread, recorded: Recorded) -> str:
             else _(" So their triad is left-handed, which no mounting does."),
         )
     number = len(misread.explains)
-    names = ", ".join(misread.explains[:MAX_NAMES])
-    names += _(" and {explains} more", explains=number - MAX_NAMES) if number > MAX_NAMES else ""
+    names = first_of(misread.explains, MAX_NAMES)
     return _(
         "Of the {sensor}, {where}, {axes}: only so {agree} with the plan ({names}). {misread}",
         sensor=sensor,

@@ -301,3 +301,9 @@ def listed(names: Sequence[str], last: str = "and") -> str:
     if len(names) < 2:
         return "".join(names)
     return _(", ").join(names[:-1]) + (_(" and ") if last == "and" else _(" or ")) + names[-1]
+
+
+def first_of(names: Sequence[str], most: int) -> str:
+    """Names, of which those beyond `most` are only counted: a, b and 3 more."""
+    rest = len(names) - most
+    return ", ".join(names[:most]) + (_(" and {more} more", more=rest) if rest > 0 else "")

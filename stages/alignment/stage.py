@@ -339,11 +339,8 @@ class Case:
         return self._common | {
             "method": method,
             "quantity": quantity,
-            "direction": None,
             "value": value,
             "sigma": sigma,
-            "per_bias": None,
-            "known": None,
             "unit": unit,
         }
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 import pandas as pd
@@ -59,7 +60,7 @@ def mounted(
             result[log] = [Mounted(0, ALL, own[selected[0]], step)]
             continue
         runs: list[tuple[int, int, int]] = []
-        for row in sorted(rows_of(segments[segments["log"] == log]), key=_start):
+        for row in sorted(rows_of(segments[segments["log"] == log]), key=itemgetter("from_record")):
             on = mount[row["manoeuvre"]]
             if runs and runs[-1][0] == on:
                 runs[-1] = (on, runs[-1][1], max(runs[-1][2], row["to_record"]))
@@ -67,10 +68,6 @@ def mounted(
                 runs.append((on, row["from_record"], row["to_record"]))
         result[log] = [Mounted(first, after, own[on], step) for on, first, after in runs]
     return result
-
-
-def _start(row: Mapping[str, int]) -> int:
-    return row["from_record"]
 
 
 def held(force: Array, before: Array) -> Array:

@@ -16,6 +16,7 @@ from inertial.physics.motion import Motion
 from inertial.sensors import SENSORS
 from inertial.tables import AXES
 from inertial.text.messages import _
+from stages.criticism.bias_drift import TYPICAL_SIZE
 from stages.criticism.finding_rows import TableRow, finding_row, snr_of
 from stages.criticism.selection import Selection
 
@@ -24,7 +25,6 @@ CAUSE_PRICE = 10.0  # of −2 log of the odds: one campaign in 150 has a cause o
 MIN_GAIN = 10.0  # of −2 log of the evidence, over all that is named
 MIN_SIGMAS = 3.0  # by which half of the parameters differ that are known to their typical size
 PRIOR_SIZE = 30.0  # of a parameter, in its typical size
-TYPICAL_BIAS = {"gyro": ("rad/s", 5e-6), "accel": ("m/s²", 1e-4)}
 TYPICAL_TERM = 1e-4  # of a scale factor or cross term
 
 SENTENCE = _(
@@ -52,7 +52,7 @@ class OfAnotherImu(Effect):
             Parameter(f"{sensor}_{name}_{axis}", unit, size, "")
             for sensor in SENSORS
             for name, (unit, size) in (
-                ("c", TYPICAL_BIAS[sensor]),
+                ("c", TYPICAL_SIZE[sensor]),
                 *((f"d{other}", ("1", TYPICAL_TERM)) for other in AXES),
             )
             for axis in AXES

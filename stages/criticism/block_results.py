@@ -10,6 +10,7 @@ from inertial.campaign.equations import NO_GYROS, Campaign
 from inertial.effects import AT_GAPS, KNOWN, LAWS, TEMPERATURE_MODELS
 from inertial.effects.law import Law
 from inertial.effects.restarts import Restarts
+from inertial.effects.warm_up import WarmUp
 from inertial.estimation.effect_information import whitening
 from inertial.model_selection.cause import (
     FOUND,
@@ -20,7 +21,7 @@ from inertial.model_selection.cause import (
 )
 from inertial.model_selection.detection_limits import NOT_EXCITED, VISIBLE
 from inertial.model_selection.size_after_selection import corrected
-from inertial.physics.drift import SettingIn, WarmUp, without_clock
+from inertial.physics.drift import SettingIn, without_clock
 from inertial.physics.effect import Effect
 from inertial.physics.site import EARTH_RATE
 from inertial.sensors import PLURAL, UNITS

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from inertial.campaign.effect_sentences import Estimated, effect_sentence
+from inertial.effects.bias_jump import BiasJump
 from inertial.effects.latitude_sign import LatitudeSign
 from inertial.effects.law import Law
 from inertial.effects.temperature_model import TemperatureModel
+from inertial.effects.warm_up import WarmUp
 from inertial.model_selection.cause import Cause, EffectTest
 from inertial.model_selection.detection_limits import (
     ABSORBED,
@@ -16,7 +18,7 @@ from inertial.model_selection.detection_limits import (
     VISIBLE,
     Visible,
 )
-from inertial.physics.drift import Drift, Jump, OfTemperature, SettingIn, WarmUp
+from inertial.physics.drift import Drift, OfTemperature, SettingIn
 from inertial.physics.effect import Effect
 from inertial.text.cause_names import in_words
 from inertial.text.messages import _, listed
@@ -268,7 +270,7 @@ def action_against(effect: Effect | None, *, timed: bool = True, free: bool = Fa
     if effect is None:
         action = ACTION_PER_FREE_RUN if free else ACTION_PER_RUN
         return action if timed else action + NO_COMMON_TIME
-    if isinstance(effect, Jump):
+    if isinstance(effect, BiasJump):
         return ACTION_OF_FREE_CHANGE if free else ACTION_OF_JUMP
     if isinstance(effect, LatitudeSign):
         return ACTION_OF_GRAVITY_SIGN if free else ACTION_OF_LATITUDE_SIGN

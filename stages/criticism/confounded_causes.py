@@ -10,6 +10,7 @@ import numpy as np
 
 from inertial.campaign.effect_sentences import Estimated
 from inertial.campaign.hypotheses import JUMP_NOT_TESTABLE, SENSE_OF_TURNS
+from inertial.estimation.consistency import weighted_mean
 from inertial.estimation.probability import chi2_sf
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS
 from inertial.sensors import PLURAL, SENSORS
@@ -105,10 +106,9 @@ def shared_asymmetry(estimates: Sequence[Estimated], mount: str) -> Iterator[Tab
     if len(estimates) != 3 or any(one.value is None or not one.sigma for one in estimates):
         return
     values = np.array([one.value for one in estimates], np.float64)
-    weights = np.array([one.sigma for one in estimates], np.float64) ** -2
-    mean, sigma = float(values @ weights / weights.sum()), float(weights.sum() ** -0.5)
-    spread = float((values - mean) ** 2 @ weights)
-    if (values**2 * weights < MIN_SIGMAS**2).any() or chi2_sf(spread, 2) < MIN_P:
+    sigmas = np.array([one.sigma for one in estimates], np.float64)
+    mean, sigma, spread = weighted_mean(values, sigmas)
+    if (np.abs(values) < MIN_SIGMAS * sigmas).any() or chi2_sf(spread, 2) < MIN_P:
         return
     size = significant(1e6 * abs(mean), 3)
     yield finding_row(

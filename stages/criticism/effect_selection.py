@@ -144,7 +144,8 @@ def select_effects(
     for number, walk in enumerate(campaign.solution.random_walks):
         size = walk or replacing_walk(selection, number)
         if size and SENSORS[number] in selection.evidence.labels:  # else it has no equations
-            walks = _replaced(selection.random_walks, number, size)
+            gyro, accel = selection.random_walks
+            walks = (size, accel) if number == 0 else (gyro, size)
             selection = weighed(selection, with_walks(walks), number)
     if any(selection.random_walks) and selection.effects:
         likely = likely_random_walks(selection.campaign, selection.fitted)
@@ -160,11 +161,6 @@ def select_effects(
     named = members_of(selection)
     others = tuple(member for member in selection.alternatives if member not in named)
     return consistent_with_walks(replace(selection, alternatives=others))
-
-
-def _replaced(walks: tuple[float, float], number: int, size: float) -> tuple[float, float]:
-    """The random walks with that of one sensor replaced."""
-    return (size, walks[1]) if number == 0 else (walks[0], size)
 
 
 def _select(

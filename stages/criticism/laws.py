@@ -48,7 +48,9 @@ def with_laws(
         found = find_law(selection, sensor, level)
         if found is None:
             continue
-        before = [e for e in selection.effects if e.name in TEMPERATURE_MODELS or _is_law(e)]
+        before = [
+            e for e in selection.effects if e.name in TEMPERATURE_MODELS or isinstance(e, Law)
+        ]
         again = select_with_scatter(campaign, effects, level, degrees, [*before, found.law])
         checked = structure_tests(again.campaign, again.fitted, degrees, structure_level)
         if not checked.of(sensor):
@@ -70,10 +72,6 @@ def unexplained(selection: Selection, tested: Tested) -> list[str]:
         for sensor, walk in walks
         if walk or tested.of(sensor) or drift_name(sensor) in drifts or own.count(sensor) > 1
     ]
-
-
-def _is_law(effect: Effect) -> bool:
-    return isinstance(effect, Law)
 
 
 def _named(selection: Selection, found: FoundLaw, known: dict[str, Cause]) -> Selection:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from inertial.arrays import Array
 from inertial.campaign.steady_residuals import SteadyTurn
+from inertial.estimation.consistency import weighted_mean
 from inertial.estimation.periodic_in_angle import Orders, log_chance, log_chance_of_own
 from inertial.estimation.periodic_in_time import Line, Taken, phasor, pooled, strongest
 from inertial.physics.motion import cross
@@ -70,17 +71,12 @@ class MeanLine:
 
 def combined(same: Sequence[TurnLine]) -> MeanLine:
     """The mean of lines of several turns about the same axis at the same frequency."""
-    frequency = _weighted([(o.line.frequency, o.line.sigma_frequency) for o in same])
-    amplitude = _weighted([(o.line.amplitude, o.line.sigma_amplitude) for o in same])
-    names = tuple(line.manoeuvre for line in same)
+    lines = [one.line for one in same]
+    frequencies = np.array([(line.frequency, line.sigma_frequency) for line in lines]).T
+    amplitudes = np.array([(line.amplitude, line.sigma_amplitude) for line in lines]).T
+    frequency, amplitude = weighted_mean(*frequencies)[:2], weighted_mean(*amplitudes)[:2]
+    names = tuple(one.manoeuvre for one in same)
     return MeanLine(same[0].axis, names, *frequency, *amplitude)
-
-
-def _weighted(values: Sequence[tuple[float, float]]) -> tuple[float, float]:
-    """Mean of several values, each with its sigma, and the sigma of the mean."""
-    numbers, sigmas = np.array(values).T
-    weights = sigmas**-2
-    return float(np.average(numbers, weights=weights)), float(weights.sum() ** -0.5)
 
 
 # ---- Detection in time: in one axis of one turn, and in one axis of all turns.

@@ -11,10 +11,11 @@ from inertial.campaign.equations import Campaign
 from inertial.campaign.records import Clock, rows_of
 from inertial.campaign.where_causes_act import JUMPS, RESTARTS
 from inertial.effects.restarts import MAX_RESTARTS, Restarts
+from inertial.effects.warm_up import WarmUp
 from inertial.estimation.effect_information import EffectInformation, whitening
 from inertial.estimation.probability import chi2_sf
 from inertial.model_selection.cause import FOUND, ONE_OF_CLASS, Cause, EffectTest
-from inertial.physics.drift import WarmUp, without_clock
+from inertial.physics.drift import without_clock
 from inertial.physics.effect import Effect
 from inertial.physics.motion import Motion
 from inertial.sensors import SENSORS

@@ -77,12 +77,7 @@ def criticism(
     for data in mounts:
         for table, row in _of_mount(data, simulated, gaps, allan, level, lowest_hz):
             rows[table].append(row)
-    return {
-        name: pd.DataFrame(rows[name], columns=[column.name for column in table.columns])
-        if rows[name]
-        else table.empty()
-        for name, table in DECLARED.writes.items()
-    }
+    return rows
 
 
 def _of_mount(

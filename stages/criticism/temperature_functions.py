@@ -303,7 +303,8 @@ def select_with_temperature(
         at_once = [TemperatureModel(one.sensor, one.pieces, one.knots) for one in models]
         selection = _weighed(selection, selected(at_once))
     # A curve of a temperature that rises may be a course in time beside straight lines.
-    lines = [TemperatureModel(one.sensor, own) for one in models if (own := _straight(one))]
+    pieces = [(one.sensor, [each for each in one.pieces if each.power == 1]) for one in models]
+    lines = [TemperatureModel(sensor, own) for sensor, own in pieces if own]
     if lines and _pieces(lines) < _pieces(models):
         selection = _weighed(selection, selected(lines))
     straight = {f"{one.sensor}_{what}" for one in models for what in STRAIGHT_LINES}
@@ -332,10 +333,6 @@ def _in_turn(
             break
         models, selection = again, selected(again)
     return selection, models
-
-
-def _straight(model: TemperatureModel) -> list[Piece]:
-    return [piece for piece in model.pieces if piece.power == 1]
 
 
 def _pieces(models: Sequence[TemperatureModel]) -> int:

@@ -298,7 +298,6 @@ def curve_rows(dependence: TemperatureDependence, mount: str) -> Iterator[TableR
                     "unit": UNITS.get(sweep.kind, "rad/s"),
                     "order": 1 if model.knee else model.described_degree,
                     "knot": model.knee.at if model.knee else None,
-                    "probability": None,
                     "relative_to": dependence.middle,
                     "not_separated": _not_separated(sweep, model.axis),
                 },

@@ -90,18 +90,15 @@ def remaining_errors(triad: Triad, offset: Array, scale: Array) -> Iterator[str]
         if np.isfinite(errors[:, i]).all():
             largest = int(np.argmax(errors[:, i]))
             along, sign = probes[largest]
-            yield (
-                _(
-                    "- {axis} {sensor}: up to {errors:.3g} {unit}, with {value}{probe} "
-                    "along {axes}",
-                    axis=axis,
-                    sensor=sensor,
-                    errors=errors[largest, i],
-                    unit=unit,
-                    value="+" if sign > 0 else "-",
-                    probe=probe,
-                    axes=AXES[along],
-                )
+            yield _(
+                "- {axis} {sensor}: up to {errors:.3g} {unit}, with {value}{probe} along {axes}",
+                axis=axis,
+                sensor=sensor,
+                errors=errors[largest, i],
+                unit=unit,
+                value="+" if sign > 0 else "-",
+                probe=probe,
+                axes=AXES[along],
             )
         else:
             missing = [n for n in PARAMETERS if n in triad.reasons and PARTS[n].sensor_axis == axis]

@@ -218,13 +218,10 @@ def _statements(parent: Element, content: Row, stated: Stated) -> None:
         said.append(_("Place of calibration: {place}", place=place))
     if content["notes"]:
         said.append(_("Remarks: {notes}", notes=content["notes"]))
-    said += [triad["sentence"] for _name, triad in _triads(content) if unusable(triad)]
+    triads = [mount[kind] for mount in content["mounts"] for kind in TRIADS]
+    said += [triad["sentence"] for triad in triads if unusable(triad)]
     for text in said:
         add_rich(add(statements, "dcc:statement"), "dcc:declaration", text)
-
-
-def _triads(content: Row) -> list[tuple[str, Row]]:
-    return [(kind, mount[kind]) for mount in content["mounts"] for kind in TRIADS]
 
 
 # ---- the measurement results

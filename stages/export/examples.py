@@ -75,12 +75,8 @@ def _most_complete(
         for m in plan
     ]
     recorded = [part.sort_values("from_record") for part in candidates if len(part)]
-    return max(recorded, key=_channels_in_all, default=None)
-
-
-def _channels_in_all(blocks: pd.DataFrame) -> int:
-    """How many of the channels are in every block."""
-    return int(blocks[list(CHANNELS)].notna().all().sum())
+    in_every_block = [blocks[list(CHANNELS)].notna().all().sum() for blocks in recorded]
+    return recorded[int(np.argmax(in_every_block))] if recorded else None
 
 
 def _mean(blocks: pd.DataFrame) -> Example:

@@ -43,12 +43,10 @@ def origin(calibration: Calibration, target: str) -> Iterator[str]:
         yield ""
         yield _("Nothing is exported. {not_exported}", not_exported=calibration.not_exported)
         return
-    yield (
-        _(
-            "The whole calibration, with every sigma, is in {campaign}.calibration.json, "
-            "which also contains readings before and after the correction.",
-            campaign=campaign["campaign"],
-        )
+    yield _(
+        "The whole calibration, with every sigma, is in {campaign}.calibration.json, "
+        "which also contains readings before and after the correction.",
+        campaign=campaign["campaign"],
     )
 
 
@@ -56,13 +54,11 @@ def mounts(calibration: Calibration, chosen: Sequence[tuple[str, Triad]]) -> Ite
     """From which mount the numbers are, where the campaign has several."""
     if len(calibration.mounts) > 1:
         names = ", ".join(f"{triad.kind} {_quoted(name)}" for name, triad in chosen)
-        yield (
-            _(
-                "The IMU was fixed on {mounts} mounts; each has an M of its own, because M "
-                "contains the mounting rotation. These numbers are from: {names}.",
-                mounts=len(calibration.mounts),
-                names=names,
-            )
+        yield _(
+            "The IMU was fixed on {mounts} mounts; each has an M of its own, because M "
+            "contains the mounting rotation. These numbers are from: {names}.",
+            mounts=len(calibration.mounts),
+            names=names,
         )
 
 

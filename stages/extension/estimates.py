@@ -16,7 +16,7 @@ from inertial.effects.temperature_model import TemperatureModel
 from inertial.estimation.least_squares import Estimate, System
 from inertial.estimation.scatter_and_random_walk import covering
 from inertial.estimation.triad import UNKNOWNS, errors_of, linear_names
-from inertial.physics.drift import Drift, ScaleJump
+from inertial.physics.drift import Drift
 from inertial.physics.effect import Effect, Reading, Truth
 from inertial.physics.motion import Motion
 from inertial.tables import BODY, OF_TRIAD
@@ -114,8 +114,6 @@ class Solved:
             "scatter_seconds": scatter_seconds,
             "unit": UNIT[self.stage],
             "random_walk": self.random_walk,
-            "random_walk_sigma": None,
-            "earth_rate_up": None,
         }
 
 
@@ -261,7 +259,7 @@ def moved(solution: Solved, joint: Sequence[Row], scatter: bool, mount: str) -> 
 # The bias of a ramp is that of its beginning, of a warm-up that of its end, beside a temperature
 # that of the mean temperature. Models that drift otherwise are compared, and mixed, by the means.
 
-DRIFTS = (Drift, ScaleJump, TemperatureModel)  # of the sensor, with time or temperature alone
+DRIFTS = (Drift, TemperatureModel)  # of the sensor, with time or temperature alone
 
 
 def drift_means(solution: Solved, motion: Motion, stretches: slice) -> Iterator[Row]:

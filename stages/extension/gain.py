@@ -55,10 +55,7 @@ def gain(models: Models, validated: dict[str, CrossValidation], mount: str) -> I
 def _fold_rows(shared: Row, folds: Sequence[tuple[Fold, bool]]) -> Iterator[TableRow]:
     for number, (fold, counted) in enumerate(folds, 1):
         for name in fold.manoeuvres:
-            yield (
-                "held_out",
-                {**shared, "fold": number, "manoeuvre": name, "counted": counted},
-            )
+            yield "held_out", {**shared, "fold": number, "manoeuvre": name, "counted": counted}
 
 
 def _of_sensor(validation: CrossValidation) -> Iterator[Row]:
@@ -135,10 +132,6 @@ def row_of(scope: str, before: float, drop: float, degrees: int) -> dict[str, An
         "before": before,
         "after": before - drop,
         "drop": drop,
-        "snr_squared": None,
-        "random_walk_drop": None,
-        "folds": None,
-        "counted": None,
         "rms_before": rms(before),
         "rms_after": rms(before - drop),
         "unit": "sigma",

@@ -1,7 +1,7 @@
 """What the stage reads and writes, and the folder of the archive."""
 
 from inertial import tables
-from inertial.tables.declared import ESTIMATING, Declared, From, of_stage, of_stages
+from inertial.tables.declared import ESTIMATING, Declared, From, by_name, of_stage, of_stages
 
 DECLARED = Declared(
     reads={
@@ -17,13 +17,9 @@ DECLARED = Declared(
         "uncertainty_budget": From("compensation", tables.UNCERTAINTY_BUDGET),
     },
     writes={
-        "archived": tables.ARCHIVED,
-        "earlier": tables.EARLIER,
+        **by_name(tables.ARCHIVED, tables.EARLIER),
         "published_differences": tables.DIFFERENCES,
-        "repeatability": tables.REPEATABILITY,
-        "changes": tables.CHANGES,
-        "jumps": tables.JUMPS,
-        "forecast": tables.FORECAST,
+        **by_name(tables.REPEATABILITY, tables.CHANGES, tables.JUMPS, tables.FORECAST),
     },
     files=("archive",),
 )

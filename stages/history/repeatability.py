@@ -1,7 +1,7 @@
 """How well the parameters of one IMU repeat over its calibrations, and what the next may be."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from datetime import date, timedelta
 from math import hypot
 
@@ -379,14 +379,5 @@ def changes(series: Series, first: str, second: str, level: float) -> list[Chang
 def change_rows(changed: list[Change], before: Row) -> Iterator[Row]:
     """The rows of the table of changes since the calibration `before`, its facts."""
     for one in changed:
-        yield {
-            "sensor": one.sensor,
-            "quantity": one.quantity,
-            "unit": unit_of(one.sensor, one.quantity),
-            "since": before["date"],
-            "since_campaign": before["campaign"],
-            "size": one.size,
-            "sigma": one.sigma,
-            "p_value": one.p_value,
-            "beyond": one.beyond,
-        }
+        since = {"since": before["date"], "since_campaign": before["campaign"]}
+        yield {**asdict(one), "unit": unit_of(one.sensor, one.quantity), **since}

@@ -181,15 +181,12 @@ def _scale(
     if not near:
         return None
     factor = next(iter(near))
-    if _is_full_scale(factor) and not _shows_full_scale(sensor, seen):
+    of_full_scale = any(abs(factor / scale - 1) < MAX_ROUNDING for scale in FULL_SCALES)
+    if of_full_scale and not _shows_full_scale(sensor, seen):
         return None
     others = [other for other in near if abs(other / factor - 1) > MAX_ROUNDING]
     # The unit itself is exact, where the count of an instrument is the same to its last digits.
     return Scale(sensor, log, factor, others, _(", or ").join(near.values()), seen)
-
-
-def _is_full_scale(factor: float) -> bool:
-    return any(abs(factor / scale - 1) < MAX_ROUNDING for scale in FULL_SCALES)
 
 
 def _shows_full_scale(sensor: str, seen: Sequence[Multiple]) -> bool:

@@ -267,15 +267,12 @@ def whole_logs(
     plan: Sequence[Manoeuvre], ends: Mapping[str, int], logs: Collection[str]
 ) -> list[Window]:
     """A window for each of these logs, with the manoeuvres of stated spans in their order."""
+    stated = sorted((m for m in plan if m.from_s is not None), key=lambda m: m.from_s or 0.0)
     return [
-        Window(log, 0, ends[log], sorted(_stated(plan, log), key=lambda m: m.from_s or 0.0))
+        Window(log, 0, ends[log], [m for m in stated if m.log == log])
         for log in sorted(logs)
         if ends.get(log)
     ]
-
-
-def _stated(plan: Sequence[Manoeuvre], log: str) -> list[Manoeuvre]:
-    return [m for m in plan if m.log == log and m.from_s is not None]
 
 
 def spans_off(binned: Sequence[Binned], earth_rate: float) -> Iterator[SpansOff]:

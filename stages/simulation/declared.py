@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import ESTIMATED, RECORDED, Declared, From, of_stage
+from inertial.tables.declared import ESTIMATED, RECORDED, Declared, From, by_name, of_stage
 
 DECLARED = Declared(
     reads={
@@ -10,9 +10,6 @@ DECLARED = Declared(
         **RECORDED,
         **ESTIMATED,
     },
-    writes={
-        "simulated": tables.SIMULATED,
-        "fidelity": tables.FIDELITY,
-    },
+    writes=by_name(tables.SIMULATED, tables.FIDELITY),
     streams=("samples",),
 )

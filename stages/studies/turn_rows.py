@@ -10,6 +10,7 @@ from inertial.campaign.campaign_data import CampaignData
 from inertial.campaign.recorded_turns import Rotation
 from inertial.campaign.records import Row, grouped
 from inertial.campaign.sample_stretches import Samples
+from inertial.estimation.consistency import weighted_mean
 from inertial.estimation.encoder_angle import Ripple, against_encoder, low_pass, ripple
 from inertial.estimation.probability import chi2_sf
 from inertial.estimation.time_angle import Ramp, Valued, plateau, spin_down, spin_up
@@ -166,11 +167,9 @@ def together(data: CampaignData, rows: Sequence[Row]) -> Iterator[Row]:
 def mean_of(every: Sequence[Valued]) -> tuple[Valued, float | None]:
     """Weighted mean, its sigma by the scatter where that is more, and the chance of the scatter."""
     values, sigmas = np.array([[each.value, each.sigma] for each in every]).T
-    weights = sigmas**-2
-    mean, sigma = float(np.average(values, weights=weights)), float(weights.sum() ** -0.5)
+    mean, sigma, chi_squared = weighted_mean(values, sigmas)
     if len(every) == 1:
         return Valued(mean, sigma), None
-    chi_squared = float(weights @ (values - mean) ** 2)
     chance = float(chi2_sf(chi_squared, len(every) - 1))
     if chance < MIN_SCATTER_P:
         sigma *= float(np.sqrt(chi_squared / (len(every) - 1)))

@@ -18,6 +18,7 @@ from inertial.estimation.angle_windows import (
     noise_of,
     scale_and_bias,
 )
+from inertial.estimation.consistency import weighted_mean
 from inertial.estimation.gyroscopes import bias_and_scale
 from inertial.estimation.time_angle import Valued, plateau
 from inertial.tables import AXES, GYRO
@@ -226,12 +227,10 @@ def together(values: Iterable[Valued]) -> Valued | None:
     found = list(values)
     if not found:
         return None
-    weights = np.array([first.sigma for first in found]) ** -2
-    numbers = np.array([first.value for first in found])
-    mean = float(np.average(numbers, weights=weights))
-    chi_squared = float(np.sum(weights * (numbers - mean) ** 2))
+    numbers, sigmas = np.array([[first.value, first.sigma] for first in found]).T
+    mean, sigma, chi_squared = weighted_mean(numbers, sigmas)
     beyond = max(chi_squared / max(len(found) - 1, 1), 1.0)
-    return Valued(mean, float(np.sqrt(beyond / weights.sum())))
+    return Valued(mean, sigma * float(np.sqrt(beyond)))
 
 
 def pair_of(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from inertial.effects import KNOWN
-from inertial.physics.drift import WarmUp
+from inertial.effects.warm_up import WarmUp
 from stages.criticism.block_sentences import (
     action_against,
     action_against_heading,

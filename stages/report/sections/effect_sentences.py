@@ -227,15 +227,13 @@ def reductions(effect: str, mount: str, gain: Sequence[Record]) -> Iterator[str]
             before, after = (
                 significant(unit.of(row[f"rms_{at}"]), 3) for at in ("before", "after")
             )
-            yield (
-                _(
-                    "The residuals of the {gyro} fall from {before} {unit} to {after} {unit} rms "
-                    "in held-out turns.",
-                    gyro=gyro,
-                    before=before,
-                    unit=shortened(unit.name, 20),
-                    after=after,
-                )
+            yield _(
+                "The residuals of the {gyro} fall from {before} {unit} to {after} {unit} rms "
+                "in held-out turns.",
+                gyro=gyro,
+                before=before,
+                unit=shortened(unit.name, 20),
+                after=after,
             )
 
 

@@ -282,7 +282,8 @@ def _limit(tested: Tested, rows: Sequence[Record], every: Sequence[Record]) -> o
     name = _named(_effect(rows[0]), [row["parameter"] for row in rows], every)
     rows = sorted(rows, key=lambda row: -(row["largest"] or row["limit"]))
     first = rows[0]
-    sizes = _noticed(first) if tested.effect in THERE_OR_NOT else _sizes(rows)
+    noticed = NOTICED if first["limit"] <= LARGEST_SHARE else NOT_NOTICED
+    sizes = (noticed, "", "") if tested.effect in THERE_OR_NOT else _sizes(rows)
     return outline.table_row(
         capital(name),
         *sizes,
@@ -316,11 +317,6 @@ def _moves(rows: Sequence[Record]) -> tuple[str, str]:
     slight = most["moves"] < LEAST_MOVE
     moves = f"< {LEAST_MOVE}" if slight else numbers.significant(most["moves"], 2)
     return moves, f"{symbol(most['moved_parameter'])} ({SINGULAR[most['moved_sensor']]})"
-
-
-def _noticed(row: Record) -> tuple[str, str, str]:
-    """Of what is there or not, whether it would be detected."""
-    return NOTICED if row["limit"] <= LARGEST_SHARE else NOT_NOTICED, "", ""
 
 
 def _sizes(rows: Sequence[Record]) -> tuple[str, str, str]:
@@ -394,17 +390,13 @@ def _insignificant(rows: Sequence[Record], where: str) -> str:
     return sentence
 
 
-def _count(rows: Sequence[Record]) -> str:
-    return capital(count_in_words(len(rows)))
-
-
 def _tests(rows: Sequence[Record], where: str) -> outline.Table:
     """The tests, the significant ones first."""
     return outline.Table(
         _(
             "{count_} tests for structure in the residuals of the model with the identified "
             "effects{where}. By chance one of them is significant in one campaign of a hundred.",
-            count_=_count(rows),
+            count_=capital(count_in_words(len(rows))),
             where=where,
         ),
         (

@@ -12,7 +12,7 @@ from inertial.campaign.records import grouped, labels, omissions
 from inertial.tables import AXES
 from inertial.text import units
 from inertial.text.cause_names import in_words
-from inertial.text.messages import _, listed
+from inertial.text.messages import _, first_of, listed
 from inertial.text.numbers import aligned, counted, fixed, plus_minus, shortened, significant, whole
 from inertial.text.typography import capital
 from stages.report.outline import (
@@ -391,12 +391,9 @@ def _undetermined(estimate: Estimate) -> Iterator[Row]:
     gaps = [row for row in estimate.parameters if row["value"] is None]
     for reason, group in groupby(gaps, lambda row: row["reason"]):
         each = [symbol(row["parameter"]) for row in group]
-        rest = (
-            _(" and {each} more", each=len(each) - MAX_SYMBOLS) if len(each) > MAX_SYMBOLS else ""
-        )
         yield table_row(
             estimate.name,
-            ", ".join(each[:MAX_SYMBOLS]) + rest,
+            first_of(each, MAX_SYMBOLS),
             shortened(capital(reason or _("no reason is stated")), 600),
             tone="fair",
         )

@@ -15,7 +15,7 @@ from inertial.campaign.records import grouped
 from inertial.sensors import SINGULAR
 from inertial.tables import AXES, CHANNEL_PARTS, CHANNELS, STATIC_PHASES
 from inertial.text.cause_names import in_words
-from inertial.text.messages import _
+from inertial.text.messages import _, first_of
 from inertial.text.numbers import counted, fixed, shortened
 from inertial.text.units import DEGREES_PER_SECOND, METRES, Unit
 from stages.report import drawing
@@ -227,9 +227,7 @@ SECTION = Section(
 
 def _figure(log: Log, key: str, points: int, *, small: bool) -> Figure:
     manoeuvres = list(dict.fromkeys(row["manoeuvre"] for row in log.phases))
-    named = ", ".join(manoeuvres[:MOST_MANOEUVRES])
-    if len(manoeuvres) > MOST_MANOEUVRES:
-        named += _(" and {manoeuvres} more", manoeuvres=len(manoeuvres) - MOST_MANOEUVRES)
+    named = first_of(manoeuvres, MOST_MANOEUVRES)
     length = log.extent[1] - log.extent[0]
     lasting = f", {fixed(length, 1)} s" if log.timed else _(", without time stamps")
     view = _("each channel relative to its median") if log.static else _("as recorded")

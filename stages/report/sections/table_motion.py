@@ -193,27 +193,23 @@ def _sentences(turns: dict[str, list[Record]], rows: Sequence[Record]) -> Iterat
         least, most, best, worst = (
             numbers.fixed(size, 1) for size in (min(off), max(off), min(sigmas), max(sigmas))
         )
-        yield (
-            _(
-                "In the steady part of {counted} the table deviated from its set rate by "
-                "{least} to {most} ppm, with a σ of {best} to {worst} ppm in each. The scale "
-                "factor of a window by time is in error by the same share.",
-                counted=numbers.counted(len(speeds), "turn"),
-                least=least,
-                most=most,
-                best=best,
-                worst=worst,
-            )
+        yield _(
+            "In the steady part of {counted} the table deviated from its set rate by "
+            "{least} to {most} ppm, with a σ of {best} to {worst} ppm in each. The scale "
+            "factor of a window by time is in error by the same share.",
+            counted=numbers.counted(len(speeds), "turn"),
+            least=least,
+            most=most,
+            best=best,
+            worst=worst,
         )
     sigma, name = max((row["sigma"], name) for name, own in turns.items() for row in own)
     angle, turn = numbers.significant(SECONDS_OF_ARC.of(sigma), 2), numbers.shortened(name, 30)
-    yield (
-        _(
-            "Between the ends of a turn the σ of the angle is at most {angle} arcsec "
-            "({turn}); an oscillation of the case counts as motion.",
-            angle=angle,
-            turn=turn,
-        )
+    yield _(
+        "Between the ends of a turn the σ of the angle is at most {angle} arcsec "
+        "({turn}); an oscillation of the case counts as motion.",
+        angle=angle,
+        turn=turn,
     )
 
 

@@ -327,13 +327,11 @@ def _positions(tables: Tables, row: Record, mount: str) -> Iterator[str]:
         return
     for off in tables.rows("accelerometer_findings"):
         if off["cause"] == POSITION and off["mount"] == mount:
-            yield (
-                _(
-                    "The joint fit attributes it to a position error in {shortened}; with the "
-                    "effect in the model no position error is significant ({p_value}).",
-                    shortened=shortened(off["manoeuvre"] or _("a manoeuvre"), 60),
-                    p_value=p_is(tested.score["p_value"]),
-                )
+            yield _(
+                "The joint fit attributes it to a position error in {shortened}; with the "
+                "effect in the model no position error is significant ({p_value}).",
+                shortened=shortened(off["manoeuvre"] or _("a manoeuvre"), 60),
+                p_value=p_is(tested.score["p_value"]),
             )
 
 
