@@ -88,6 +88,18 @@ def test_a_bias_instability_that_the_data_sheet_states_is_no_cause(seed, tmp_pat
     assert results["diagnosis/causes"].empty
 
 
+@pytest.mark.parametrize(
+    "seed", [7, *(pytest.param(n, marks=pytest.mark.slow) for n in (6, 9, 11))]
+)
+def test_a_bias_instability_that_the_rests_show_is_no_cause(seed, tmp_path):
+    """Without a data sheet it was a random walk or a jump in eight of twelve sessions."""
+    flicker = {"gyro_flicker": {"instability_deg_h": FLICKER}}
+    document = sessions.session(seed, effects=flicker)
+    results = sessions.by_hand(document, tmp_path, "diagnosis")
+    assert results["diagnosis/causes"].empty
+    assert np.abs(pulls(document, results)["gyro"][:9]).max() < 4.5
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_random_walk_that_is_named_is_in_the_sigmas_of_the_result(seed, tmp_path):

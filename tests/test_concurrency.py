@@ -1,6 +1,7 @@
 """Several at work on one folder, a disk that fills, runs that are killed: nothing is lost."""
 
 import fcntl
+import hashlib
 import json
 import os
 import re
@@ -157,6 +158,7 @@ def test_two_campaigns_of_one_imu_that_end_at_once_are_both_in_its_history(
         place = facts.schema.get_field_index("campaign")
         renamed = facts.set_column(place, facts.schema.field(place), [[name]])
         pq.write_table(renamed, derived / "plan/campaign.parquet")
+        _of_other_logs(derived / "plan/inputs.parquet", name)
     history = tmp_path / "data/history"
 
     def end(*ending: str) -> None:
@@ -180,6 +182,16 @@ def test_two_campaigns_of_one_imu_that_end_at_once_are_both_in_its_history(
         earlier = pq.read_table(tmp_path / f"data/derived/{name}/history/earlier.parquet")
         assert set(earlier["campaign"].to_pylist()) == {other}
     assert _contents(history) == kept
+
+
+def _of_other_logs(path: Path, name: str) -> None:
+    """The same logs once more would be the same calibration by another name."""
+    made_by = pq.read_metadata(path).metadata
+    inputs = pq.read_table(path).replace_schema_metadata(made_by)
+    place = inputs.schema.get_field_index("sha256")
+    hashes = [hashlib.sha256(f"{name} {sha}".encode()).hexdigest() for sha in inputs["sha256"]]
+    field = inputs.schema.field(place)
+    pq.write_table(inputs.set_column(place, field, [hashes]), path)
 
 
 def _contents(folder: Path) -> dict[str, bytes]:

@@ -264,7 +264,7 @@ class NoiseLevels:
         return MeasuredDrift(instability, walk, expected=expected, stated=known)
 
     def stated_drift(self, sensor: str) -> MeasuredDrift:
-        """The same by the data sheet alone: by hand what drifts at rest is the support as well."""
+        """The same by the data sheet alone: a support that tilts is no drift of the bias."""
         return MeasuredDrift(self._stated(sensor), np.zeros(len(tables.AXES)), expected=True)
 
     def _of_axes(self, sensor: str) -> list[Row]:

@@ -50,9 +50,9 @@ def campaign_of(data: CampaignData) -> Campaign:
         inputs = replace(inputs, static_positions=_in_pieces(inputs.static_positions))
         statics = _in_pieces(statics)
     motions, solution = CampaignMotions(data), data.result
-    handled = data.by_hand is not None  # there the support drifts, not only the bias
-    known = data.noise.stated_drift if handled else data.drift
-    drifts = {sensor: known(sensor) for sensor in SENSORS}
+    drifts = {sensor: data.drift(sensor) for sensor in SENSORS}
+    if data.by_hand is not None:  # what the accelerometers drift by is the support, as it tilts
+        drifts["accel"] = data.noise.stated_drift("accel")
     static_motions = [motions.at_rest(position) for position in inputs.static_positions]
     turns: list[Motion] = []
     static_forces: list[tuple[str, StaticForce, Motion]] = []
