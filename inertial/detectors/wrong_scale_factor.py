@@ -57,7 +57,8 @@ class WrongScaleFactor(Detector):
         force, cause, zero = event.facts
         action = _(
             "Correct the unit, counts_per_unit or count size, or the name of the instrument in "
-            "the campaign. Where all rests confirm a known factor, segment divides by it."
+            "the campaign; where other logs read right, in a format of this log's own. Where all "
+            "rests confirm a known factor, segment divides by it."
         )
         if zero:
             action = _(
@@ -74,8 +75,8 @@ class WrongScaleFactor(Detector):
                 cause=cause,
             ),
             _(
-                "Bias, scale factors and cross-axis terms of the accelerometers are {size} "
-                "times what they should be.",
+                "What this log reads of the specific force is {size} times what it should be, and "
+                "so are the bias, scale factors and cross-axis terms that follow from it.",
                 size=significant(event.size),
             ),
             action,
