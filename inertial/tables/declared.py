@@ -38,11 +38,6 @@ def of_stages(stages: Sequence[str], *contracts: Table) -> dict[str, From]:
     return {f"{stage}_{table.name}": From(stage, table) for stage in stages for table in contracts}
 
 
-def by_name(*contracts: Table) -> dict[str, Table]:
-    """Tables that a stage writes, each by its own name."""
-    return {table.name: table for table in contracts}
-
-
 @dataclass(frozen=True)
 class Declared:
     """A stage by the tables that it reads, by argument, and those that it writes, by file name.
@@ -90,8 +85,14 @@ FITTED = ESTIMATED | of_stages(ESTIMATING, tables.FIT)
 ESTIMATION = Declared(
     reads=RECORDED,
     writes={
-        **by_name(tables.PARAMETERS, tables.COVARIANCE, tables.FIT, tables.FIT_MANOEUVRES),
-        **by_name(tables.AVERAGING, tables.POSITIONS, tables.SWITCH_ONS, tables.WANTED),
+        "parameters": tables.PARAMETERS,
+        "covariance": tables.COVARIANCE,
+        "fit": tables.FIT,
+        "fit_manoeuvres": tables.FIT_MANOEUVRES,
+        "averaging": tables.AVERAGING,
+        "positions": tables.POSITIONS,
+        "switch_ons": tables.SWITCH_ONS,
+        "wanted": tables.WANTED,
         "findings": tables.FINDINGS,
     },
 )

@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import RECORDED, Declared, From, by_name, of_stage
+from inertial.tables.declared import RECORDED, Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
@@ -11,6 +11,10 @@ DECLARED = Declared(
         **RECORDED,
         "result": From("diagnosis", tables.PARAMETERS, "result"),
     },
-    writes=by_name(tables.ALIGNMENTS, tables.ATTITUDE_ERRORS, tables.MODULATION_GAINS),
+    writes={
+        "alignments": tables.ALIGNMENTS,
+        "attitude_errors": tables.ATTITUDE_ERRORS,
+        "modulation_gains": tables.MODULATION_GAINS,
+    },
     streams=("samples",),
 )

@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import FITTED, RECORDED, Declared, From, by_name, of_stage
+from inertial.tables.declared import FITTED, RECORDED, Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
@@ -16,7 +16,10 @@ DECLARED = Declared(
         "simulated": From("simulation", tables.SIMULATED),
     },
     writes={
-        **by_name(tables.COMPENSATED, tables.CHECKS, tables.RESIDUALS, tables.CHARACTERISTICS),
+        "compensated": tables.COMPENSATED,
+        "checks": tables.CHECKS,
+        "residuals": tables.RESIDUALS,
+        "characteristics": tables.CHARACTERISTICS,
         "uncertainty_budget": tables.UNCERTAINTY_BUDGET,
         "compensated_traces": tables.TRACES,
         "findings": tables.FINDINGS,

@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import FITTED, RECORDED, Declared, From, by_name
+from inertial.tables.declared import FITTED, RECORDED, Declared, From
 
 DECLARED = Declared(
     reads={
@@ -12,12 +12,21 @@ DECLARED = Declared(
         **FITTED,
     },
     writes={
-        **by_name(tables.SCORES, tables.EFFECTS, tables.DETECTION_LIMITS, tables.LINES),
-        **by_name(tables.RANDOM_WALKS, tables.DRIFTS_AT_REST, tables.STRUCTURES),
-        **by_name(tables.STRUCTURE_POINTS, tables.STRUCTURE_MANOEUVRES),
+        "scores": tables.SCORES,
+        "effects": tables.EFFECTS,
+        "detection_limits": tables.DETECTION_LIMITS,
+        "lines": tables.LINES,
+        "random_walks": tables.RANDOM_WALKS,
+        "drifts_at_rest": tables.DRIFTS_AT_REST,
+        "structures": tables.STRUCTURES,
+        "structure_points": tables.STRUCTURE_POINTS,
+        "structure_manoeuvres": tables.STRUCTURE_MANOEUVRES,
         "findings": tables.EFFECT_FINDINGS,
-        **by_name(tables.MEMBERS, tables.CAUSE_POSITIONS, tables.TEMPERATURE_CURVES),
-        **by_name(tables.SCORE_VECTOR, tables.INFORMATION_MATRIX),
+        "members": tables.MEMBERS,
+        "cause_positions": tables.CAUSE_POSITIONS,
+        "temperature_curves": tables.TEMPERATURE_CURVES,
+        "score_vector": tables.SCORE_VECTOR,
+        "information_matrix": tables.INFORMATION_MATRIX,
     },
     streams=("simulated",),
 )

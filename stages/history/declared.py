@@ -1,7 +1,7 @@
 """What the stage reads and writes, and the folder of the archive."""
 
 from inertial import tables
-from inertial.tables.declared import ESTIMATING, Declared, From, by_name, of_stage, of_stages
+from inertial.tables.declared import ESTIMATING, Declared, From, of_stage, of_stages
 
 DECLARED = Declared(
     reads={
@@ -17,9 +17,13 @@ DECLARED = Declared(
         "uncertainty_budget": From("compensation", tables.UNCERTAINTY_BUDGET),
     },
     writes={
-        **by_name(tables.ARCHIVED, tables.EARLIER),
+        "archived": tables.ARCHIVED,
+        "earlier": tables.EARLIER,
         "published_differences": tables.DIFFERENCES,
-        **by_name(tables.REPEATABILITY, tables.CHANGES, tables.JUMPS, tables.FORECAST),
+        "repeatability": tables.REPEATABILITY,
+        "changes": tables.CHANGES,
+        "jumps": tables.JUMPS,
+        "forecast": tables.FORECAST,
     },
     files=("archive",),
 )

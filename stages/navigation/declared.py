@@ -1,15 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import (
-    ESTIMATING,
-    RECORDED,
-    Declared,
-    From,
-    by_name,
-    of_stage,
-    of_stages,
-)
+from inertial.tables.declared import ESTIMATING, RECORDED, Declared, From, of_stage, of_stages
 
 DECLARED = Declared(
     reads={
@@ -22,6 +14,10 @@ DECLARED = Declared(
         "covariance": From("diagnosis", tables.COVARIANCE),
         **of_stages(ESTIMATING, tables.FIT),
     },
-    writes=by_name(tables.NAVIGATION_ERRORS, tables.NAVIGATION_COURSES, tables.NAVIGATION_SHARES),
+    writes={
+        "navigation_errors": tables.NAVIGATION_ERRORS,
+        "navigation_courses": tables.NAVIGATION_COURSES,
+        "navigation_shares": tables.NAVIGATION_SHARES,
+    },
     streams=("samples", "compensated"),
 )

@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import Declared, From, by_name
+from inertial.tables.declared import Declared, From
 
 DECLARED = Declared(
     reads={
@@ -19,7 +19,10 @@ DECLARED = Declared(
         "ranges": From("plan", tables.RANGES),
     },
     writes={
-        **by_name(tables.NOISE, tables.LEVELS, tables.ALLAN, tables.SPECTRA),
+        "noise": tables.NOISE,
+        "levels": tables.LEVELS,
+        "allan": tables.ALLAN,
+        "spectra": tables.SPECTRA,
         "terms": tables.NOISE_TERMS,
         "findings": tables.FINDINGS,
     },

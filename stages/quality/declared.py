@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import Declared, From, by_name, of_stage
+from inertial.tables.declared import Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
@@ -10,7 +10,10 @@ DECLARED = Declared(
         "gravity_repairs": From("plan", tables.REPAIRS),
     },
     writes={
-        **by_name(tables.FINDINGS, tables.MASKS, tables.GAPS, tables.CHANNEL_STATISTICS),
+        "findings": tables.FINDINGS,
+        "masks": tables.MASKS,
+        "gaps": tables.GAPS,
+        "channel_statistics": tables.CHANNEL_STATISTICS,
         "close_ups": tables.CLOSE_UPS,
     },
     streams=("samples",),

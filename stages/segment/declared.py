@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import Declared, From, by_name, of_stage
+from inertial.tables.declared import Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
@@ -13,8 +13,15 @@ DECLARED = Declared(
         "quality_findings": From("quality", tables.FINDINGS),
     },
     writes={
-        **by_name(tables.MANOEUVRES, tables.REPAIRS, tables.CHANNEL_REPAIRS, tables.SEGMENTS),
-        **by_name(tables.PERFORMED, tables.BLOCKS, tables.MASKS, tables.TRACES, tables.FINDINGS),
+        "manoeuvres": tables.MANOEUVRES,
+        "repairs": tables.REPAIRS,
+        "channel_repairs": tables.CHANNEL_REPAIRS,
+        "segments": tables.SEGMENTS,
+        "performed": tables.PERFORMED,
+        "blocks": tables.BLOCKS,
+        "masks": tables.MASKS,
+        "traces": tables.TRACES,
+        "findings": tables.FINDINGS,
         "close_ups": tables.CLOSE_UPS,
     },
     streams=("samples",),

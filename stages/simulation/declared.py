@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import ESTIMATED, RECORDED, Declared, From, by_name, of_stage
+from inertial.tables.declared import ESTIMATED, RECORDED, Declared, From, of_stage
 
 DECLARED = Declared(
     reads={
@@ -10,6 +10,9 @@ DECLARED = Declared(
         **RECORDED,
         **ESTIMATED,
     },
-    writes=by_name(tables.SIMULATED, tables.FIDELITY),
+    writes={
+        "simulated": tables.SIMULATED,
+        "fidelity": tables.FIDELITY,
+    },
     streams=("samples",),
 )

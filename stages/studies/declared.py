@@ -1,7 +1,7 @@
 """What the stage reads and writes."""
 
 from inertial import tables
-from inertial.tables.declared import RECORDED, Declared, From, by_name, of_stage, of_stages
+from inertial.tables.declared import RECORDED, Declared, From, of_stage, of_stages
 
 DECLARED = Declared(
     reads={
@@ -12,10 +12,15 @@ DECLARED = Declared(
         **of_stages(["gyroscope"], tables.PARAMETERS, tables.FIT),
     },
     writes={
-        **by_name(tables.EPOCHS, tables.SPREADS, tables.WINDOWS),
+        "epochs": tables.EPOCHS,
+        "spreads": tables.SPREADS,
+        "windows": tables.WINDOWS,
         "growing": tables.WINDOWS,
         "middles": tables.WINDOWS,
-        **by_name(tables.TIME_ANGLE, tables.MOTIONS, tables.ENCODER, tables.BANDWIDTHS),
+        "time_angle": tables.TIME_ANGLE,
+        "motions": tables.MOTIONS,
+        "encoder": tables.ENCODER,
+        "bandwidths": tables.BANDWIDTHS,
         "not_studied": tables.NOT_STUDIED,
     },
     streams=("samples",),
