@@ -14,7 +14,7 @@ from ruamel.yaml import YAML
 
 import laboratory
 from inertial import tables
-from inertial.campaign.noise_levels import NoiseLevels, of_one_design
+from inertial.campaign.noise_levels import NoiseLevels, drifts_of_axes
 
 RATE, STRETCH, COUNT = 10.0, 6000, 10  # Hz, samples of a stretch, stretches
 WHITE = {"accel": 1e-4, "gyro": 3.5e-6}  # m/s/√s, rad/√s
@@ -169,12 +169,12 @@ def test_the_third_axis_has_the_mean_power_of_the_two_others(shown, limit, third
         for p_value in (0.4, 0.03)
     )
     axes: list[dict[str, float]] = [{}, *({"bias_instability": size} for size in shown)]
-    assert of_one_design(axes, [open_to] * 3)[0] == {"bias_instability": pytest.approx(third)}
-    assert of_one_design([{}, {}, axes[1]], [open_to] * 3) == [{}, {}, axes[1]]
-    beside_one = of_one_design([{}, {}, axes[1]], [open_to, hinting, open_to])
+    assert drifts_of_axes(axes, [open_to] * 3)[0] == {"bias_instability": pytest.approx(third)}
+    assert drifts_of_axes([{}, {}, axes[1]], [open_to] * 3) == [{}, {}, axes[1]]
+    beside_one = drifts_of_axes([{}, {}, axes[1]], [open_to, hinting, open_to])
     assert beside_one == [{}, {"bias_instability": min(shown[0], limit)}, axes[1]]
     walking = {"random_walk": 1.0}
-    assert of_one_design([walking, *axes[1:]], [open_to] * 3)[0] == walking
+    assert drifts_of_axes([walking, *axes[1:]], [open_to] * 3)[0] == walking
 
 
 def on_faces(seed: int, tilt: float = 0.0, walk: float = 0.0) -> np.ndarray:

@@ -75,7 +75,7 @@ def drift_of(
     return {instability: max(shown.get(instability, 0.0), float(np.fmin(stated, limit)))}
 
 
-def of_one_design(
+def drifts_of_axes(
     drifts: Sequence[Mapping[str, float]], terms: Sequence[NoiseTerms | None]
 ) -> list[dict[str, float]]:
     """What enters of each axis of a sensor; of one that shows no drift also that of the others.

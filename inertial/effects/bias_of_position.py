@@ -17,7 +17,7 @@ class BiasOfPosition(OfEither):
     contact, a cable that pulls, a field, axes that are assigned otherwise in its log. Where each
     axis is up in one position and down in one, a square of the force along an axis, or another
     scale factor of its negative side, does the same to the data. Where logs without a common clock
-    hold a manoeuvre or two, biases of each run stand for it, as for a `Jump`.
+    hold a manoeuvre or two, biases of each run stand for it, as for a `BiasJump`.
     """
 
     kind, letter = "bias_of_position", "b"

@@ -189,7 +189,8 @@ def noise(information: Array, draws: int, rng: np.random.Generator) -> Array:
     size = np.sqrt(np.maximum(np.diag(information), 0.0))
     shown = np.flatnonzero(size)
     scaled = information[np.ix_(shown, shown)] / np.outer(size[shown], size[shown])
-    factor, order, rank, _failed = dpstrf(scaled, tol=NO_INFORMATION, lower=1)  # pivoted Cholesky
+    # Pivoted Cholesky.
+    factor, order, rank, _deficient = dpstrf(scaled, tol=NO_INFORMATION, lower=1)
     columns = shown[order - 1]
     root = size[columns, None] * np.tril(factor)[:, :rank]
     right = np.zeros((len(information), draws))

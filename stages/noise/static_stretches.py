@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from inertial.arrays import Array, Booleans, finite_or_none
-from inertial.campaign.noise_levels import DRIFTS, MAX_P_VALUE, drift_of, of_one_design
+from inertial.campaign.noise_levels import DRIFTS, MAX_P_VALUE, drift_of, drifts_of_axes
 from inertial.campaign.records import Row
 from inertial.estimation.allan import Allan, AllanSums, factors_up_to
 from inertial.estimation.low_pass import LowPass
@@ -393,7 +393,7 @@ class SensorNoise:
             for terms, stepped in zip(self.of_bias, self.stepped, strict=True)
         ]
         pairs = zip(shown, stated, strict=True)
-        drifts = of_one_design([drift_of(*pair, self.seconds) for pair in pairs], self.of_bias)
+        drifts = drifts_of_axes([drift_of(*pair, self.seconds) for pair in pairs], self.of_bias)
         for channel, drift, figure in zip(self.channels, drifts, stated, strict=True):
             own: dict[str, float | None] = {**drift, "data_sheet": figure}
             if channel in self.quantised:
