@@ -70,6 +70,15 @@ def test_an_instability_that_may_hide_is_told_beside_the_sigma_of_the_bias() -> 
         if told:
             assert "B = 30 µg" in accelerometers.note
             assert "up to 20 µg to a bias whose σ is 4.0 µg" in accelerometers.note
+    # Of a drift that no single term has to itself, or that the other axes show, σ holds some.
+    levels = tables["levels"].copy()
+    levels.loc[levels["channel"].str.startswith("accel"), "bias_instability"] = 30 * MICRO_G
+    result.loc[bias, "sigma"] = 4.0 * MICRO_G
+    *_unused, accelerometers = made(noise_terms=terms, result=result, levels=levels)
+    assert "bias_instability_ug" not in accelerometers.note
+    result.loc[result["sensor"] == "accel", "method"] = "free_positions"
+    *_unused, accelerometers = made(noise_terms=terms, result=result, levels=levels)
+    assert "bias_instability_ug" in accelerometers.note
 
 
 def test_without_a_long_stretch_a_sentence_says_why_and_the_levels_stay() -> None:

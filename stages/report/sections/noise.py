@@ -6,6 +6,7 @@ from inertial.sensors import PLURAL
 from inertial.tables import AXES
 from inertial.text.messages import _, listed
 from inertial.text.numbers import common_decimals, shortened, significant, with_sigma
+from inertial.text.parameters import FREE
 from inertial.text.typography import capital
 from inertial.text.units import RANDOM_WALK, Unit, quantity
 from stages.report import outline
@@ -79,9 +80,11 @@ SECTION = outline.Section(
         "to right quantisation falls with slope −1, white noise (random walk of angle or velocity) "
         "with −½, bias instability is flat, a random walk of the bias rises with +½, a ramp with "
         "+1. Every σ of this report contains the white noise of each manoeuvre, quantisation, bias "
-        "instability and random walk where they are significant (p < 0.1 %), and the rounding of "
-        "counts that are coarse beside them. Of the data sheet, dashed, only the bias instability "
-        "is used, where the rests do not determine it."
+        "instability and random walk where they are significant (p < 0.1 %), the bias instability "
+        "of the other axes where one shows none, and the rounding of counts that are coarse "
+        "beside them; by hand, where the support may tilt, of the accelerometers neither. Of the "
+        "data sheet, dashed, only the bias instability is used, where the rests do not determine "
+        "it."
     ),
     (
         "allan",
@@ -153,6 +156,13 @@ def _explained(tables: Tables, sensor: str) -> Iterator[str]:
 
 def _open(tables: Tables, sensor: str, terms: Sequence[Record]) -> Iterator[str]:
     """What a bias instability that neither rests nor a data sheet show would add to a bias."""
+    drifting = {
+        row["channel"]
+        for row in tables.rows("levels")
+        if row["manoeuvre"] is None and (row["bias_instability"] or row["random_walk"])
+    }
+    by_hand = any(row["method"] == FREE for row in tables.rows("result"))
+    held = set() if by_hand and sensor == "accel" else drifting  # there the support drifts as well
     sigma = {
         row["parameter"].removeprefix("bias_"): row["sigma"]
         for row in tables.rows("result")
@@ -161,7 +171,10 @@ def _open(tables: Tables, sensor: str, terms: Sequence[Record]) -> Iterator[str]
     added = [
         (LOWEST * row["upper"] / sigma[axis], row["upper"], sigma[axis])
         for row in terms
-        if row["term"] == "bias_instability" and row["upper"] and not row["data_sheet"]
+        if row["term"] == "bias_instability"
+        and row["upper"]
+        and not row["data_sheet"]
+        and row["channel"] not in held
         for axis in [row["channel"][-1]]
         if axis in sigma
     ]
